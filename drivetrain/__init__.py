@@ -1,0 +1,1 @@
+"""Planetary gearbox scaling laws, and the match of gearbox and motor."""

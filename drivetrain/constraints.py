@@ -1,0 +1,170 @@
+"""What a machine of given cross-section must be able to do, each as a smallest active length over the ratio.
+
+A constraint does not know whether it is enforced: the caller hands it to the match among the enforced or among the
+reported ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from units import MILLIMETRE
+
+CAPABILITY_SLACK = 1e-6  # relative; a capability this close below its requirement is met
+
+
+class Constraint:
+    """One limit on the pair (transmission ratio tau_t [m/rad], active length l_em [m])."""
+
+    name: str = "constraint"
+
+    def minimum_length(self, ratio):
+        """Smallest active length allowed at these ratios [m], same shape as ``ratio``; not falling in the ratio."""
+        return np.zeros_like(np.asarray(ratio, dtype=float))[()]
+
+    def maximum_length(self) -> float:
+        """Largest active length allowed [m]."""
+        return inf
+
+    def minimum_ratio(self) -> float:
+        """Smallest transmission ratio allowed [m/rad]."""
+        return 0.0
+
+    def violation(self, ratio: float, length: float) -> str | None:
+        """Sentence on what is missing and what it would take, or None when the constraint is met."""
+        raise NotImplementedError
+
+
+class _Force(Constraint):
+    """l_em >= F tau_t / r_Tl (3.66) for one force and one torque per length."""
+
+    def minimum_length(self, ratio):
+        return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
+
+    def capability(self, ratio, length):
+        """Force at the wheel, r_Tl l_em / tau_t [N]."""
+        return self.torque_per_length * length / ratio
+
+    def violation(self, ratio, length):
+        reached = self.capability(ratio, length)
+        if reached >= self.force * (1 - CAPABILITY_SLACK):
+            return None
+        return (
+            f"{self.name} {reached:.0f} N is {self.force - reached:.0f} N below the requirement of {self.force:.0f} N; "
+            f"at {ratio / MILLIMETRE:.3g} mm/rad it would need {self.minimum_length(ratio) / MILLIMETRE:.1f} mm of "
+            f"active length instead of {length / MILLIMETRE:.1f} mm"
+        )
+
+
+@dataclass(frozen=True)
+class NominalForce(_Force):
+    """RMS force at the nominal current density (3.67, 3.95): force [N], torque per length [Nm/m]."""
+
+    force: float
+    torque_per_length: float
+    name: str = "nominal force"
+
+
+@dataclass(frozen=True)
+class OverloadForce(_Force):
+    """Peak force at the overload current density (3.69, 3.96): force [N], torque per length there [Nm/m]."""
+
+    force: float
+    torque_per_length: float
+    name: str = "overload force"
+
+
+@dataclass(frozen=True)
+class RegenerativeDamping(Constraint):
+    """Damping of the short-circuited machine, c = alpha l^2 / (l + l_et) / tau_t^2 (3.92).
+
+    damping: c required [Ns/m]; alpha: [Ns m/rad^2 per metre], see ``damping_coefficient``; end_turn_length: [m]
+    Equations 3.94 and 3.97 call required and available damping by mixed names; the available one must not be smaller.
+    """
+
+    damping: float
+    alpha: float
+    end_turn_length: float
+    name: str = "regenerative damping"
+
+    def minimum_length(self, ratio):
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94)."""
+        a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)
+        return ((1 + np.sqrt(1 + 4 * self.end_turn_length * a)) / (2 * a))[()]
+
+    def capability(self, ratio, length):
+        """Largest damping coefficient at the wheel [Ns/m] (3.92)."""
+        return self.alpha * length**2 / (length + self.end_turn_length) / ratio**2
+
+    def violation(self, ratio, length):
+        reached = self.capability(ratio, length)
+        if reached >= self.damping * (1 - CAPABILITY_SLACK):
+            return None
+        return (
+            f"{self.name} {reached / 1e3:.1f} kNs/m is {(self.damping - reached) / 1e3:.1f} kNs/m below the "
+            f"requirement of {self.damping / 1e3:g} kNs/m; at {ratio / MILLIMETRE:.3g} mm/rad it would need "
+            f"{self.minimum_length(ratio) / MILLIMETRE:.1f} mm of active length instead of "
+            f"{length / MILLIMETRE:.1f} mm, or {self.damping / reached:.2f} times the squared torque per length for "
+            "the same copper"
+        )
+
+
+@dataclass(frozen=True)
+class SpeedLimit(Constraint):
+    """tau_t >= v_max / omega_max (3.64): velocity [m/s] at the wheel, speed [rad/s] of the rotor."""
+
+    velocity: float
+    speed: float
+    name: str = "rotor speed"
+
+    def minimum_ratio(self):
+        return abs(self.velocity) / self.speed
+
+    def violation(self, ratio, length):
+        if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
+            return None
+        return (
+            f"{self.name} {abs(self.velocity) / ratio:.0f} rad/s is above the limit of {self.speed:.0f} rad/s; it "
+            f"would need a transmission ratio of {self.minimum_ratio() / MILLIMETRE:.3f} mm/rad at least"
+        )
+
+
+@dataclass(frozen=True)
+class LengthLimit(Constraint):
+    """l_em <= l_max (3.62): packaging and a rotor that is not too slender; length [m]."""
+
+    length: float
+    name: str = "active length"
+
+    def maximum_length(self):
+        return self.length
+
+    def violation(self, ratio, length):
+        if length <= self.length * (1 + CAPABILITY_SLACK):
+            return None
+        return f"{self.name} {length / MILLIMETRE:.1f} mm is above the limit of {self.length / MILLIMETRE:.1f} mm"
+
+
+def damping_coefficient(
+    *, torque_per_length, current_density, coils_in_series, resistivity, packing, half_slot_area
+):
+    """alpha_em = r_Tl^2 / (6 N_c rho k_cp A_s J^2) [Ns m/rad^2 per metre] (3.91).
+
+    torque_per_length: [Nm/m] at current_density, RMS [A/m^2 of copper]; resistivity [ohm m]; packing k_cp;
+    half_slot_area A_s [m^2]. The turns cancel. ``capability`` with the thesis's numbers is 27.4 kNs/m at 2.3 mm/rad
+    and 36 mm, not the 40 kNs/m required.
+    """
+    copper = packing * half_slot_area
+    return torque_per_length**2 / (6 * coils_in_series * resistivity * copper * current_density**2)
+
+
+def winding_damping(*, torque_constant, phase_resistance, transmission_ratio):
+    """Damping of a wound machine in short circuit, 2 K_t^2 / (3 R_ph tau_t^2) [Ns/m] (3.75).
+
+    torque_constant: [Nm per peak ampere]; phase_resistance: [ohm]; transmission_ratio: [m/rad]. Well below the
+    electrical pole, p omega << R/L.
+    """
+    return 2 * torque_constant**2 / (3 * phase_resistance * transmission_ratio**2)

@@ -1,0 +1,16 @@
+"""The machine seen at the wheel: peak phase voltage and current over actuator force and velocity."""
+
+from __future__ import annotations
+
+from electrical.synchronous_machine import DriveLimits, OperatingMap, SynchronousMachine, operating_map
+
+
+def force_velocity_map(
+    machine: SynchronousMachine, limits: DriveLimits, transmission_ratio: float, force, velocity
+) -> OperatingMap:
+    """Currents and voltage needed for each actuator force [N] and velocity [m/s] (thesis Fig. 3.27).
+
+    T = F tau_t, omega = v / tau_t (eqs 3.4, 3.5); tau_t in m/rad, arrays that broadcast, any signs. A positive product
+    of force and velocity is motor operation. The gearbox is taken as free of loss.
+    """
+    return operating_map(machine, limits, force * transmission_ratio, velocity / transmission_ratio)

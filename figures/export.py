@@ -1,0 +1,71 @@
+"""Fields as .vtu files for ParaView and pyvista, and back again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from figures.whole_field import Region, WholeField, whole_field
+from magnetostatics.model import FieldSolution
+
+POTENTIAL, FLUX_DENSITY, FLUX_DENSITY_NORM, REGION = "A_Wb_per_m", "B_T", "B_norm_T", "region"
+_REGION_NAMES, _DESCRIPTION = "region_names", "description"
+
+
+class FieldFileError(ValueError):
+    """A .vtu file that this project did not write; the message says what is missing."""
+
+
+def write_vtu(path: Path, solution: FieldSolution) -> None:
+    """Write the whole machine of a solution, rotor turned to its angle.
+
+    Cells are quadratic triangles, in metres. Point data ``A_Wb_per_m``; cell data ``B_T`` (vector, mean of the cell),
+    ``B_norm_T`` (mean of |B| at the corners) and ``region``, an index into the field data ``region_names``; the field
+    data ``description`` is the operating point in words.
+    """
+    write_field(path, whole_field(solution))
+
+
+def write_field(path: Path, field: WholeField) -> None:
+    """Write a field that is at hand already; see ``write_vtu``."""
+    to_grid(field).save(Path(path))
+
+
+def to_grid(field: WholeField):
+    """The field as a pyvista UnstructuredGrid with the data of ``write_vtu``."""
+    import pyvista
+
+    count = field.cells.shape[1]
+    cells = np.vstack([np.full(count, 6), field.cells]).T.ravel()
+    points = np.vstack([field.points, np.zeros(field.points.shape[1])]).T
+    grid = pyvista.UnstructuredGrid(cells, np.full(count, pyvista.CellType.QUADRATIC_TRIANGLE), points)
+    grid.point_data[POTENTIAL] = field.a
+    grid.cell_data[FLUX_DENSITY] = np.vstack([field.cell_flux_density, np.zeros(count)]).T
+    grid.cell_data[FLUX_DENSITY_NORM] = np.hypot(*field.flux_density[:, :3]).mean(axis=0)
+    grid.cell_data[REGION] = field.region.index.astype(np.int32)
+    grid.field_data[_REGION_NAMES] = list(field.region.names)
+    grid.field_data[_DESCRIPTION] = [field.description]
+    return grid
+
+
+def read_vtu(path: Path) -> WholeField:
+    """The field of a file that ``write_vtu`` wrote.
+
+    Raises FieldFileError for another kind of file.
+    """
+    import pyvista
+
+    grid = pyvista.read(Path(path))
+    _check(grid, path)
+    cells = grid.cells_dict[pyvista.CellType.QUADRATIC_TRIANGLE].T
+    region = Region(np.asarray(grid.cell_data[REGION]), tuple(str(name) for name in grid.field_data[_REGION_NAMES]))
+    points = np.asarray(grid.points)[:, :2].T.astype(float)
+    return WholeField(points, cells, np.asarray(grid.point_data[POTENTIAL]), region, str(grid.field_data[_DESCRIPTION][0]))
+
+
+def _check(grid, path: Path) -> None:
+    there = {*grid.point_data.keys(), *grid.cell_data.keys(), *grid.field_data.keys()}
+    absent = [name for name in (POTENTIAL, REGION, _REGION_NAMES, _DESCRIPTION) if name not in there]
+    if absent:
+        raise FieldFileError(f"{Path(path).name} holds no {', '.join(absent)}: it was not written by this project")

@@ -1,0 +1,56 @@
+"""What the flux-density limit costs: the optimum against the limit for each way to read it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from figures.style import GREY, MARKERS, SERIES, letter, new_figure, show_grid, styled
+
+_PANELS = (
+    ("torque_nominal_Nm_per_m", "torque per length", "torque per length / (Nm/m)"),
+    ("back_iron_width_mm", "back-iron width", "back-iron width / mm"),
+    ("rotor_outer_radius_mm", "rotor outer radius", "rotor outer radius / mm"),
+)
+
+
+@styled
+def limits(table: pd.DataFrame, *, chosen_reading: str | None = None, chosen_limit_T: float | None = None) -> Figure:
+    """Torque, back iron and rotor of the optimum over the flux-density limit, one line for each reading.
+
+    table: columns reading, limit_T, torque_nominal_Nm_per_m, back_iron_width_mm, rotor_outer_radius_mm; NaN where no
+        machine keeps the limit, drawn as a cross at the lower edge
+    chosen_reading, chosen_limit_T: the study's own choice, ringed
+    """
+    figure = new_figure(4.6)
+    axes = figure.subplots(1, 3)
+    for axis, (column, title, label) in zip(axes, _PANELS, strict=True):
+        for number, (reading, rows) in enumerate(table.groupby("reading", sort=False)):
+            _draw_reading(axis, rows.sort_values("limit_T"), column, reading, number)
+        _ring(axis, table, column, chosen_reading, chosen_limit_T)
+        axis.set(xlabel="flux-density limit / T", ylabel=label)
+        axis.set_title(title, loc="left")
+    letter(axes)
+    show_grid(*axes)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+def _draw_reading(axes, rows: pd.DataFrame, column: str, reading: str, number: int) -> None:
+    colour, marker = SERIES[number % len(SERIES)], MARKERS[number % len(MARKERS)]
+    label = reading.replace("_", " ")
+    axes.plot(rows.limit_T, rows[column], color=colour, marker=marker, markersize=5, label=label)
+    none = rows.limit_T[~np.isfinite(rows[column])]
+    if len(none):
+        height = np.full(len(none), 0.03 * number)  # on the lower edge, one row for each reading
+        look = {"color": colour, "marker": "x", "linestyle": "", "label": f"{label}: no machine keeps the limit"}
+        axes.plot(none, height, transform=axes.get_xaxis_transform(), clip_on=False, **look)
+
+
+def _ring(axes, table: pd.DataFrame, column: str, reading: str | None, limit: float | None) -> None:
+    if reading is None or limit is None:
+        return
+    rows = table[(table.reading == reading) & np.isclose(table.limit_T, limit)]
+    look = {"marker": "o", "markersize": 14, "markerfacecolor": "none", "markeredgecolor": GREY, "markeredgewidth": 1.6}
+    axes.plot(rows.limit_T, rows[column], linestyle="", label="choice of the study", **look)

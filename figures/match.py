@@ -1,0 +1,156 @@
+"""Gearbox and motor matched: over the transmission ratio (thesis Fig. 3.25) and over the stator radius (Fig. 3.26).
+
+The functions take the results of ``drivetrain.match`` by their attributes and import nothing of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from figures.style import BLACK, GREY, LIGHT_GREY, SERIES, VERMILION, letter, new_figure, series_style, show_grid, styled
+from units import MILLIMETRE
+
+_TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
+_OVERLOADS = (("field", "-"), ("linear", "--"))  # where the overload torque comes from, and its line
+_WORST_COST_SHOWN = 1.6  # times the least one; the cost has a pole towards small ratios
+
+
+@styled
+def match_curves(curves, match, *, length_limit: float) -> Figure:
+    """Active length that each constraint asks for, and the cost with its parts, over the transmission ratio.
+
+    curves: ratio, minimum_length (by constraint), active_length, feasible, cost and its terms (``MatchCurves``)
+    match: transmission_ratio, active_length, cost.total, ratio_bounds, section (``Match``); length_limit [m]
+    """
+    figure = new_figure(5.4)
+    axes = figure.subplots(1, 2)
+    _draw_lengths(axes[0], curves, match, length_limit)
+    _draw_cost(axes[1], curves, match)
+    for axis in axes:
+        axis.set_xlabel("transmission ratio / (mm/rad)")
+        axis.set_xlim(curves.ratio.min() / MILLIMETRE, curves.ratio.max() / MILLIMETRE)
+    letter(axes)
+    show_grid(*axes)
+    section = match.section
+    figure.suptitle(f"{section.slots} slots, Ø {2 * section.stator_outer_radius / MILLIMETRE:g} mm")
+    return figure
+
+
+@styled
+def match_over_radius(table: pd.DataFrame, *, best: pd.DataFrame | None = None) -> Figure:
+    """Transmission ratio, active length and cost of the match over the stator radius, for each slot count.
+
+    table: columns slots, overload ("field" or "linear", drawn solid and dashed), stator_outer_radius_mm,
+        transmission_ratio_mm_per_rad, active_length_mm, cost; NaN where there is no match. See ``radius_table``
+    best: rows of the same columns to mark with a star, usually the least cost of each slot count
+    """
+    panels = (
+        ("transmission_ratio_mm_per_rad", "transmission ratio / (mm/rad)"),
+        ("active_length_mm", "active length / mm"),
+        ("cost", "cost"),
+    )
+    figure = new_figure(4.4)
+    axes = figure.subplots(1, 3)
+    style = series_style(table.slots)
+    for axis, (column, label) in zip(axes, panels, strict=True):
+        _draw_over_radius(axis, table, column, style)
+        _draw_best(axis, best, column)
+        axis.set(xlabel="stator outer radius / mm", ylabel=label)
+        axis.set_title(label.split(" /")[0], loc="left")
+    letter(axes)
+    show_grid(*axes)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def radius_table(slots: int, overload: str, result) -> pd.DataFrame:
+    """Rows for ``match_over_radius`` from a ``RadiusMatches``.
+
+    overload: where the overload torque of these matches comes from, "field" or "linear"
+    """
+    rows = [_row(slots, overload, radius, found) for radius, found in zip(result.radii, result.matches, strict=True)]
+    return pd.DataFrame(rows)
+
+
+def best_row(slots: int, overload: str, match) -> pd.DataFrame:
+    """One match as a row of the same columns."""
+    return pd.DataFrame([_row(slots, overload, match.section.stator_outer_radius, match)])
+
+
+def _row(slots: int, overload: str, radius: float, found) -> dict:
+    return {
+        "slots": slots,
+        "overload": overload,
+        "stator_outer_radius_mm": radius / MILLIMETRE,
+        "transmission_ratio_mm_per_rad": np.nan if found is None else found.transmission_ratio / MILLIMETRE,
+        "active_length_mm": np.nan if found is None else found.active_length / MILLIMETRE,
+        "cost": np.nan if found is None else found.cost.total,
+    }
+
+
+# ---- over the transmission ratio ------------------------------------------------------------------------------------
+
+
+def _draw_lengths(axes, curves, match, length_limit: float) -> None:
+    ratio = curves.ratio / MILLIMETRE
+    for number, (name, length) in enumerate(curves.minimum_length.items()):
+        enforced = np.all(length <= curves.active_length * (1 + 1e-9))
+        look = {"linestyle": "-", "label": name} if enforced else {"linestyle": ":", "label": f"{name} (not enforced)"}
+        axes.plot(ratio, length / MILLIMETRE, color=SERIES[number % len(SERIES)], **look)
+    active = np.where(curves.feasible, curves.active_length, np.nan) / MILLIMETRE
+    axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, solid_capstyle="butt", label="possible solutions")
+    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2, label="rotor speed limit")
+    axes.axhline(length_limit / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2, label="active length limit")
+    place = f"optimum {match.transmission_ratio / MILLIMETRE:.2f} mm/rad, {match.active_length / MILLIMETRE:.1f} mm"
+    axes.plot(match.transmission_ratio / MILLIMETRE, match.active_length / MILLIMETRE, label=place, **_cross())
+    axes.set_ylim(0.0, 1.2 * length_limit / MILLIMETRE)
+    axes.set_ylabel("active length / mm")
+    axes.set_title("active length", loc="left")
+    _legend_below(axes)
+
+
+def _draw_cost(axes, curves, match) -> None:
+    ratio = curves.ratio / MILLIMETRE
+    axes.plot(ratio, curves.cost, color=LIGHT_GREY, linewidth=2.4)
+    axes.plot(ratio, np.where(curves.feasible, curves.cost, np.nan), color=SERIES[0], linewidth=2.4, label="cost")
+    for number, (term, name) in enumerate(_TERMS, start=1):
+        axes.plot(ratio, getattr(curves, term), color=SERIES[number], linestyle="--", label=f"part of the {name}")
+    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2)
+    axes.axvline(match.ratio_bounds[1] / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2)
+    axes.plot(match.transmission_ratio / MILLIMETRE, match.cost.total, label=f"optimum {match.cost.total:.3f}", **_cross())
+    axes.set_ylim(0.0, _WORST_COST_SHOWN * match.cost.total)
+    axes.set_ylabel("cost")
+    axes.set_title("cost and its parts", loc="left")
+    _legend_below(axes)
+
+
+def _legend_below(axes) -> None:
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2, frameon=False)
+
+
+def _cross() -> dict:
+    look = {"marker": "X", "markersize": 11, "color": VERMILION, "markeredgecolor": "white", "linestyle": ""}
+    return look | {"zorder": 5}
+
+
+# ---- over the stator radius -----------------------------------------------------------------------------------------
+
+
+def _draw_over_radius(axes, table: pd.DataFrame, column: str, style: dict) -> None:
+    for slots, look in style.items():
+        for overload, line in _OVERLOADS:
+            rows = table[(table.slots == slots) & (table.overload == overload)].sort_values("stator_outer_radius_mm")
+            if rows.empty:
+                continue
+            label = f"{slots} slots, overload torque {'by field' if overload == 'field' else 'scaled linearly'}"
+            shape = {"markersize": 4, "linestyle": line, "label": label, **look}
+            axes.plot(rows.stator_outer_radius_mm, rows[column], **shape)
+
+
+def _draw_best(axes, best: pd.DataFrame | None, column: str) -> None:
+    if best is None or best.empty:
+        return
+    look = {"marker": "*", "markersize": 14, "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
+    axes.plot(best.stator_outer_radius_mm, best[column], label="least cost", zorder=5, **look)

@@ -1,0 +1,113 @@
+"""What a winding makes of the machine: torque and power over speed, voltage and current over force (thesis Fig. 3.27).
+
+The functions take the results of ``electrical`` by their attributes and import nothing of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from figures.style import BLACK, FIELD_MAP, GREY, SERIES, VERMILION, letter, new_figure, show_grid, styled
+from units import MILLIMETRE, RPM
+
+_LINES = ("-", "--", "-.", ":")
+
+
+@dataclass(frozen=True)
+class RequiredPoint:
+    """A demand at the rotor shaft: speed [rad/s], torque [Nm] and its name."""
+
+    name: str
+    speed: float
+    torque: float
+
+
+@dataclass(frozen=True)
+class WheelPoint:
+    """A demand at the wheel: velocity [m/s], force [N] and its name."""
+
+    name: str
+    velocity: float
+    force: float
+
+
+@styled
+def torque_speed(envelopes: dict, chosen: str, required: tuple[RequiredPoint, ...] = ()) -> Figure:
+    """Largest torque and power over the rotor speed for some windings, with the demands.
+
+    envelopes: name of the winding -> speed [rad/s], torque [Nm], power [W] (``Envelope``); chosen: one of the names
+    """
+    figure = new_figure(4.4)
+    axes = figure.subplots(1, 2)
+    for number, (name, envelope) in enumerate(envelopes.items()):
+        look = {"color": SERIES[number % len(SERIES)], "linestyle": _LINES[number // len(SERIES) % len(_LINES)]}
+        look |= {"linewidth": 3.0 if name == chosen else 1.3, "label": name + (" (chosen)" if name == chosen else "")}
+        axes[0].plot(envelope.speed / RPM, envelope.torque, **look)
+        axes[1].plot(envelope.speed / RPM, envelope.power / 1e3, **look)
+    for point in required:
+        _mark(axes, point)
+    for axis, (title, label) in zip(axes, (("torque", "torque / Nm"), ("power", "power / kW")), strict=True):
+        axis.set(xlabel="rotor speed / rpm", ylabel=label)
+        axis.set_title(f"largest {title}", loc="left")
+        axis.set_xlim(left=0.0)
+        axis.set_ylim(bottom=0.0)
+    letter(axes)
+    show_grid(*axes)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+@styled
+def force_velocity(
+    operating, transmission_ratio: float, *, title: str, required: tuple[WheelPoint, ...] = (), limits=None
+) -> Figure:
+    """Peak phase voltage and current over velocity and force at the wheel; white where the machine cannot go.
+
+    operating: torque [Nm], speed [rad/s], voltage_peak [V], current_peak [A], 2-D arrays, NaN out of reach
+        (``OperatingMap``); transmission_ratio: tau_t [m/rad]
+    limits: voltage_peak, current_peak (``DriveLimits``), written into the titles
+    """
+    force, velocity = operating.torque / transmission_ratio, operating.speed * transmission_ratio
+    figure = new_figure(4.6)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axis, values, name, unit, limit in (
+        (axes[0], operating.voltage_peak, "phase voltage", "V", getattr(limits, "voltage_peak", None)),
+        (axes[1], operating.current_peak, "phase current", "A", getattr(limits, "current_peak", None)),
+    ):
+        _map(figure, axis, velocity, force, values, f"peak {name} / {unit}")
+        _mark_demands(axis, required)
+        axis.set_title(f"peak {name}" + (f", limit {limit:.3g} {unit}" if limit is not None else ""), loc="left")
+        axis.set_xlabel("velocity at the wheel / (m/s)")
+    axes[0].set_ylabel("force at the wheel / kN")
+    letter(axes)
+    figure.suptitle(f"{title}, transmission ratio {transmission_ratio / MILLIMETRE:.3g} mm/rad")
+    if required:
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def _mark(axes, point: RequiredPoint) -> None:
+    look = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION, "markeredgecolor": "white", "zorder": 5}
+    axes[0].plot(point.speed / RPM, point.torque, label=point.name, **look)
+    axes[1].plot(point.speed / RPM, point.torque * point.speed / 1e3, label=point.name, **look)
+
+
+def _map(figure, axes, velocity, force, values, label: str) -> None:
+    colours = axes.contourf(velocity, force / 1e3, values, levels=12, cmap=FIELD_MAP)
+    lines = axes.contour(velocity, force / 1e3, values, levels=colours.levels[1:-1:3], colors="white", linewidths=0.6)
+    axes.clabel(lines, fontsize=8, fmt="%g")
+    reached = np.isfinite(values).astype(float)
+    if reached.min() < 0.5 < reached.max():
+        axes.contour(velocity, force / 1e3, reached, levels=[0.5], colors=BLACK, linewidths=1.2)
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+    axes.axvline(0.0, color=GREY, linewidth=0.7)
+    figure.colorbar(colours, ax=axes, pad=0.02).set_label(label)
+
+
+def _mark_demands(axes, required: tuple[WheelPoint, ...]) -> None:
+    for number, point in enumerate(required):
+        look = {"marker": "Xo^Ds"[number % 5], "markersize": 9, "linestyle": "", "color": VERMILION}
+        axes.plot(point.velocity, point.force / 1e3, markeredgecolor="white", label=point.name, zorder=5, **look)

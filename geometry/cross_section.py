@@ -1,0 +1,259 @@
+"""The meshed cross-section: the smallest sector of the machine, copied out of one stator and one rotor half cell.
+
+Stator and rotor are two separate pieces of one mesh, both drawn at angle zero and not joined on the sliding circle in
+the middle of the air gap: whoever solves on it joins them at the angle he wants, so that turning the rotor moves no node.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy as np
+from skfem import MeshTri
+
+from geometry.checks import check_machine
+from geometry.half_cell import MeshDensity, rotor_half_cell, stator_half_cell
+from geometry.machine import GeometryError, Machine
+from geometry.plane_mesh import PlaneMesh
+from geometry.winding import WindingLayout, sector_symmetric
+
+_BESIDE_THE_LINE = 1e-6  # rad, small against any element
+
+
+@dataclass(frozen=True)
+class Probe:
+    """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m] and weights (n,) summing to 1."""
+
+    name: str
+    points: np.ndarray
+    weights: np.ndarray
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """One sector of a machine, meshed.
+
+    mesh: triangles with subdomains ``stator_iron, rotor_iron, shaft, gap, opening, slot_<k>_<R|L>, magnet_<m>,
+        between`` and boundaries ``outer, stator_start, stator_end, rotor_start, rotor_end, stator_slide, rotor_slide``
+    sectors: how many such sectors make up the machine
+    antiperiodic: True when the field changes sign from one sector to the next
+    """
+
+    machine: Machine
+    layout: WindingLayout
+    mesh: MeshTri
+    sectors: int
+    antiperiodic: bool
+
+    @property
+    def teeth(self) -> int:
+        """Teeth (and slots) in the sector."""
+        return self.machine.slots // self.sectors
+
+    @property
+    def magnets(self) -> int:
+        """Magnets in the sector."""
+        return self.machine.poles // self.sectors
+
+    @property
+    def coil_sides(self) -> tuple[tuple[int, str], ...]:
+        """(slot, side) of every half slot in the sector, counter-clockwise; the first belongs to the slot before tooth 0."""
+        return _coil_sides(self.machine.slots, 2 * self.teeth)
+
+    @property
+    def half_slots_per_coil_side(self) -> int:
+        """A coil side fills half a slot in a double layer, both halves in a single layer."""
+        return 3 - self.layout.layers
+
+    @property
+    def sign(self) -> int:
+        """Factor of the vector potential from one sector to the next."""
+        return -1 if self.antiperiodic else 1
+
+    @cached_property
+    def half_slot_area(self) -> float:
+        """Area of one coil side as meshed [m^2]."""
+        return float(_triangle_areas(self.mesh)[self.mesh.subdomains["slot_0_R"]].sum())
+
+    @cached_property
+    def tooth_probes(self) -> tuple[Probe, ...]:
+        """Across each tooth at mid height, tooth 0 first."""
+        m = self.machine
+        distance = (m.shoe_top_radius + m.slot_bottom_radius) / 2
+        points, weights = _segment((distance, -m.tooth_width / 2), (distance, m.tooth_width / 2))
+        return tuple(Probe(f"tooth_{k}", _turn(points, k * m.slot_pitch), weights) for k in range(self.teeth))
+
+    @cached_property
+    def back_iron_probes(self) -> tuple[Probe, ...]:
+        """Radially through the back iron behind each slot, slot 0 first.
+
+        The segment is an edge line of the mesh, where the tangential field of two elements differs: both sides count half.
+        """
+        m = self.machine
+        points, weights = _segment((m.slot_bottom_radius, 0.0), (m.stator_outer_radius, 0.0))
+        weights = np.concatenate([weights, weights]) / 2
+        beyond = _BESIDE_THE_LINE - (self.teeth * m.slot_pitch if self.sectors > 1 else 0.0)
+        sides = [(-_BESIDE_THE_LINE, _BESIDE_THE_LINE)] * (self.teeth - 1) + [(-_BESIDE_THE_LINE, beyond)]
+        return tuple(
+            Probe(f"back_iron_{k}", np.hstack([_turn(points, (k + 0.5) * m.slot_pitch + side) for side in pair]), weights)
+            for k, pair in enumerate(sides)
+        )
+
+
+def mesh_cross_section(
+    machine: Machine, layout: WindingLayout, density: MeshDensity = MeshDensity(), whole: bool = False
+) -> CrossSection:
+    """Mesh the smallest sector that field and winding repeat on, or the whole machine.
+
+    Raises GeometryError when the machine cannot be built (see ``geometry/checks.py``).
+    """
+    check_machine(machine)
+    sectors = 1 if whole or not sector_symmetric(layout, machine.sectors, machine.is_antiperiodic) else machine.sectors
+    antiperiodic = sectors > 1 and machine.is_antiperiodic
+    stator = _copies(stator_half_cell(machine, density), machine.slot_pitch / 2, 2 * machine.slots // sectors, sectors == 1)
+    rotor = _copies(rotor_half_cell(machine, density), machine.pole_pitch / 2, 2 * machine.poles // sectors, sectors == 1)
+    mesh = _join(stator, rotor, machine, sectors)
+    return CrossSection(machine, layout, mesh, sectors, antiperiodic)
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """Stator or rotor sector: points (n, 2), triangles (m, 3), region and half-cell number per triangle, named node sets."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    region: np.ndarray
+    copy: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    region_names: tuple[str, ...]
+
+
+def _copies(cell: PlaneMesh, width: float, count: int, closed: bool) -> _Piece:
+    """Mirror and turn a half cell ``count`` times, starting half a pitch below angle zero.
+
+    Copy h covers the angles (h - 1) width .. h width; even copies are mirrored. Nodes on shared rays are shared.
+    """
+    nodes = _shared_numbering(cell, width, count, closed)
+    points = np.empty((nodes.max() + 1, 2))
+    for h in range(count):
+        points[nodes[h]] = _place(cell.points, h, width)
+    triangles = nodes[:, cell.triangles].reshape(-1, 3)
+    start, end = cell.nodes_at_angle(width), cell.nodes_at_angle(width)
+    return _Piece(
+        points,
+        _counter_clockwise(points, triangles),
+        np.tile(cell.region, count),
+        np.repeat(np.arange(count), len(cell.triangles)),
+        nodes[0][start],
+        nodes[-1][end],
+        cell.region_names,
+    )
+
+
+def _place(points: np.ndarray, copy: int, width: float) -> np.ndarray:
+    """Half-cell points moved to their place in copy h."""
+    mirrored = points * np.array([1.0, -1.0]) if copy % 2 == 0 else points
+    return _turn(mirrored.T, (copy // 2) * 2 * width).T
+
+
+def _shared_numbering(cell: PlaneMesh, width: float, count: int, closed: bool) -> np.ndarray:
+    """Node number of every half-cell node in every copy (count, n); neighbours share the nodes on their common ray."""
+    on_axis, on_edge = cell.nodes_at_angle(0.0), cell.nodes_at_angle(width)
+    size = len(cell.points)
+    nodes = np.arange(count * size).reshape(count, size)
+    for h in range(1, count):
+        shared = on_axis if h % 2 == 1 else on_edge
+        nodes[h, shared] = nodes[h - 1, shared]
+    if closed:
+        nodes[-1, on_edge] = nodes[0, on_edge]
+    at_origin = np.flatnonzero(np.hypot(*cell.points.T) < 1e-12)
+    nodes[:, at_origin] = nodes[0, at_origin]
+    return np.unique(nodes, return_inverse=True)[1].reshape(count, size)
+
+
+def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = points[triangles.T]
+    clockwise = _cross(b - a, c - a) < 0
+    return np.where(clockwise[:, None], triangles[:, ::-1], triangles)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def _join(stator: _Piece, rotor: _Piece, machine: Machine, sectors: int) -> MeshTri:
+    offset = len(stator.points)
+    points = np.vstack([stator.points, rotor.points])
+    triangles = np.vstack([stator.triangles, rotor.triangles + offset])
+    mesh = MeshTri(points.T.copy(), triangles.T.copy(), sort_t=False, validate=False)
+    first_rotor_triangle = len(stator.triangles)
+    names = _stator_names(stator, machine.slots) | {
+        name: first_rotor_triangle + where for name, where in _rotor_names(rotor).items() if name != "gap"
+    }
+    names["gap"] = np.concatenate([names["gap"], first_rotor_triangle + _rotor_names(rotor)["gap"]])
+    mesh = mesh.with_subdomains(names)
+    return mesh.with_boundaries(_boundaries(mesh, stator, rotor, machine, sectors))
+
+
+def _regions(piece: _Piece) -> dict[str, np.ndarray]:
+    return {name: np.flatnonzero(piece.region == index) for index, name in enumerate(piece.region_names)}
+
+
+def _stator_names(stator: _Piece, slots: int) -> dict[str, np.ndarray]:
+    regions = _regions(stator)
+    copper = regions.pop("copper")
+    sides = _coil_sides(slots, stator.copy.max() + 1)
+    coils = {f"slot_{slot}_{side}": copper[stator.copy[copper] == h] for h, (slot, side) in enumerate(sides)}
+    return {"stator_iron": regions.pop("iron")} | regions | coils
+
+
+def _coil_sides(slots: int, half_cells: int) -> tuple[tuple[int, str], ...]:
+    """(slot, side) of every half cell: odd h = 2k+1 is side R of slot k, even h = 2k is side L of slot k-1."""
+    return tuple(((h - 1) // 2, "R") if h % 2 else ((h // 2 - 1) % slots, "L") for h in range(half_cells))
+
+
+def _rotor_names(rotor: _Piece) -> dict[str, np.ndarray]:
+    regions = _regions(rotor)
+    magnet = regions.pop("magnet")
+    magnets = {f"magnet_{m}": magnet[rotor.copy[magnet] // 2 == m] for m in range((rotor.copy.max() + 1) // 2)}
+    return {"rotor_iron": regions.pop("iron")} | regions | magnets
+
+
+def _boundaries(mesh: MeshTri, stator: _Piece, rotor: _Piece, machine: Machine, sectors: int) -> dict[str, np.ndarray]:
+    offset = len(stator.points)
+    radius = np.hypot(*mesh.p)
+    is_rotor = np.arange(mesh.p.shape[1]) >= offset
+    on_slide = np.abs(radius - machine.mid_gap_radius) < 1e-9
+    sets = {
+        "outer": np.abs(radius - machine.stator_outer_radius) < 1e-9,
+        "stator_slide": on_slide & ~is_rotor,
+        "rotor_slide": on_slide & is_rotor,
+    }
+    if sectors > 1:
+        rays = {"stator_start": stator.start, "stator_end": stator.end}
+        rays |= {"rotor_start": offset + rotor.start, "rotor_end": offset + rotor.end}
+        sets |= {name: np.isin(np.arange(mesh.p.shape[1]), nodes) for name, nodes in rays.items()}
+    facets = mesh.boundary_facets()
+    a, b = mesh.facets[:, facets]
+    return {name: facets[inside[a] & inside[b]] for name, inside in sets.items()}
+
+
+def _triangle_areas(mesh: MeshTri) -> np.ndarray:
+    a, b, c = (mesh.p[:, mesh.t[i]].T for i in range(3))
+    return np.abs(_cross(b - a, c - a)) / 2
+
+
+def _turn(points: np.ndarray, angle: float) -> np.ndarray:
+    """Points (2, n) turned counter-clockwise by an angle [rad] about the origin."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]]) @ points
+
+
+def _segment(start: tuple[float, float], end: tuple[float, float], points: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points (2, n) and weights (n,) of the average over a straight segment."""
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    start, end = np.array(start)[:, None], np.array(end)[:, None]
+    return start + (end - start) * (nodes + 1) / 2, weights / 2

@@ -1,0 +1,163 @@
+"""Half a slot pitch of the stator and half a pole pitch of the rotor: all that is ever meshed.
+
+Every other part of a machine is a mirrored or turned copy (``geometry/cross_section.py``), so the mesh has exactly the
+symmetry of the machine and costs the same for 9 or 48 slots. The two halves meet on the sliding circle in the middle
+of the air gap, whose nodes are equally spaced; towards iron and magnets the gap is meshed in structured layers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asin, ceil, lcm, pi
+
+import numpy as np
+
+from geometry.machine import Machine
+from geometry.plane_mesh import Drawing, PlaneMesh, triangulate
+
+
+@dataclass(frozen=True)
+class MeshDensity:
+    """How fine to mesh. The defaults hold torque to about 0.1 % with quadratic elements.
+
+    gap_edges: least number of edges around the sliding circle (rounded up so that slots and poles both fit)
+    gap_layers: structured layers between the sliding circle and the iron, on each side
+    across_iron: elements across a tooth
+    """
+
+    gap_edges: int = 180
+    gap_layers: int = 1
+    across_iron: float = 2.0
+
+    def edges_around(self, machine: Machine) -> int:
+        """Edges on the whole sliding circle: a whole number per half slot pitch and per half pole pitch."""
+        unit = lcm(2 * machine.slots, 2 * machine.poles)
+        return unit * ceil(self.gap_edges / unit)
+
+    def gap_edge_length(self, machine: Machine) -> float:
+        """Edge length on the sliding circle [m]."""
+        return 2 * pi * machine.mid_gap_radius / self.edges_around(machine)
+
+
+def stator_half_cell(machine: Machine, density: MeshDensity) -> PlaneMesh:
+    """From the axis of tooth 0 (angle 0) to the centre of slot 0 (half a slot pitch); regions iron, opening, copper, gap."""
+    edges = density.edges_around(machine) // (2 * machine.slots)
+    drawing = _draw_stator(machine, density, edges)
+    return _with_gap(triangulate(drawing), machine.stator_inner_radius, machine, density, edges, machine.slot_pitch / 2)
+
+
+def rotor_half_cell(machine: Machine, density: MeshDensity) -> PlaneMesh:
+    """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet, (between,) gap."""
+    edges = density.edges_around(machine) // (2 * machine.poles)
+    drawing = _draw_rotor(machine, density, edges)
+    return _with_gap(triangulate(drawing), machine.rotor_outer_radius, machine, density, edges, machine.pole_pitch / 2)
+
+
+def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
+    fine = density.gap_edge_length(m)
+    in_tooth = min(m.tooth_width, m.back_iron_width * 2) / density.across_iron
+    in_shoe = min(3 * fine, in_tooth)
+    axis, half = m.slot_pitch / 2, m.opening_width / 2
+    r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
+    r_open = r_si + m.shoe_d1
+    in_copper = min(2 * in_tooth, (r_sb - r_shoe) / 2)
+    d = Drawing()
+    d.point("bore", r_si, 0, fine)
+    d.point("tip", r_si, axis - asin(half / r_si), fine)
+    d.point("bore_slot", r_si, axis, fine)
+    d.point("tip_top", r_open, axis - asin(half / r_open), min(2 * fine, m.shoe_d1))
+    d.point("open_slot", r_open, axis, 2 * fine)
+    d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
+    d.point("shoe_axis", r_shoe, 0, in_tooth)
+    d.point("shoe_slot", r_shoe, axis, in_tooth)
+    d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), in_tooth / 2)
+    d.point("bottom", r_sb, axis, in_tooth)
+    d.point("outer_slot", r_so, axis, in_tooth)
+    d.point("outer", r_so, 0, in_tooth)
+    middle = (r_shoe + r_sb) / 2
+    d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), in_tooth)
+    d.point("slot_middle", middle, axis, in_copper)
+    opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
+    d.arc("bore", "tip", edges - opening)
+    d.arc("tip", "bore_slot", opening)
+    d.path("tip", "tip_top", "shoe_top", "flank_middle", "flank_end")
+    d.arc("tip_top", "open_slot")
+    d.arc("flank_end", "bottom")
+    d.path("bore_slot", "open_slot", "shoe_slot", "slot_middle", "bottom", "outer_slot")
+    d.arc("outer", "outer_slot")
+    d.path("bore", "shoe_axis", "outer")
+    tooth_side = ("tip_top", "shoe_top", "flank_middle", "flank_end")
+    d.region("iron", "bore", "tip", *tooth_side, "bottom", "outer_slot", "outer", "shoe_axis")
+    d.region("opening", "tip", "bore_slot", "open_slot", "tip_top")
+    d.region("copper", "open_slot", "shoe_slot", "slot_middle", "bottom", *reversed(tooth_side))
+    return d
+
+
+def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
+    fine = density.gap_edge_length(m)
+    half_pole = m.pole_pitch / 2
+    coarse = m.rotor_core_radius * half_pole / 2
+    under_magnet = min(2.5 * fine, m.magnet_length)
+    half_magnet = m.magnet_arc_fraction * half_pole
+    covers_pole = m.magnet_arc_fraction >= 1
+    magnet_edges = edges if covers_pole else min(max(1, round(edges * m.magnet_arc_fraction)), edges - 1)
+    d = Drawing()
+    d.point("centre", 0, 0, coarse)
+    for name, radius, size in (("shaft", m.shaft_radius, coarse), ("core", m.rotor_core_radius, under_magnet)):
+        d.point(name, radius, 0, size)
+        d.point(f"{name}_pole", radius, half_pole, size)
+    d.point("top", m.rotor_outer_radius, 0, fine)
+    d.point("top_edge", m.rotor_outer_radius, half_magnet, fine)
+    d.line("centre", "shaft")
+    d.line("centre", "shaft_pole")
+    d.arc("shaft", "shaft_pole")
+    d.line("shaft", "core")
+    d.line("shaft_pole", "core_pole")
+    d.line("core", "top")
+    d.arc("top", "top_edge", magnet_edges)
+    d.region("shaft", "centre", "shaft", "shaft_pole")
+    if covers_pole:
+        d.arc("core", "core_pole")
+        d.line("core_pole", "top_edge")
+        d.region("iron", "shaft", "core", "core_pole", "shaft_pole")
+        d.region("magnet", "core", "top", "top_edge", "core_pole")
+        return d
+    d.point("core_edge", m.rotor_core_radius, half_magnet, under_magnet)
+    d.point("top_pole", m.rotor_outer_radius, half_pole, fine)
+    d.arc("core", "core_edge")
+    d.arc("core_edge", "core_pole")
+    d.line("core_edge", "top_edge")
+    d.line("core_pole", "top_pole")
+    d.arc("top_edge", "top_pole", edges - magnet_edges)
+    d.region("iron", "shaft", "core", "core_edge", "core_pole", "shaft_pole")
+    d.region("magnet", "core", "top", "top_edge", "core_edge")
+    d.region("between", "core_edge", "top_edge", "top_pole", "core_pole")
+    return d
+
+
+def _with_gap(mesh: PlaneMesh, radius: float, m: Machine, density: MeshDensity, edges: int, angle: float) -> PlaneMesh:
+    """Add structured layers from the circle of this radius to the sliding circle, whose nodes are equally spaced."""
+    rim = mesh.nodes_at_radius(radius)
+    rim_angles = np.arctan2(mesh.points[rim, 1], mesh.points[rim, 0])
+    share = np.arange(1, density.gap_layers + 1)[:, None] / density.gap_layers
+    angles = (1 - share) * rim_angles + share * np.linspace(0, angle, edges + 1)
+    radii = radius + share * (m.mid_gap_radius - radius)
+    points = np.stack([radii * np.cos(angles), radii * np.sin(angles)], axis=-1).reshape(-1, 2)
+    grid = np.vstack([rim, len(mesh.points) + np.arange(len(points)).reshape(density.gap_layers, -1)])
+    triangles = _split_quads(grid)
+    return PlaneMesh(
+        np.vstack([mesh.points, points]),
+        np.vstack([mesh.triangles, triangles]),
+        np.concatenate([mesh.region, np.full(len(triangles), len(mesh.region_names))]),
+        mesh.region_names + ("gap",),
+    )
+
+
+def _split_quads(grid: np.ndarray) -> np.ndarray:
+    """Triangles of a structured grid of nodes (rows, columns), with alternating diagonals."""
+    a, b, c, d = (x.ravel() for x in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]))
+    rows, columns = np.indices((grid.shape[0] - 1, grid.shape[1] - 1)).reshape(2, -1)
+    even = ((rows + columns) % 2 == 0)[:, None, None]
+    one = np.stack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)], 1)
+    other = np.stack([np.stack([a, b, d], 1), np.stack([b, c, d], 1)], 1)
+    return np.where(even, one, other).reshape(-1, 3)

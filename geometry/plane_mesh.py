@@ -1,0 +1,134 @@
+"""Triangulate a few plane regions bounded by straight lines and arcs about the origin. The only user of gmsh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import cos, sin
+
+import gmsh
+import numpy as np
+
+from geometry.machine import GeometryError
+
+_FRONTAL_DELAUNAY = 6  # gmsh's number for the algorithm that gives the best-shaped triangles
+
+
+@dataclass
+class Drawing:
+    """Points, curves and regions of one drawing, to be triangulated by ``triangulate``.
+
+    Points carry the wanted edge length [m]; a curve may carry a fixed number of equal edges instead.
+    """
+
+    points: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # x, y, edge length
+    curves: dict[tuple[str, str], tuple[bool, int | None]] = field(default_factory=dict)  # is_arc, number of edges
+    regions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # corner points in order
+
+    def point(self, name: str, radius: float, angle: float, edge_length: float) -> str:
+        """Add a point in polar coordinates [m, rad] and return its name."""
+        self.points[name] = (radius * cos(angle), radius * sin(angle), edge_length)
+        return name
+
+    def line(self, start: str, end: str, edges: int | None = None) -> None:
+        """Add a straight line."""
+        self.curves[start, end] = (False, edges)
+
+    def path(self, *points: str) -> None:
+        """Add straight lines between successive points."""
+        for start, end in zip(points, points[1:]):
+            self.line(start, end)
+
+    def arc(self, start: str, end: str, edges: int | None = None) -> None:
+        """Add an arc about the origin, shorter than half a turn."""
+        self.curves[start, end] = (True, edges)
+
+    def region(self, name: str, *corners: str) -> None:
+        """Add a region bounded by the curves between successive corners (closed automatically)."""
+        self.regions[name] = corners
+
+
+@dataclass(frozen=True)
+class PlaneMesh:
+    """Triangles of a drawing: points (n, 2) [m], triangles (m, 3), region index per triangle (m,), region names."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    region: np.ndarray
+    region_names: tuple[str, ...]
+
+    def nodes_at_angle(self, angle: float) -> np.ndarray:
+        """Nodes on the ray at this polar angle [rad], sorted outwards; the origin counts as on every ray."""
+        distance = self.points @ np.array([-sin(angle), cos(angle)])
+        along = self.points @ np.array([cos(angle), sin(angle)])
+        nodes = np.flatnonzero((np.abs(distance) < 1e-9) & (along > -1e-9))
+        return nodes[np.argsort(along[nodes])]
+
+    def nodes_at_radius(self, radius: float) -> np.ndarray:
+        """Nodes on the circle of this radius [m], sorted by angle."""
+        nodes = np.flatnonzero(np.abs(np.hypot(*self.points.T) - radius) < 1e-9)
+        return nodes[np.argsort(np.arctan2(self.points[nodes, 1], self.points[nodes, 0]))]
+
+
+def triangulate(drawing: Drawing) -> PlaneMesh:
+    """Triangles of every region of the drawing, conforming along shared curves.
+
+    Raises GeometryError when gmsh cannot mesh the drawing.
+    """
+    _start_gmsh()
+    gmsh.clear()
+    try:
+        tags = _draw(drawing)
+        gmsh.model.mesh.generate(2)
+        return _collect(tags)
+    except Exception as error:  # gmsh raises bare Exception
+        raise GeometryError(f"gmsh could not triangulate the cross-section: {error}") from error
+
+
+def _start_gmsh() -> None:
+    if gmsh.isInitialized():
+        return
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    for option, value in (
+        ("General.Terminal", 0),
+        ("General.NumThreads", 1),
+        ("Mesh.Algorithm", _FRONTAL_DELAUNAY),
+        ("Mesh.MeshSizeExtendFromBoundary", 1),
+        ("Mesh.RandomSeed", 1),
+    ):
+        gmsh.option.setNumber(option, value)
+
+
+def _draw(drawing: Drawing) -> dict[str, int]:
+    geo = gmsh.model.geo
+    centre = geo.addPoint(0, 0, 0)
+    points = {name: geo.addPoint(x, y, 0, size) for name, (x, y, size) in drawing.points.items()}
+    curves = {}
+    for (start, end), (is_arc, edges) in drawing.curves.items():
+        ends = points[start], points[end]
+        tag = geo.addCircleArc(ends[0], centre, ends[1]) if is_arc else geo.addLine(*ends)
+        curves[start, end], curves[end, start] = tag, -tag
+        if edges is not None:
+            geo.mesh.setTransfiniteCurve(tag, edges + 1)
+    regions = {name: _add_region(corners, curves) for name, corners in drawing.regions.items()}
+    geo.synchronize()
+    return regions
+
+
+def _add_region(corners: tuple[str, ...], curves: dict) -> int:
+    geo = gmsh.model.geo
+    loop = [curves[pair] for pair in zip(corners, corners[1:] + corners[:1])]
+    return geo.addPlaneSurface([geo.addCurveLoop(loop)])
+
+
+def _collect(tags: dict[str, int]) -> PlaneMesh:
+    triangles, region = [], []
+    for index, tag in enumerate(tags.values()):
+        nodes = gmsh.model.mesh.getElementsByType(2, tag)[1].reshape(-1, 3)
+        triangles.append(nodes)
+        region.append(np.full(len(nodes), index))
+    node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    used, renumbered = np.unique(np.concatenate(triangles), return_inverse=True)
+    position = np.empty(int(node_tags.max()) + 1, dtype=int)
+    position[node_tags] = np.arange(len(node_tags))
+    points = coordinates.reshape(-1, 3)[position[used], :2]
+    return PlaneMesh(points, renumbered.reshape(-1, 3), np.concatenate(region), tuple(tags))

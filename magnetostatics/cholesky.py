@@ -1,0 +1,33 @@
+"""Sparse Cholesky factorisation (CHOLMOD through cvxopt) of a matrix whose pattern stays and whose values change."""
+
+from __future__ import annotations
+
+import cvxopt
+import cvxopt.cholmod
+import numpy as np
+
+
+class SymmetricSystem:
+    """A symmetric positive definite matrix with fixed pattern: analysed once, refactorised for new values.
+
+    rows, columns: indices of the lower triangle (rows >= columns), sorted by column, then by row
+    """
+
+    def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int):
+        ones = cvxopt.matrix(1.0, (len(rows), 1))
+        self._matrix = cvxopt.spmatrix(ones, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
+        self._factor = cvxopt.cholmod.symbolic(self._matrix)
+
+    def factorise(self, values: np.ndarray) -> None:
+        """Numeric factorisation for the values of the lower triangle, in the order of the pattern.
+
+        Raises ArithmeticError when the matrix is not positive definite.
+        """
+        self._matrix.V = cvxopt.matrix(values)
+        cvxopt.cholmod.numeric(self._matrix, self._factor)
+
+    def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
+        """Solution for one right-hand side (n,) or several (n, k)."""
+        solution = cvxopt.matrix(right_hand_side)
+        cvxopt.cholmod.solve(self._factor, solution)
+        return np.array(solution).reshape(right_hand_side.shape)

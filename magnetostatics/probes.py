@@ -1,0 +1,82 @@
+"""Mean |B| over the probe segments in teeth and back iron (thesis Fig. 3.17)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+from skfem import MeshTri
+
+from geometry.machine import GeometryError
+from magnetostatics.elements import ELEMENT
+from magnetostatics.model import FieldModel, FieldSolution
+
+_NEAREST = 12  # elements tried around a point, by distance of their centres
+
+
+@dataclass(frozen=True, eq=False)
+class ProbeReader:
+    """Gradient arrays of all probe points of a model, so that reading a solution is one product.
+
+    dofs (6, n), gradients dx, dy (6, n), weights (n,), probe number (n,), names per probe
+    """
+
+    dofs: np.ndarray
+    gradient_x: np.ndarray
+    gradient_y: np.ndarray
+    weights: np.ndarray
+    number: np.ndarray
+    names: tuple[str, ...]
+
+    def read(self, solution: FieldSolution) -> dict[str, float]:
+        """Mean |B| [T] over every probe, by name (``tooth_0 ...``, ``back_iron_0 ...``)."""
+        local = solution.a[self.dofs]
+        b = np.hypot((self.gradient_x * local).sum(0), (self.gradient_y * local).sum(0))
+        means = np.bincount(self.number, weights=self.weights * b)
+        return dict(zip(self.names, means.tolist()))
+
+
+def probe_reader(model: FieldModel) -> ProbeReader:
+    """Prepare the tooth and back-iron probes of a model."""
+    probes = model.section.tooth_probes + model.section.back_iron_probes
+    points = np.hstack([probe.points for probe in probes])
+    mesh = model.section.mesh
+    elements = _locate(mesh, points)
+    corners = mesh.p[:, mesh.t[:, elements]]
+    dx, dy = _gradients(corners, _barycentric(corners, points))
+    weights = np.concatenate([probe.weights for probe in probes])
+    number = np.repeat(np.arange(len(probes)), [len(probe.weights) for probe in probes])
+    return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, tuple(probe.name for probe in probes))
+
+
+def _locate(mesh: MeshTri, points: np.ndarray) -> np.ndarray:
+    """Stator iron element that holds each point (2, n): the best of the nearest ones by barycentric coordinates."""
+    iron = mesh.subdomains["stator_iron"]
+    corners = mesh.p[:, mesh.t[:, iron]]
+    _, near = cKDTree(corners.mean(axis=1).T).query(points.T, k=_NEAREST)
+    inside = _barycentric(corners[:, :, near], points[:, :, None]).min(axis=0)
+    if inside.max(axis=1).min() < -1e-6:
+        raise GeometryError("a probe point lies outside the stator iron: refine the mesh")
+    return iron[np.take_along_axis(near, inside.argmax(axis=1)[:, None], axis=1)[:, 0]]
+
+
+def _barycentric(corners: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Barycentric coordinates (3, ...) of points x (2, ...) in triangles with corners (2, 3, ...)."""
+    a, b, c = corners.swapaxes(0, 1)
+    parts = np.stack([_cross(b - x, c - x), _cross(c - x, a - x), _cross(a - x, b - x)])
+    return parts / _cross(b - a, c - a)
+
+
+def _cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    return u[0] * v[1] - u[1] * v[0]
+
+
+def _gradients(corners: np.ndarray, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Gradients (6, n) in x and y of the functions of the element around each point, at its barycentric coordinates."""
+    a, b, c = corners.swapaxes(0, 1)
+    u, v = b - a, c - a
+    determinant = _cross(u, v)
+    reference = np.stack([ELEMENT.lbasis(shares[1:], i)[1] for i in range(6)])
+    along_u, along_v = reference[:, 0], reference[:, 1]
+    return (along_u * v[1] - along_v * u[1]) / determinant, (along_v * u[0] - along_u * v[0]) / determinant

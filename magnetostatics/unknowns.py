@@ -1,0 +1,113 @@
+"""Which degrees of freedom are free, and how the others follow from them.
+
+    outer boundary      a = 0 (no flux leaves the stator)
+    end of the sector   a = +-a(start), minus in an antiperiodic sector
+    rotor side of the sliding circle: a = the stator node it has been turned to
+Every degree of freedom therefore is plus or minus one free unknown, or zero: two index arrays, no matrix. The numbering
+of the free unknowns is the same at every angle; only the rotor side of the sliding circle looks up other ones.
+
+The rotor turns by whole edges of the sliding circle. The rest of the angle, at most half an edge, shears the structured
+gap layers on the rotor side, which stay conforming: ``Turn`` holds both parts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from geometry.cross_section import CrossSection
+from magnetostatics.elements import dof_locations
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A rotor angle as whole edges of the sliding circle and the rest [rad], at most half an edge either way."""
+
+    edges: int
+    rest: float
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """column (n,) and sign (n,) of every degree of freedom with the rotor at angle zero; sign 0 means a = 0."""
+
+    column: np.ndarray
+    sign: np.ndarray
+    count: int
+    stator_slide: np.ndarray  # in the order of angle, without the end of the sector
+    rotor_slide: np.ndarray  # in the order of angle, with the end of the sector
+    edge_angle: float  # of one edge of the sliding circle [rad]
+    offset: float  # rotor start angle minus stator start angle at rotor angle zero [rad]
+    sector_sign: int
+
+    def turn(self, angle: float) -> Turn:
+        """Split a rotor angle [rad] into whole edges and a rest."""
+        edges = round((angle + self.offset) / self.edge_angle)
+        rest = angle + self.offset - edges * self.edge_angle
+        return Turn(edges, rest if abs(rest) > 1e-9 * self.edge_angle else 0.0)
+
+    def turned(self, edges: int) -> tuple[np.ndarray, np.ndarray]:
+        """(column, sign) of every degree of freedom with the rotor turned by whole edges."""
+        position = 2 * edges + np.arange(len(self.rotor_slide))
+        sectors_passed, index = np.divmod(position, len(self.stator_slide))
+        column, sign = self.column.copy(), self.sign.copy()
+        column[self.rotor_slide] = self.column[self.stator_slide[index]]
+        sign[self.rotor_slide] = np.where(sectors_passed % 2, self.sector_sign, 1)
+        return column, sign
+
+
+def number_unknowns(section: CrossSection) -> Unknowns:
+    """Number the free unknowns of a meshed cross-section."""
+    locations = dof_locations(section.mesh)
+    stator_slide = _around(section, locations, "stator_slide", section.machine.slot_pitch)
+    rotor_slide = _around(section, locations, "rotor_slide", section.machine.pole_pitch)
+    sign, master = np.ones(locations.shape[1]), np.arange(locations.shape[1])
+    for start, end in _ray_pairs(section, locations):
+        master[end], sign[end] = start, section.sign
+    sign[_on(section, "outer")] = 0.0
+    if section.sign < 0:
+        sign[np.hypot(*locations) < 1e-12] = 0.0  # the centre would have to equal its own negative
+    is_free = (master == np.arange(len(master))) & (sign != 0)
+    is_free[rotor_slide] = False
+    number = np.cumsum(is_free) - 1
+    sign = np.where(sign[master] == 0, 0.0, sign)
+    masters = stator_slide[:-1] if section.sectors > 1 else stator_slide
+    return Unknowns(
+        column=np.where(is_free[master], number[master], 0),
+        sign=sign,
+        count=int(is_free.sum()),
+        stator_slide=masters,
+        rotor_slide=rotor_slide,
+        edge_angle=4 * pi / section.sectors / len(masters),
+        offset=(section.machine.slot_pitch - section.machine.pole_pitch) / 2,
+        sector_sign=section.sign,
+    )
+
+
+def _on(section: CrossSection, name: str) -> np.ndarray:
+    """Degrees of freedom on a named boundary: its nodes and its edges."""
+    edges = section.mesh.boundaries[name]
+    return np.concatenate([np.unique(section.mesh.facets[:, edges]), section.mesh.p.shape[1] + edges])
+
+
+def _around(section: CrossSection, locations: np.ndarray, name: str, pitch: float) -> np.ndarray:
+    """Degrees of freedom on a circle in the order of angle, from the start of its sector, half a pitch below zero."""
+    dofs = _on(section, name)
+    x, y = locations[:, dofs]
+    angle = np.mod(np.arctan2(y, x) + pitch / 2 + 1e-9, 2 * pi)
+    return dofs[np.argsort(angle)]
+
+
+def _ray_pairs(section: CrossSection, locations: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(start, end) degrees of freedom of the periodic rays of stator and rotor, both in the order of radius."""
+    if section.sectors == 1:
+        return []
+    radius = np.hypot(*locations)
+    rays = {
+        f"{piece}_{side}": sorted(_on(section, f"{piece}_{side}"), key=radius.__getitem__)
+        for piece in ("stator", "rotor")
+        for side in ("start", "end")
+    }
+    return [(np.array(rays[f"{piece}_start"]), np.array(rays[f"{piece}_end"])) for piece in ("stator", "rotor")]

@@ -1,0 +1,52 @@
+"""Permanent magnets on their straight recoil line B = B_r + mu_0 mu_r H, with the remanence falling as they warm up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from materials.errors import MaterialError
+from units import MU_0
+
+# Reversible temperature coefficient of the remanence of sintered NdFeB: -0.11 to -0.12 %/K (makers' data sheets).
+NDFEB_REMANENCE_COEFFICIENT = -0.0011  # 1/K
+ROOM_TEMPERATURE = 20.0  # degC, at which data sheets state the remanence
+
+
+@dataclass(frozen=True)
+class Magnet:
+    """B = B_r(T) + mu_0 mu_r H,   B_r(T) = B_r (1 + alpha (T - T_ref)).
+
+    Valid between about -40 degC and the maker's working temperature, and above the knee of the demagnetisation curve:
+    irreversible loss is not in this law.
+    """
+
+    remanence: float  # B_r at the reference temperature [T]
+    recoil_permeability: float = 1.05  # mu_r; 1.05 for NdFeB, the thesis's field model takes 1.0
+    temperature_coefficient: float = NDFEB_REMANENCE_COEFFICIENT  # alpha [1/K]
+    reference_temperature: float = ROOM_TEMPERATURE  # T_ref [degC]
+
+    def __post_init__(self):
+        if not self.remanence > 0:
+            raise MaterialError(f"a magnet's remanence must be positive, found {self.remanence:g} T")
+        if not self.recoil_permeability >= 1:
+            raise MaterialError(f"a recoil permeability is 1 or more, found {self.recoil_permeability:g}")
+
+    def at(self, temperature: float) -> Magnet:
+        """The same magnet with this temperature [degC] as its reference; ``at`` may be applied again.
+
+        Raises MaterialError where the straight law has used up the remanence.
+        """
+        factor = 1.0 + self.temperature_coefficient * (temperature - self.reference_temperature)
+        if not factor > 0:
+            raise MaterialError(f"no remanence left at {temperature:g} degC: beyond the range of the linear law")
+        return replace(
+            self,
+            remanence=self.remanence * factor,
+            temperature_coefficient=self.temperature_coefficient / factor,
+            reference_temperature=temperature,
+        )
+
+    @property
+    def coercive_field(self) -> float:
+        """H_c = B_r/(mu_0 mu_r) [A/m], where the recoil line meets B = 0."""
+        return self.remanence / (MU_0 * self.recoil_permeability)

@@ -1,0 +1,152 @@
+"""Largest torque of a cross-section under a flux-density limit, refined with the field solver beyond any grid.
+
+Around the current point both torque and limited flux density are fitted by quadratics in (back-iron width, rotor radius)
+to nine field solutions in a trust box; the constrained maximum of the quadratics is the next point; the box moves when the
+maximum lies on its edge and shrinks otherwise. Fitting nine points averages the mesh noise of single ones. A last step
+in the width puts the limit to its tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import minimize
+
+from geometry.machine import GeometryError
+from optimisation.design import Design, Judge, MachineFamily
+
+_FIRST_BOX = (0.06, 0.045)  # half widths of the trust box relative to (w_bi, R_ro)
+_LAST_BOX = (0.02, 0.015)
+_SHRINK = 1 / 3
+_MOST_ROUNDS = 8
+_LIMIT_TOLERANCE = 2e-4  # relative, of the limited flux density at the optimum
+_MOST_CORRECTIONS = 6
+
+
+class NoOptimumError(RuntimeError):
+    """No design of the family holds the limit, or the search did not settle; the message says which."""
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best design, whether the limit binds, and what it cost."""
+
+    design: Design
+    limit_binds: bool
+    solves: int
+
+
+@dataclass
+class _Search:
+    """Field solutions by (width, radius) for one slot count and stator radius; every point is solved once."""
+
+    judge: Judge
+    family: MachineFamily
+    slots: int
+    stator_outer_radius: float
+    limit: float
+    known: dict[tuple[float, float], Design | None] = field(default_factory=dict)
+
+    def design(self, width: float, radius: float) -> Design | None:
+        """The judged design, None when it cannot be built."""
+        key = (float(width), float(radius))
+        if key not in self.known:
+            try:
+                self.known[key] = self.judge.judge(self.family.machine(self.slots, self.stator_outer_radius, *key))
+            except GeometryError:
+                self.known[key] = None
+        return self.known[key]
+
+
+def find_optimum(
+    judge: Judge, family: MachineFamily, slots: int, stator_outer_radius: float, limit: float, start: tuple[float, float]
+) -> Optimum:
+    """Largest torque with the limited flux density at most ``limit`` [T].
+
+    stator_outer_radius [m]; start: (back-iron width, rotor radius) [m], for example ``DesignMap.best_point``
+    Returns the optimum with the limit held to 0.02 %.
+    Raises NoOptimumError.
+    """
+    search = _Search(judge, family, slots, stator_outer_radius, limit)
+    point, box = np.array(start), np.array(_FIRST_BOX)
+    for _ in range(_MOST_ROUNDS):
+        target, on_edge = _round(search, point, box * point)
+        point = target
+        if on_edge:
+            continue
+        if np.all(box <= np.array(_LAST_BOX) * 1.001):
+            return _settle(search, point)
+        box = np.maximum(box * _SHRINK, _LAST_BOX)
+    return _settle(search, point)
+
+
+def _round(search: _Search, centre: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Constrained maximum of the quadratics around a centre, and whether it lies on the edge of the box."""
+    offsets = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)], dtype=float)
+    designs = [search.design(*(centre + half * offset)) for offset in offsets]
+    built = [k for k, design in enumerate(designs) if design is not None]
+    if len(built) < 6:
+        raise NoOptimumError(_where(search, centre) + "too few designs can be built to look for an optimum there")
+    torque = _quadratic(offsets[built], [designs[k].torque for k in built])
+    limited = _quadratic(offsets[built], [designs[k].limited for k in built])
+    best = _maximise(torque, limited, search.limit)
+    return centre + half * best, bool(np.any(np.abs(best) > 0.999))
+
+
+def _terms(x: np.ndarray) -> np.ndarray:
+    a, b = np.moveaxis(np.asarray(x, dtype=float), -1, 0)
+    return np.stack([np.ones_like(a), a, b, a * a, a * b, b * b], axis=-1)
+
+
+def _quadratic(offsets: np.ndarray, values: list[float]) -> np.ndarray:
+    return np.linalg.lstsq(_terms(offsets), np.array(values), rcond=None)[0]
+
+
+def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarray:
+    """argmax of one quadratic under another one's limit in the unit box; nearest approach when nothing is feasible."""
+    scale = abs(torque[0])
+    allowed = {"type": "ineq", "fun": lambda x: (limit - _terms(x) @ limited) / limit}
+    results = [
+        minimize(lambda x: -(_terms(x) @ torque) / scale, start, method="SLSQP", bounds=[(-1, 1)] * 2, constraints=[allowed])
+        for start in ((0.0, 0.0), (1.0, 0.0), (0.5, -0.5), (0.5, 0.5))
+    ]
+    feasible = [r for r in results if allowed["fun"](r.x) > -1e-6]
+    if not feasible:  # move towards the limit
+        return minimize(lambda x: _terms(x) @ limited, (0.0, 0.0), bounds=[(-1, 1)] * 2).x
+    return min(feasible, key=lambda r: r.fun).x
+
+
+def _settle(search: _Search, point: np.ndarray) -> Optimum:
+    """Put the width on the limit (secant) where it binds, and return the design."""
+    width, radius = point
+    design = _require(search, width, radius)
+    if design.limited < search.limit * (1 - 5e-3):
+        return Optimum(design, False, len(search.known))
+    other_width = width * 1.01
+    other = _require(search, other_width, radius)
+    for _ in range(_MOST_CORRECTIONS):
+        if abs(design.limited / search.limit - 1) < _LIMIT_TOLERANCE:
+            return Optimum(design, True, len(search.known))
+        slope = (other.limited - design.limited) / (other_width - width)
+        other_width, other = width, design
+        width = width + (search.limit - design.limited) / slope
+        design = _require(search, width, radius)
+    raise NoOptimumError(
+        _where(search, point) + f"the limit of {search.limit:g} T could not be met by moving the back iron alone: "
+        f"reached {design.limited:.4f} T; widen the sweep or change the limit"
+    )
+
+
+def _require(search: _Search, width: float, radius: float) -> Design:
+    design = search.design(width, radius)
+    if design is None:
+        raise NoOptimumError(_where(search, (width, radius)) + "the optimum lies where no machine can be built")
+    return design
+
+
+def _where(search: _Search, point) -> str:
+    return (
+        f"{search.slots} slots, stator radius {search.stator_outer_radius * 1e3:g} mm, near back iron {point[0] * 1e3:.3f} mm "
+        f"and rotor radius {point[1] * 1e3:.3f} mm: "
+    )

@@ -1,0 +1,128 @@
+"""Constrained optimum of every slot count and stator diameter, refined with the field solver beyond the grid.
+
+Reads the study and ``design_map.nc``, writes ``optima.csv``: the best design under the flux-density limit, its torque per
+metre at the nominal and at the overload current density (solved, and scaled linearly from nominal as in eq. 3.68).
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+
+from pipeline.stage import Stage, StageError, command, results_folder
+from study.read import read_study
+
+OUTPUT = "optima.csv"
+
+
+def stage_of(study) -> Stage:
+    """The refined optima of a study."""
+    from pipeline.models import FIELD_CODE, FIELD_SECTIONS
+    from pipeline.sweep import OUTPUT as MAP, steel_files
+
+    folder = results_folder(study.study.id)
+    files = (folder / MAP, *steel_files(study))
+    return Stage("optima", folder, study.subset(*FIELD_SECTIONS), files, (*FIELD_CODE, "pipeline.optima"), (OUTPUT,))
+
+
+def read_map(study, slots: int, diameter: float, variable: str = "limited_T"):
+    """``DesignMap`` of one slot count and stator diameter [mm]; ``variable`` is the limited flux density."""
+    import xarray as xr
+    from optimisation.design_map import DesignMap
+    from pipeline.sweep import OUTPUT as MAP
+    from units import MILLIMETRE
+
+    with xr.open_dataset(results_folder(study.study.id) / MAP) as data:
+        one = data.sel(slots=slots, stator_diameter_mm=diameter).load()
+    widths, radii = one.back_iron_width_mm.values * MILLIMETRE, one.rotor_outer_radius_mm.values * MILLIMETRE
+    return DesignMap(widths, radii, one.torque_Nm_per_m.values, one[variable].values)
+
+
+def solve_optimum(task: dict) -> dict | None:
+    """The refined optimum of one slot count and diameter as a row of the table; None where the limit cannot be held."""
+    from optimisation.constrained_optimum import find_optimum
+    from pipeline.models import StudyFamily, judge_of, overload_amplitude
+    from units import MILLIMETRE
+
+    study = _study(task["study"])
+    start = read_map(study, task["slots"], task["stator_diameter_mm"]).best_point(study.saturation.limit_T)
+    if start is None:
+        return None
+    judge = judge_of(study)
+    radius = task["stator_diameter_mm"] / 2 * MILLIMETRE
+    limit = study.saturation.limit_T
+    optimum = find_optimum(judge, StudyFamily(study.machine), task["slots"], radius, limit, (start.width, start.radius))
+    overload = judge.at_amplitude(overload_amplitude(study)).judge(optimum.design.machine)
+    return _row(study, task, optimum, overload)
+
+
+@lru_cache(maxsize=1)
+def _study(path: str):
+    return read_study(path)
+
+
+def _row(study, task, optimum, overload) -> dict:
+    from units import MILLIMETRE, SQUARE_MILLIMETRE
+
+    design, machine = optimum.design, optimum.design.machine
+    ratio = study.sweep.j_overload_rms_A_per_mm2 / study.sweep.j_nominal_rms_A_per_mm2
+    return {
+        "slots": task["slots"],
+        "stator_diameter_mm": task["stator_diameter_mm"],
+        "stator_outer_radius_mm": task["stator_diameter_mm"] / 2,
+        "back_iron_width_mm": machine.back_iron_width / MILLIMETRE,
+        "rotor_outer_radius_mm": machine.rotor_outer_radius / MILLIMETRE,
+        "tooth_width_mm": machine.tooth_width / MILLIMETRE,
+        "half_slot_area_mm2": design.coil_side_area / SQUARE_MILLIMETRE,
+        "torque_nominal_Nm_per_m": design.torque,
+        "torque_nominal_maxwell_Nm_per_m": design.torque_maxwell,
+        "torque_overload_Nm_per_m": overload.torque,
+        "torque_overload_linear_Nm_per_m": design.torque * ratio,
+        "limited_T": design.limited,
+        "limit_T": study.saturation.limit_T,
+        "limit_binds": optimum.limit_binds,
+        "tooth_worst_T": design.tooth_worst,
+        "back_iron_worst_T": design.back_iron_worst,
+        "reading": study.saturation.reading,
+        "field_solutions": optimum.solves,
+        "newton_iterations": design.newton_iterations,
+    }
+
+
+def tasks_of(study) -> dict[str, dict]:
+    """One task for each slot count and stator diameter."""
+    path = str(study.path.resolve())
+    return {
+        f"{slots} slots, {diameter:g} mm": {"study": path, "slots": slots, "stator_diameter_mm": diameter}
+        for slots in study.sweep.slots
+        for diameter in study.sweep.stator_diameters_mm
+    }
+
+
+def main(name: str) -> None:
+    """Refine the optima of a study."""
+    study = read_study(name)
+
+    def work(run):
+        import pandas as pd
+        from pipeline.parallel import default_workers, run_parallel
+
+        rows = run_parallel(solve_optimum, tasks_of(study), default_workers(), run.checkpoint(), "optima")
+        without = [name for name, row in rows.items() if row is None]
+        found = [row for row in rows.values() if row is not None]
+        if without:
+            print(f"optima: no design holds {study.saturation.limit_T:g} T ({study.saturation.reading}) for {'; '.join(without)}")
+        if not found:
+            raise StageError(
+                f"no design of the sweep holds the limit of {study.saturation.limit_T:g} T read as "
+                f"{study.saturation.reading}: raise saturation.limit_T or widen the sweep."
+            )
+        run.note(without_optimum=without, constraint_tolerance=2e-4)
+        run.write(OUTPUT, lambda path: pd.DataFrame(found).to_csv(path, index=False))
+
+    stage_of(study).run(work)
+
+
+if __name__ == "__main__":
+    with command():
+        main(sys.argv[1])

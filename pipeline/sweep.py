@@ -1,0 +1,140 @@
+"""Map of torque and flux densities over back-iron width and rotor radius, for every slot count and stator diameter.
+
+Reads the study, writes ``design_map.nc``. One task is one rotor radius with all its back-iron widths.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+from pipeline.stage import Stage, command, results_folder
+from study.read import read_study
+
+OUTPUT = "design_map.nc"
+VARIABLES = {
+    "torque_Nm_per_m": "torque",
+    "torque_maxwell_Nm_per_m": "torque_maxwell",
+    "tooth_aligned_T": "tooth_aligned",
+    "tooth_worst_T": "tooth_worst",
+    "back_iron_worst_T": "back_iron_worst",
+    "limited_T": "limited",
+}
+
+
+def stage_of(study) -> Stage:
+    """The sweep of a study."""
+    from pipeline.models import FIELD_CODE, FIELD_SECTIONS
+
+    values = study.subset(*FIELD_SECTIONS)
+    values["saturation"] = {"reading": study.saturation.reading}
+    return Stage("sweep", results_folder(study.study.id), values, steel_files(study), (*FIELD_CODE, "pipeline.sweep"), (OUTPUT,))
+
+
+def steel_files(study) -> tuple[Path, ...]:
+    """The curve file of the study's steel."""
+    from materials.library import steel_file
+
+    return (steel_file(study.materials.steel, study.path.parent),)
+
+
+def solve_column(task: dict) -> list[list[float]]:
+    """All back-iron widths at one rotor radius: one row of ``VARIABLES`` per width, NaN where no machine can be built."""
+    from geometry.machine import GeometryError
+    from math import nan
+    from units import MILLIMETRE
+
+    judge, family = _tools(task["study"])
+    rows = []
+    for width in task["back_iron_widths_mm"]:
+        machine = family.machine(
+            task["slots"], task["stator_diameter_mm"] / 2 * MILLIMETRE, width * MILLIMETRE, task["rotor_outer_radius_mm"] * MILLIMETRE
+        )
+        try:
+            design = judge.judge(machine)
+            rows.append([getattr(design, name) for name in VARIABLES.values()])
+        except GeometryError:
+            rows.append([nan] * len(VARIABLES))
+    return rows
+
+
+@lru_cache(maxsize=1)
+def _tools(path: str):
+    from pipeline.models import StudyFamily, judge_of
+
+    study = read_study(path)
+    return judge_of(study), StudyFamily(study.machine)
+
+
+def grid(study, diameter: float):
+    """(back-iron widths, rotor radii) [mm] of one stator diameter [mm], as shares of the stator radius."""
+    import numpy as np
+
+    s, radius = study.sweep, diameter / 2
+    widths = radius * np.linspace(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps)
+    radii = radius * np.linspace(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, s.rotor_radius_steps)
+    return widths, radii
+
+
+def tasks_of(study) -> dict[str, dict]:
+    """Every column of the sweep by its name."""
+    tasks = {}
+    for slots in study.sweep.slots:
+        for diameter in study.sweep.stator_diameters_mm:
+            widths, radii = grid(study, diameter)
+            for index, radius in enumerate(radii):
+                tasks[f"{slots} slots, {diameter:g} mm, radius {index}"] = {
+                    "study": str(study.path.resolve()),
+                    "slots": slots,
+                    "stator_diameter_mm": diameter,
+                    "rotor_outer_radius_mm": float(radius),
+                    "back_iron_widths_mm": widths.tolist(),
+                }
+    return tasks
+
+
+def dataset_of(study, columns: dict[str, list]):
+    """The labelled map from the columns of ``tasks_of``."""
+    import numpy as np
+    import xarray as xr
+
+    s = study.sweep
+    shape = len(s.slots), len(s.stator_diameters_mm), s.rotor_radius_steps, s.back_iron_steps, len(VARIABLES)
+    values = np.array(list(columns.values())).reshape(shape).swapaxes(2, 3)
+    grids = [grid(study, diameter) for diameter in s.stator_diameters_mm]
+    dims = ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
+    data = {name: (dims, values[..., k]) for k, name in enumerate(VARIABLES)}
+    data["back_iron_width_mm"] = (dims[1:3], np.array([widths for widths, _ in grids]))
+    data["rotor_outer_radius_mm"] = ((dims[1], dims[3]), np.array([radii for _, radii in grids]))
+    coordinates = {
+        "slots": list(s.slots),
+        "stator_diameter_mm": list(s.stator_diameters_mm),
+        "back_iron_fraction": ("back_iron", np.linspace(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps)),
+        "rotor_radius_fraction": (
+            "rotor_radius",
+            np.linspace(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, s.rotor_radius_steps),
+        ),
+    }
+    note = "torque per metre of active length, mean |B| over the probe segments; NaN where no machine can be built"
+    return xr.Dataset(data, coordinates, {"reading": study.saturation.reading, "description": note})
+
+
+def main(name: str) -> None:
+    """Run the sweep of a study."""
+    study = read_study(name)
+
+    def work(run):
+        from pipeline.parallel import default_workers, run_parallel
+
+        columns = run_parallel(solve_column, tasks_of(study), default_workers(), run.checkpoint(), "sweep")
+        dataset = dataset_of(study, columns)
+        run.note(designs=int(dataset.torque_Nm_per_m.size), not_buildable=int(dataset.torque_Nm_per_m.isnull().sum()))
+        run.write(OUTPUT, dataset.to_netcdf)
+
+    stage_of(study).run(work)
+
+
+if __name__ == "__main__":
+    with command():
+        main(sys.argv[1])

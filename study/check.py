@@ -1,0 +1,45 @@
+"""``python -m study.check STUDY``: is this study file usable? Prints a summary, or what is wrong (exit code 2)."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from study.errors import exit_on_wrong_study
+from study.read import check_study, read_study
+from study.schema import Study
+
+
+def summary(study: Study) -> str:
+    """The study in a few lines."""
+    machine, sweep = study.machine, study.sweep
+    slots = ", ".join(str(count) for count in sweep.slots)
+    diameters = sweep.stator_diameters_mm
+    return "\n".join(
+        (
+            f"{study.path}: {study.study.title}",
+            f"  machine     {machine.slots} slots, {machine.poles} poles, stator radius "
+            f"{machine.stator_outer_radius_mm:g} mm, steel {study.materials.steel}",
+            f"  sweep       slots {slots}; {len(diameters)} diameters {min(diameters):g} to {max(diameters):g} mm; "
+            f"{sweep.back_iron_steps} x {sweep.rotor_radius_steps} designs each",
+            f"  saturation  {study.saturation.reading} below {study.saturation.limit_T:g} T",
+            f"  required    {study.requirements.force_peak_N:g} N peak, {study.requirements.force_rms_N:g} N RMS, "
+            f"{study.requirements.maximum_damping_kNs_per_m:g} kNs/m",
+            "  usable",
+        )
+    )
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(prog="python -m study.check", description=__doc__)
+    parser.add_argument("study", help="path of a study file, or the name of one in studies/")
+    parser.add_argument("--set", action="append", default=[], metavar="SECTION.KEY=VALUE", help="replace one value")
+    chosen = parser.parse_args(arguments)
+    with exit_on_wrong_study():
+        study = read_study(chosen.study, chosen.set)
+        check_study(study)
+        print(summary(study))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,283 @@
+"""What a study file holds: sections and keys, each with its meaning and its allowed range, in drawing units.
+
+The unit of a key is the end of its name. Numbers that the physics needs have no default: a study states them.
+Defaults exist only for numerical resolution and for keys that are marked optional.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Literal, Optional
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, field_validator, model_validator
+
+from study.key_units import split_unit
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Meaning and allowed range (both ends included) of a number, in the unit of its key."""
+
+    meaning: str
+    low: float
+    high: float
+
+    def allowed(self, key: str) -> str:
+        """The range in words: ``0.05 to 20 mm``."""
+        return f"{self.low:g} to {self.high:g} {split_unit(key)[1]}".rstrip()
+
+    def holds(self, number: float) -> bool:
+        return isfinite(number) and self.low <= number <= self.high
+
+
+Listed = Field(strict=False)  # a TOML array arrives as a list and is kept as a tuple
+
+
+class Section(BaseModel):
+    """One table of the file: no unknown keys, no conversions of type, values never change."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    @classmethod
+    def quantity(cls, key: str) -> Quantity | None:
+        """Meaning and range of a key, None for a key that is not a number."""
+        return next((note for note in cls.model_fields[key].metadata if isinstance(note, Quantity)), None)
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _stays_in_its_range(cls, value, info):
+        quantity = cls.quantity(info.field_name)
+        if quantity is None or value is None:
+            return value
+        for number in value if isinstance(value, tuple) else (value,):
+            if not quantity.holds(number):
+                raise ValueError(_out_of_range(number, quantity, info.field_name))
+        return value
+
+
+def _out_of_range(number: float, quantity: Quantity, key: str) -> str:
+    expected = f"give {quantity.allowed(key)} ({quantity.meaning})"
+    if not isfinite(number):
+        return f"is not a finite number; {expected}"
+    hint = " and looks like a value in metres" if key.endswith("_mm") and quantity.holds(number * 1e3) else ""
+    return f"is outside the allowed range{hint}; {expected}"
+
+
+class StudySection(Section):
+    """Name of the study; the results go to ``results/<id>/``."""
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$")]
+    title: Annotated[str, Field(min_length=1)]
+
+
+class MachineSection(Section):
+    """Cross-section (thesis Fig. 3.16, Table 3.10)."""
+
+    slots: Annotated[int, Quantity("number of slots", 3, 360)]
+    poles: Annotated[int, Quantity("number of magnets", 2, 360)]
+    stator_outer_radius_mm: Annotated[float, Quantity("stator outer radius R_so", 5, 1000)]
+    rotor_outer_radius_mm: Annotated[float, Quantity("rotor outer radius R_ro over the magnets", 2, 1000)]
+    back_iron_width_mm: Annotated[float, Quantity("stator back-iron width w_bi", 0.3, 200)]
+    magnet_length_mm: Annotated[float, Quantity("radial magnet length l_m", 0.3, 50)]
+    airgap_mm: Annotated[float, Quantity("air gap between magnets and teeth", 0.05, 20)]
+    slot_opening_mm: Annotated[float, Quantity("slot opening w_s", 0.1, 50)]
+    shoe_depth_fraction: Annotated[float, Quantity("shoe depth over tooth width, alpha_sd", 0.05, 2)]
+    shoe_aspect_ratio: Annotated[float, Quantity("shoe depths d_1 over d_2, alpha_d", 0.05, 20)]
+    shaft_radius_mm: Annotated[float, Quantity("shaft radius", 0.3, 900)]
+    magnet_arc_fraction: Annotated[float, Quantity("magnet arc over pole pitch", 0.1, 1)]
+    magnetisation: Literal["parallel", "radial"]
+    # optional: stated instead of derived from the back iron (eqs 3.53, 3.57, 3.58)
+    tooth_width_mm: Annotated[Optional[float], Quantity("tooth width w_tb", 0.3, 200)] = None
+    shoe_d1_mm: Annotated[Optional[float], Quantity("depth of the parallel-sided slot opening d_1", 0.05, 50)] = None
+    shoe_d2_mm: Annotated[Optional[float], Quantity("depth of the shoe's taper d_2", 0.05, 50)] = None
+
+    @field_validator("poles", mode="after")
+    @classmethod
+    def _poles_come_in_pairs(cls, poles):
+        if poles % 2:
+            raise ValueError("is odd, but magnets come in pairs; give an even number")
+        return poles
+
+
+class MaterialsSection(Section):
+    """Steel, magnet and copper."""
+
+    steel: Annotated[str, Field(min_length=1)]
+    remanence_T: Annotated[float, Quantity("remanence of the magnets B_r", 0.05, 2)]
+    recoil_permeability: Annotated[float, Quantity("relative recoil permeability of the magnets", 1, 2)]
+    copper_resistivity_Ohm_m: Annotated[float, Quantity("copper resistivity at its reference temperature", 1e-8, 1e-7)]
+    copper_reference_temperature_degC: Annotated[float, Quantity("temperature of the copper resistivity", -50, 200)]
+    copper_temperature_coefficient_per_K: Annotated[
+        float, Quantity("linear temperature coefficient of the copper resistivity", 0, 0.02)
+    ]
+
+
+class WindingSection(Section):
+    """Winding layout (three phases, star of slots) and copper fill."""
+
+    layers: Literal[1, 2]
+    packing_factor: Annotated[float, Quantity("copper over slot area k_cp", 0.05, 0.95)]
+    coil_pitch: Annotated[Optional[int], Quantity("coil pitch in slots", 1, 180)] = None
+
+
+class MeshSection(Section):
+    """Resolution of the mesh; what is not stated has the default of ``geometry.half_cell.MeshDensity``."""
+
+    gap_edges_per_revolution: Annotated[
+        Optional[int], Quantity("least number of mesh edges around the air gap", 60, 14400)
+    ] = None
+    gap_layers: Annotated[Optional[int], Quantity("layers of elements in either half of the air gap", 1, 12)] = None
+    elements_across_tooth: Annotated[Optional[float], Quantity("elements across a tooth", 1, 40)] = None
+
+
+class SweepSection(Section):
+    """Grid of the cross-section optimisation and its two current densities."""
+
+    slots: Annotated[tuple[int, ...], Listed, Field(min_length=1), Quantity("slot counts", 3, 360)]
+    stator_diameters_mm: Annotated[
+        tuple[float, ...], Listed, Field(min_length=1), Quantity("stator outer diameters", 10, 2000)
+    ]
+    back_iron_fraction_min: Annotated[float, Quantity("smallest back-iron width over R_so", 0.01, 0.5)]
+    back_iron_fraction_max: Annotated[float, Quantity("largest back-iron width over R_so", 0.01, 0.5)]
+    back_iron_steps: Annotated[int, Quantity("grid points along the back-iron width", 3, 101)]
+    rotor_radius_fraction_min: Annotated[float, Quantity("smallest rotor radius over R_so", 0.05, 0.95)]
+    rotor_radius_fraction_max: Annotated[float, Quantity("largest rotor radius over R_so", 0.05, 0.95)]
+    rotor_radius_steps: Annotated[int, Quantity("grid points along the rotor radius", 3, 101)]
+    j_nominal_rms_A_per_mm2: Annotated[float, Quantity("nominal current density in the copper", 0.1, 50)]
+    j_overload_rms_A_per_mm2: Annotated[float, Quantity("overload current density in the copper", 0.1, 200)]
+
+    @model_validator(mode="after")
+    def _ends_are_in_order(self):
+        _require_order(self, "back_iron_fraction_min", "back_iron_fraction_max")
+        _require_order(self, "rotor_radius_fraction_min", "rotor_radius_fraction_max")
+        _require_order(self, "j_nominal_rms_A_per_mm2", "j_overload_rms_A_per_mm2")
+        return self
+
+    @field_validator("slots", "stator_diameters_mm", mode="after")
+    @classmethod
+    def _named_once(cls, values):
+        if len(set(values)) < len(values):
+            raise ValueError("names a value twice; give each one once")
+        return values
+
+
+SaturationReading = Literal["aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period"]
+
+
+class SaturationSection(Section):
+    """How the limit on the stator's flux density is read."""
+
+    reading: SaturationReading
+    limit_T: Annotated[float, Quantity("limit of the probe flux density", 0.3, 2.5)]
+    limits_compared_T: Annotated[tuple[float, ...], Listed, Quantity("limits compared in the report", 0.3, 2.5)]
+
+
+class RequirementsSection(Section):
+    """What the actuator must do, at the wheel (thesis Table 3.7); magnitudes, without the table's signs."""
+
+    maximum_damping_kNs_per_m: Annotated[float, Quantity("maximum regenerative damping", 0, 1e4)]
+    force_rms_N: Annotated[float, Quantity("RMS actuator force", 1e-3, 1e6)]
+    velocity_rms_m_per_s: Annotated[float, Quantity("RMS actuator velocity", 1e-4, 1e2)]
+    power_rms_W: Annotated[float, Quantity("RMS actuator power", 1e-3, 1e6)]
+    velocity_peak_m_per_s: Annotated[float, Quantity("peak actuator velocity", 1e-4, 1e2)]
+    force_peak_N: Annotated[float, Quantity("peak actuator force", 1e-3, 1e6)]
+    velocity_at_force_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak force", 1e-4, 1e2)]
+    power_peak_W: Annotated[float, Quantity("peak actuator power", 1e-3, 1e7)]
+    force_at_power_peak_N: Annotated[float, Quantity("actuator force at the peak power", 1e-3, 1e6)]
+    velocity_at_power_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak power", 1e-4, 1e2)]
+
+
+Point = Annotated[tuple[float, float], Listed]
+_COORDINATE = Quantity("coordinates x, y with the origin in hardpoint O", -1e4, 1e4)
+
+
+class LinkageSection(Section):
+    """Transmission from wheel travel to the actuator's lever; hardpoints are optional and for the record."""
+
+    ratio_nominal_mm_per_rad: Annotated[float, Quantity("linkage ratio at the nominal wheel position", 1, 1e4)]
+    ratio_max_mm_per_rad: Annotated[float, Quantity("largest linkage ratio along the wheel travel", 1, 1e4)]
+    envelope_radius_max_mm: Annotated[Optional[float], Quantity("largest outer radius of the actuator", 5, 1e3)] = None
+    link_ab_length_mm: Annotated[Optional[float], Quantity("length of link AB", 1, 1e4)] = None
+    link_bc_length_mm: Annotated[Optional[float], Quantity("length of link BC", 1, 1e4)] = None
+    hardpoint_a_mm: Annotated[Optional[Point], _COORDINATE] = None
+    hardpoint_c_mm: Annotated[Optional[Point], _COORDINATE] = None
+    wheel_axle_mm: Annotated[Optional[Point], _COORDINATE] = None
+    hardpoint_b_min_mm: Annotated[Optional[Point], _COORDINATE] = None
+    hardpoint_b_max_mm: Annotated[Optional[Point], _COORDINATE] = None
+    hardpoint_c_min_mm: Annotated[Optional[Point], _COORDINATE] = None
+    hardpoint_c_max_mm: Annotated[Optional[Point], _COORDINATE] = None
+
+    @model_validator(mode="after")
+    def _ends_are_in_order(self):
+        _require_order(self, "ratio_nominal_mm_per_rad", "ratio_max_mm_per_rad", equal_allowed=True)
+        return self
+
+
+class MatchSection(Section):
+    """Limits, weights and gear data of the gearbox and motor match (thesis eqs 3.62-3.118)."""
+
+    length_max_mm: Annotated[float, Quantity("largest active length", 1, 5000)]
+    speed_max_rad_per_s: Annotated[float, Quantity("largest rotor speed", 1, 1e5)]
+    mass_max_kg: Annotated[float, Quantity("mass that counts as 1 in the cost", 0.01, 1e4)]
+    equivalent_mass_max_kg: Annotated[float, Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)]
+    weight_inertia: Annotated[float, Quantity("weight of the equivalent inertia against the mass, w_m", 0, 1)]
+    weight_radius: Annotated[float, Quantity("weight of the stator radius, w_Rso", 0, 100)]
+    radius_limit_mm: Annotated[float, Quantity("stator radius that counts as 1 in the cost", 5, 1000)]
+    overload_torque: Literal["field", "linear"]
+    enforce_damping: bool
+    steel_density_kg_per_m3: Annotated[float, Quantity("density of steel", 1000, 20000)]
+    gearbox_stages: Annotated[int, Quantity("planetary stages", 1, 6)]
+    gear_ring_diameter_fraction: Annotated[float, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)]
+    gear_contact_stress_MPa: Annotated[float, Quantity("allowable contact stress sigma_H", 50, 5000)]
+    gear_overload_factor: Annotated[float, Quantity("overload factor K_A", 1, 5)]
+    gear_contact_ratio_factor: Annotated[float, Quantity("contact ratio factor Z_eps", 0.3, 1)]
+    gear_pressure_angle_deg: Annotated[float, Quantity("pressure angle", 10, 35)]
+    gear_youngs_modulus_GPa: Annotated[float, Quantity("Young's modulus of the gears", 10, 1000)]
+    gear_poisson_ratio: Annotated[float, Quantity("Poisson's ratio of the gears", 0, 0.49)]
+
+
+class WindingSelectionSection(Section):
+    """Wire, supply and limits from which turns and strands are chosen (thesis eqs 3.119-3.120)."""
+
+    wire_diameter_mm: Annotated[float, Quantity("copper diameter of one wire", 0.02, 10)]
+    wire_insulation_mm: Annotated[float, Quantity("insulation thickness of one wire", 0, 1)]
+    packing_tolerance: Annotated[float, Quantity("accepted excess over the packing factor, relative", 0, 0.3)]
+    dc_bus_voltage_V: Annotated[float, Quantity("voltage of the DC bus", 1, 2000)]
+    phase_current_max_rms_A: Annotated[float, Quantity("RMS phase current that the power electronics allow", 0.1, 1e4)]
+    speed_max_rpm: Annotated[float, Quantity("largest speed of the torque-speed map", 10, 2e5)]
+    winding_temperature_degC: Annotated[float, Quantity("temperature of the winding", -50, 300)]
+
+
+class Study(Section):
+    """A whole study file."""
+
+    study: StudySection
+    machine: MachineSection
+    materials: MaterialsSection
+    winding: WindingSection
+    mesh: MeshSection = MeshSection()
+    sweep: SweepSection
+    saturation: SaturationSection
+    requirements: RequirementsSection
+    linkage: LinkageSection
+    match: MatchSection
+    winding_selection: WindingSelectionSection
+
+    _path: Path = PrivateAttr(default=Path("study.toml"))
+
+    @property
+    def path(self) -> Path:
+        """The file that the study was read from."""
+        return self._path
+
+    def subset(self, *sections: str) -> dict:
+        """The named sections as plain data for a stage's input hash, without the path of the file."""
+        return {name: getattr(self, name).model_dump(mode="json") for name in sections}
+
+
+def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:
+    low, high = getattr(section, low_key), getattr(section, high_key)
+    if low > high or (low == high and not equal_allowed):
+        raise ValueError(f"has {low_key} = {low:g} not below {high_key} = {high:g}; exchange or change them")

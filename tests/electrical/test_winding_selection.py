@@ -1,0 +1,225 @@
+"""Choice of turns and wires with the thesis's inputs, and the rules of the choice."""
+
+from dataclasses import replace
+from math import inf, pi, sqrt
+
+import numpy as np
+import pytest
+
+from electrical.resistance import COPPER_RESISTIVITY_20
+from electrical.winding_selection import (
+    PerTurnMachine,
+    Wire,
+    WindingError,
+    WindingLimits,
+    WindingRequirement,
+    evaluate_windings,
+    feasible_pairs,
+    required_base_speed,
+    select_winding,
+    winding_requirement,
+)
+from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, RPM, SQUARE_MILLIMETRE
+
+WIRE = Wire(0.5 * MILLIMETRE, COPPER_RESISTIVITY_20)
+OVERLOAD = 20 * AMPERE_PER_SQUARE_MILLIMETRE
+AMPERE_TURNS = sqrt(2) * OVERLOAD * WIRE.area * 7 * 22
+LENGTH = 41 * MILLIMETRE
+THESIS = PerTurnMachine(  # 6 Nm from 41 mm at 7 x 22 wires; 84 uH per phase; flux that of the overload
+    pole_pairs=5,
+    coils_in_series=4,
+    half_slot_area=98.2 * SQUARE_MILLIMETRE,
+    active_length=LENGTH,
+    end_turn_length=16.305 * MILLIMETRE,
+    flux_linkage=6 / LENGTH / (7.5 * AMPERE_TURNS),
+    inductance_d=84e-6 / 49 / LENGTH,
+    inductance_q=84e-6 / 49 / LENGTH,
+    overload_torque=6 / LENGTH,
+    overload_ampere_turns=AMPERE_TURNS,
+)
+FIELD = replace(  # field solution of the drawn machine, k_cp J = 0.3 x 20 A/mm^2 RMS
+    THESIS,
+    half_slot_area=100.45 * SQUARE_MILLIMETRE,
+    flux_linkage=0.029508,
+    overload_torque=145.6,
+    overload_ampere_turns=sqrt(2) * OVERLOAD * 0.3 * 100.45 * SQUARE_MILLIMETRE,
+)
+LIMITS = WindingLimits(
+    packing_limit=0.3, packing_tolerance=0.04, overload_current_density=OVERLOAD, dc_voltage=48.0,
+    maximum_speed=15000 * RPM,
+)
+REQUIREMENT = winding_requirement(
+    peak_force=2614.0, velocity_at_peak_force=1.6, peak_power=4253.0, transmission_ratio=2.3 * MILLIMETRE
+)
+
+
+@pytest.fixture(scope="module")
+def free_choice():
+    return select_winding(THESIS, WIRE, LIMITS, REQUIREMENT)
+
+
+@pytest.fixture(scope="module")
+def limited_choice():
+    return select_winding(THESIS, WIRE, replace(LIMITS, phase_current_rms=90.0), REQUIREMENT)
+
+
+def test_required_base_speed_divides_by_the_ratio():
+    assert required_base_speed(1.6, 2.3 * MILLIMETRE) / RPM == pytest.approx(6643, abs=0.5)
+
+
+def test_required_torque_is_force_times_ratio():
+    assert REQUIREMENT.torque == pytest.approx(6.01, abs=0.005)
+
+
+def test_without_a_current_limit_the_thesis_winding_is_found(free_choice):
+    assert (free_choice.chosen.turns, free_choice.chosen.strands) == (4, 39)
+    assert free_choice.chosen is free_choice.unrestricted
+    assert "lowest current" in free_choice.reason
+
+
+def test_with_its_current_limit_the_relaxed_thesis_winding_is_found(limited_choice):
+    assert (limited_choice.chosen.turns, limited_choice.chosen.strands) == (7, 22)
+    assert (limited_choice.unrestricted.turns, limited_choice.unrestricted.strands) == (4, 39)
+
+
+def test_the_reason_says_what_is_relaxed(limited_choice):
+    for words in ("Relaxed: base speed from 6643 to 42", "power at base speed from 4253 to 26", "within 90.0 A RMS",
+                  "4 turns of 39 wires in hand would meet it", "exceeds the limit 0.3 by 2.6"):
+        assert words in limited_choice.reason
+
+
+def test_only_what_is_missed_is_called_relaxed():
+    choice = select_winding(
+        THESIS, WIRE, replace(LIMITS, phase_current_rms=90.0), replace(REQUIREMENT, base_speed=4000 * RPM)
+    )
+    assert "Relaxed: power at base speed" in choice.reason and "base speed from 4000" not in choice.reason
+
+
+@pytest.mark.parametrize(
+    "turns, strands, rms, peak, base_rpm, power", [(7, 22, 86.4, 122.2, 4311, 2690), (4, 39, 153.2, 216.6, 7624, 4750)]
+)
+def test_numbers_of_the_thesis_windings(turns, strands, rms, peak, base_rpm, power):
+    winding = evaluate_windings(THESIS, WIRE, LIMITS, ((turns, strands),))[0]
+    assert winding.current_rms == pytest.approx(rms, abs=0.05)
+    assert winding.current_peak == pytest.approx(peak, abs=0.05)
+    assert winding.base_speed / RPM == pytest.approx(base_rpm, rel=0.04)
+    assert winding.power_at_base_speed == pytest.approx(power, rel=0.03)
+    assert 1.10 < winding.maximum_power / power < 1.20
+
+
+def test_electrical_data_of_the_chosen_winding(limited_choice):
+    chosen = limited_choice.chosen
+    assert chosen.phase_to_phase_resistance == pytest.approx(25.0e-3, abs=0.2e-3)
+    assert chosen.phase_to_phase_inductance == pytest.approx(168e-6, rel=1e-12)
+    assert chosen.torque_constant == pytest.approx(49.1e-3, abs=0.05e-3)
+    assert chosen.peak_torque == pytest.approx(6.0, rel=1e-12)
+
+
+def test_packing_of_the_printed_windings_on_both_slot_areas():
+    pairs = ((7, 22), (4, 39))
+    narrow = [w.packing for w in evaluate_windings(THESIS, WIRE, LIMITS, pairs)]
+    drawn = [w.packing for w in evaluate_windings(FIELD, WIRE, LIMITS, pairs)]
+    assert narrow == pytest.approx([0.308, 0.312], abs=5e-4)
+    assert drawn == pytest.approx([0.301, 0.305], abs=5e-4)
+
+
+def test_without_a_tolerance_the_printed_windings_do_not_fit():
+    strict = replace(LIMITS, packing_tolerance=0.0, phase_current_rms=90.0)
+    choice = select_winding(THESIS, WIRE, strict, REQUIREMENT)
+    assert (choice.chosen.turns, choice.chosen.strands) == (7, 21)
+    assert all(winding.packing <= 0.3 for winding in choice.table)
+    assert "exceeds the limit" not in choice.reason
+
+
+def test_table_holds_every_pair_that_fits_and_no_other(free_choice):
+    found = {(w.turns, w.strands) for w in free_choice.table}
+    expected = {
+        (t, n) for t in range(1, 200) for n in range(1, 200) if t * n * pi / 16 * 1e-6 <= 0.312 * 98.2e-6
+    }
+    assert found == expected
+    assert {(w.turns, w.strands) for w in free_choice.fullest} == {
+        (t, max(n for u, n in expected if u == t)) for t in {t for t, _ in expected}
+    }
+
+
+def test_a_chosen_winding_fills_its_slot(free_choice, limited_choice):
+    assert free_choice.chosen.fullest and limited_choice.chosen.fullest
+    speed = limited_choice.chosen.base_speed
+    beaten = [w for w in limited_choice.table if w.current_rms <= 90 and w.base_speed > speed]
+    assert beaten and not any(w.fullest for w in beaten)
+
+
+def test_more_turns_cost_base_speed_and_save_current():
+    windings = evaluate_windings(THESIS, WIRE, LIMITS, ((4, 36), (6, 24), (8, 18), (12, 12)))
+    assert np.all(np.diff([w.base_speed for w in windings]) < 0)
+    assert np.all(np.diff([w.current_rms for w in windings]) < 0)
+    assert [w.peak_torque for w in windings] == pytest.approx([windings[0].peak_torque] * 4, rel=1e-12)
+    ideal = [w.maximum_power * w.turns for w in windings]  # 1.5 psi V / L, less the copper loss
+    assert ideal == pytest.approx([ideal[0]] * 4, rel=0.05)
+
+
+def test_flux_runs_from_no_load_to_overload_through_the_field_solution():
+    density = np.array([6.0, 8.485, 12.0, 16.97, 20.0, 28.28])  # A/mm^2 peak
+    torque = np.array([39.72, 55.66, 76.92, 103.0, 116.5, 145.6])  # Nm/m, field solution
+    ampere_turns = density * 1e6 * 0.3 * FIELD.half_slot_area
+    ours = 1.5 * 5 * FIELD.flux_linkage_at(ampere_turns) * ampere_turns
+    assert ours == pytest.approx(torque, rel=0.015)
+    assert ours[-1] == pytest.approx(torque[-1], rel=1e-3)
+
+
+def test_torque_constants_of_the_field_solution():
+    winding = evaluate_windings(FIELD, WIRE, LIMITS, ((7, 22),))[0]
+    assert winding.no_load_torque_constant == pytest.approx(63e-3, rel=0.01)
+    assert winding.torque_constant == pytest.approx(49.1e-3, rel=0.005)
+
+
+def test_the_winding_hands_on_its_machine(limited_choice):
+    machine = limited_choice.chosen.machine(pole_pairs=5)
+    chosen = limited_choice.chosen
+    assert machine.torque_constant == pytest.approx(chosen.torque_constant, rel=1e-12)
+    assert machine.torque(0.0, chosen.current_peak) == pytest.approx(chosen.peak_torque, rel=1e-12)
+
+
+def test_a_missed_peak_torque_is_said():
+    short = replace(FIELD, active_length=36 * MILLIMETRE)
+    assert "below the peak force requirement" in select_winding(short, WIRE, LIMITS, REQUIREMENT).reason
+
+
+def test_a_hopeless_requirement_is_said():
+    limits = replace(LIMITS, phase_current_rms=90.0)
+    choice = select_winding(THESIS, WIRE, limits, WindingRequirement(9000 * RPM, 9e4, 6.0))
+    assert choice.unrestricted is None and "No winding of this machine" in choice.reason
+
+
+def test_a_current_limit_below_every_winding_is_refused():
+    with pytest.raises(WindingError, match="smallest is 3.9"):
+        select_winding(THESIS, WIRE, replace(LIMITS, phase_current_rms=3.0), REQUIREMENT)
+
+
+def test_a_wire_thicker_than_the_slot_is_refused():
+    with pytest.raises(WindingError, match="does not fit"):
+        feasible_pairs(THESIS.half_slot_area, Wire(8 * MILLIMETRE, COPPER_RESISTIVITY_20), LIMITS)
+
+
+def test_an_overload_flux_above_no_load_is_refused():
+    with pytest.raises(WindingError, match="RMS ampere-turns"):
+        replace(THESIS, overload_ampere_turns=AMPERE_TURNS / sqrt(2))
+
+
+def test_far_more_ampere_turns_than_the_field_solution_are_refused():
+    with pytest.raises(WindingError, match="ampere-turns"):
+        select_winding(FIELD, WIRE, replace(LIMITS, packing_limit=0.5), REQUIREMENT)
+
+
+@pytest.mark.parametrize(
+    "field, value", [("packing_limit", 0.9), ("packing_tolerance", -0.1), ("phase_current_rms", 0.0)]
+)
+def test_impossible_limits_are_refused(field, value):
+    with pytest.raises(WindingError, match="must"):
+        replace(LIMITS, **{field: value})
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, inf, float("nan")])
+def test_impossible_machines_are_refused(value):
+    with pytest.raises(WindingError, match="active_length must be a positive number"):
+        replace(THESIS, active_length=value)
