@@ -4,7 +4,7 @@ STUDY ?= motorcycle
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
 # One script pipeline/<stage>.py a stage; a stage whose inputs did not change says so and ends.
-STAGES := sweep optima fits match winding fields figures report
+STAGES := sweep optima limits fits match winding fields figures report
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
 export OPENBLAS_NUM_THREADS := 1
@@ -28,18 +28,19 @@ pipeline: report
 # What a stage reads is written by the stages on the right.
 sweep: $(SET_UP)
 optima: sweep
+limits: $(SET_UP)
 fits: optima
 match: fits
 winding: match
 fields: winding
-figures: fields
+figures: fields limits
 report: figures
 
 $(STAGES):
 	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
 
 inspect: $(SET_UP)
-	@$(PYTHON) -m pipeline.inspect "$(STUDY)"
+	@$(PYTHON) -m pipeline.inspect_fields "$(STUDY)"
 
 check: $(SET_UP)
 	@$(PYTHON) -m study.check "$(STUDY)"

@@ -103,10 +103,13 @@ def select_optimum(optima: pd.DataFrame, slots: int, stator_diameter_mm: float, 
 
 
 def constrained_flux_density(one: xr.Dataset, reading: str) -> xr.DataArray:
-    """The flux density that a reading limits: the largest of the maps it looks at [T].
+    """The flux density that a reading limits [T]: ``limited_T`` where the maps were made for this reading (their
+    attribute ``reading`` says so), else the largest of the maps that the reading looks at.
 
     Raises ValueError for an unknown reading.
     """
+    if "limited_T" in one and one.attrs.get("reading") == reading:
+        return one.limited_T
     if reading not in CONSTRAINED:
         raise ValueError(f"a reading of the saturation limit is one of {', '.join(CONSTRAINED)}; found {reading!r}")
     return one[list(CONSTRAINED[reading])].to_array().max("variable", skipna=False)

@@ -11,6 +11,7 @@ from magnetostatics.model import FieldSolution
 
 POTENTIAL, FLUX_DENSITY, FLUX_DENSITY_NORM, REGION = "A_Wb_per_m", "B_T", "B_norm_T", "region"
 _REGION_NAMES, _DESCRIPTION = "region_names", "description"
+_IN_ASCII = (("°", " deg"), ("²", "^2"), ("\N{MINUS SIGN}", "-"))  # VTK keeps plain letters only
 
 
 class FieldFileError(ValueError):
@@ -45,7 +46,7 @@ def to_grid(field: WholeField):
     grid.cell_data[FLUX_DENSITY_NORM] = np.hypot(*field.flux_density[:, :3]).mean(axis=0)
     grid.cell_data[REGION] = field.region.index.astype(np.int32)
     grid.field_data[_REGION_NAMES] = list(field.region.names)
-    grid.field_data[_DESCRIPTION] = [field.description]
+    grid.field_data[_DESCRIPTION] = [_to_ascii(field.description)]
     return grid
 
 
@@ -61,7 +62,20 @@ def read_vtu(path: Path) -> WholeField:
     cells = grid.cells_dict[pyvista.CellType.QUADRATIC_TRIANGLE].T
     region = Region(np.asarray(grid.cell_data[REGION]), tuple(str(name) for name in grid.field_data[_REGION_NAMES]))
     points = np.asarray(grid.points)[:, :2].T.astype(float)
-    return WholeField(points, cells, np.asarray(grid.point_data[POTENTIAL]), region, str(grid.field_data[_DESCRIPTION][0]))
+    description = _from_ascii(str(grid.field_data[_DESCRIPTION][0]))
+    return WholeField(points, cells, np.asarray(grid.point_data[POTENTIAL]), region, description)
+
+
+def _to_ascii(text: str) -> str:
+    for sign, plain in _IN_ASCII:
+        text = text.replace(sign, plain)
+    return text
+
+
+def _from_ascii(text: str) -> str:
+    for sign, plain in _IN_ASCII:
+        text = text.replace(plain, sign)
+    return text
 
 
 def _check(grid, path: Path) -> None:

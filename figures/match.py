@@ -14,6 +14,7 @@ from units import MILLIMETRE
 
 _TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
 _OVERLOADS = (("field", "-"), ("linear", "--"))  # where the overload torque comes from, and its line
+_MOST_MARKERS = 10  # on one line
 _WORST_COST_SHOWN = 1.6  # times the least one; the cost has a pole towards small ratios
 
 
@@ -34,7 +35,9 @@ def match_curves(curves, match, *, length_limit: float) -> Figure:
     letter(axes)
     show_grid(*axes)
     section = match.section
-    figure.suptitle(f"{section.slots} slots, Ø {2 * section.stator_outer_radius / MILLIMETRE:g} mm")
+    figure.suptitle(f"{section.slots} slots, Ø {2 * section.stator_outer_radius / MILLIMETRE:.4g} mm")
+    handles, names = (sum(parts, []) for parts in zip(*(axis.get_legend_handles_labels() for axis in axes)))
+    figure.legend(handles, names, loc="outside lower center", ncols=4, frameon=False)
     return figure
 
 
@@ -49,7 +52,7 @@ def match_over_radius(table: pd.DataFrame, *, best: pd.DataFrame | None = None) 
     panels = (
         ("transmission_ratio_mm_per_rad", "transmission ratio / (mm/rad)"),
         ("active_length_mm", "active length / mm"),
-        ("cost", "cost"),
+        ("cost", "cost (dimensionless)"),
     )
     figure = new_figure(4.4)
     axes = figure.subplots(1, 3)
@@ -58,7 +61,7 @@ def match_over_radius(table: pd.DataFrame, *, best: pd.DataFrame | None = None) 
         _draw_over_radius(axis, table, column, style)
         _draw_best(axis, best, column)
         axis.set(xlabel="stator outer radius / mm", ylabel=label)
-        axis.set_title(label.split(" /")[0], loc="left")
+        axis.set_title(label.split(" /")[0].split(" (")[0], loc="left")
     letter(axes)
     show_grid(*axes)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
@@ -103,12 +106,11 @@ def _draw_lengths(axes, curves, match, length_limit: float) -> None:
     axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, solid_capstyle="butt", label="possible solutions")
     axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2, label="rotor speed limit")
     axes.axhline(length_limit / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2, label="active length limit")
-    place = f"optimum {match.transmission_ratio / MILLIMETRE:.2f} mm/rad, {match.active_length / MILLIMETRE:.1f} mm"
-    axes.plot(match.transmission_ratio / MILLIMETRE, match.active_length / MILLIMETRE, label=place, **_cross())
+    axes.plot(match.transmission_ratio / MILLIMETRE, match.active_length / MILLIMETRE, label="optimum", **_cross())
     axes.set_ylim(0.0, 1.2 * length_limit / MILLIMETRE)
     axes.set_ylabel("active length / mm")
-    axes.set_title("active length", loc="left")
-    _legend_below(axes)
+    place = f"{match.transmission_ratio / MILLIMETRE:.2f} mm/rad, {match.active_length / MILLIMETRE:.1f} mm"
+    axes.set_title(f"active length, optimum {place}", loc="left")
 
 
 def _draw_cost(axes, curves, match) -> None:
@@ -116,18 +118,13 @@ def _draw_cost(axes, curves, match) -> None:
     axes.plot(ratio, curves.cost, color=LIGHT_GREY, linewidth=2.4)
     axes.plot(ratio, np.where(curves.feasible, curves.cost, np.nan), color=SERIES[0], linewidth=2.4, label="cost")
     for number, (term, name) in enumerate(_TERMS, start=1):
-        axes.plot(ratio, getattr(curves, term), color=SERIES[number], linestyle="--", label=f"part of the {name}")
+        axes.plot(ratio, getattr(curves, term), color=SERIES[number], linestyle="--", label=f"cost of the {name}")
     axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2)
     axes.axvline(match.ratio_bounds[1] / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2)
-    axes.plot(match.transmission_ratio / MILLIMETRE, match.cost.total, label=f"optimum {match.cost.total:.3f}", **_cross())
+    axes.plot(match.transmission_ratio / MILLIMETRE, match.cost.total, **_cross())
     axes.set_ylim(0.0, _WORST_COST_SHOWN * match.cost.total)
-    axes.set_ylabel("cost")
-    axes.set_title("cost and its parts", loc="left")
-    _legend_below(axes)
-
-
-def _legend_below(axes) -> None:
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2, frameon=False)
+    axes.set_ylabel("cost (dimensionless)")
+    axes.set_title(f"cost and its parts, optimum {match.cost.total:.3f}", loc="left")
 
 
 def _cross() -> dict:
@@ -145,7 +142,8 @@ def _draw_over_radius(axes, table: pd.DataFrame, column: str, style: dict) -> No
             if rows.empty:
                 continue
             label = f"{slots} slots, overload torque {'by field' if overload == 'field' else 'scaled linearly'}"
-            shape = {"markersize": 4, "linestyle": line, "label": label, **look}
+            shape = {**look, "markersize": 4, "linestyle": line, "label": label}
+            shape["markevery"] = max(1, len(rows) // _MOST_MARKERS)
             axes.plot(rows.stator_outer_radius_mm, rows[column], **shape)
 
 

@@ -227,6 +227,9 @@ class MatchSection(Section):
     radius_limit_mm: Annotated[float, Quantity("stator radius that counts as 1 in the cost", 5, 1000)]
     overload_torque: Literal["field", "linear"]
     enforce_damping: bool
+    # optional: the designer's choice of the machine to go on with; without it the least cost decides
+    chosen_slots: Annotated[Optional[int], Quantity("slot count to go on with", 3, 360)] = None
+    chosen_stator_diameter_mm: Annotated[Optional[float], Quantity("stator diameter to go on with", 10, 2000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of steel", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages", 1, 6)]
     gear_ring_diameter_fraction: Annotated[float, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)]

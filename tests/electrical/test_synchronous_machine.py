@@ -72,8 +72,9 @@ def test_mtpa_is_the_best_angle(machine):
 
 
 def test_mtpa_stays_exact_when_the_saliency_vanishes():
-    almost = replace(BURIED, inductance_d=BURIED.inductance_q * (1 - 1e-13))
-    assert mtpa_currents(almost, 100.0)[0] == pytest.approx(0.0, abs=1e-8)
+    """i_d -> (L_d - L_q) I^2 / psi_m, where the textbook root cancels to nothing."""
+    almost = replace(BURIED, inductance_d=BURIED.inductance_q - 1e-10)
+    assert mtpa_currents(almost, 100.0)[0] == pytest.approx(-1e-10 * 100**2 / BURIED.psi_m, rel=1e-5)
 
 
 @pytest.mark.parametrize("machine, limits", CASES)

@@ -1,0 +1,159 @@
+"""One page of HTML that reads from top to bottom: text, key numbers, tables and pictures, with nothing beside it."""
+
+from __future__ import annotations
+
+import re
+from base64 import b64encode
+from dataclasses import dataclass, field
+from math import floor, log10
+from pathlib import Path
+from typing import ClassVar
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from figures.style import png_bytes
+
+TEMPLATE = "report.html.j2"
+SIGNIFICANT_DIGITS = 4  # of numbers in tables
+
+# Ends of column names, longest first, and how the unit is written.
+_UNITS = {
+    "_mm_per_rad": "(mm/rad)", "_Nm_per_m": "(Nm/m)", "_Nm_per_A": "(Nm/A)", "_mNm_per_A": "(mNm/A)", "_A_per_mm2": "(A/mm²)",
+    "_rad_per_s": "(rad/s)", "_m_per_s": "(m/s)", "_kNs_per_m": "(kNs/m)", "_Ns_per_m": "(Ns/m)", "_Wb_per_m": "(Wb/m)",
+    "_H_per_m": "(H/m)", "_degC": "°C", "_deg": "°", "_mm2": "mm²", "_mm": "mm", "_kg": "kg", "_Nm": "Nm", "_kN": "kN",
+    "_N": "N", "_kW": "kW", "_W": "W", "_rpm": "rpm", "_mOhm": "mΩ", "_Ohm": "Ω", "_ohm": "Ω", "_uH": "µH", "_mH": "mH",
+    "_H": "H", "_V": "V", "_A": "A", "_T": "T", "_s": "s", "_m": "m",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with its caption.
+
+    headings: column -> heading where the one made from the column's name will not do; marked: row numbers to stress
+    """
+
+    kind: ClassVar[str] = "table"
+    frame: pd.DataFrame
+    caption: str
+    headings: dict[str, str] = field(default_factory=dict)
+    marked: tuple[int, ...] = ()
+
+    @property
+    def columns(self) -> list[str]:
+        return [self.headings.get(name, heading(str(name))) for name in self.frame.columns]
+
+    @property
+    def rows(self) -> list[tuple[bool, list[str]]]:
+        """(stressed, cells) of every row."""
+        rows = self.frame.itertuples(index=False, name=None)
+        return [(number in self.marked, [number_text(value) for value in row]) for number, row in enumerate(rows)]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure, or the PNG of one (bytes or the path of a file), with its caption."""
+
+    kind: ClassVar[str] = "picture"
+    image: Figure | bytes | Path
+    caption: str
+
+    @property
+    def source(self) -> str:
+        """The PNG as a data address."""
+        return "data:image/png;base64," + b64encode(self._png()).decode("ascii")
+
+    def _png(self) -> bytes:
+        if isinstance(self.image, Figure):
+            return png_bytes(self.image)
+        return self.image if isinstance(self.image, bytes) else Path(self.image).read_bytes()
+
+
+@dataclass(frozen=True)
+class KeyNumber:
+    """A number that stands out: what it is, its value (a number or text), unit and a remark."""
+
+    name: str
+    value: object
+    unit: str = ""
+    remark: str = ""
+
+    @property
+    def text(self) -> str:
+        return number_text(self.value)
+
+
+@dataclass(frozen=True)
+class KeyNumbers:
+    """Several key numbers side by side."""
+
+    kind: ClassVar[str] = "numbers"
+    numbers: tuple[KeyNumber, ...]
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A paragraph that must not be overlooked, such as a violated requirement."""
+
+    kind: ClassVar[str] = "remark"
+    text: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands under it, in reading order: paragraphs (plain text), tables, pictures, ..."""
+
+    title: str
+    content: tuple[str | Table | Picture | KeyNumbers | Remark, ...]
+
+    @property
+    def anchor(self) -> str:
+        """The heading as the target of a link."""
+        return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
+
+
+def write_report(
+    path: Path, sections: tuple[Section, ...], *, title: str, subtitle: str = "", provenance: dict[str, str] | None = None
+) -> None:
+    """Write the page.
+
+    sections: in reading order; provenance: name -> value for the foot of the page, such as versions and input hashes
+    """
+    html = render_report(sections, title=title, subtitle=subtitle, provenance=provenance)
+    Path(path).write_text(html, encoding="utf-8")
+
+
+def render_report(sections, *, title: str, subtitle: str = "", provenance: dict[str, str] | None = None) -> str:
+    """The page as text; arguments as in ``write_report``."""
+    template = template_environment().get_template(TEMPLATE)
+    return template.render(sections=tuple(sections), title=title, subtitle=subtitle, provenance=provenance or {})
+
+
+def template_environment():
+    """Where the page templates are found; everything put into them is escaped."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    folder = FileSystemLoader(Path(__file__).parent)
+    return Environment(loader=folder, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+
+
+def heading(column: str) -> str:
+    """A column name as a heading: ``back_iron_width_mm`` becomes ``back iron width / mm``."""
+    for ending, unit in _UNITS.items():
+        if column.endswith(ending) and len(column) > len(ending):
+            return f"{column.removesuffix(ending).replace('_', ' ')} / {unit}"
+    return column.replace("_", " ")
+
+
+def number_text(value, digits: int = SIGNIFICANT_DIGITS) -> str:
+    """A value as a table shows it: significant digits without an exponent where that is readable, a dash for NaN."""
+    if isinstance(value, bool) or hasattr(value, "dtype") and value.dtype == bool:
+        return "yes" if value else "no"
+    if value is None or value != value:
+        return "–"
+    if not hasattr(value, "__float__") or float(value).is_integer() and abs(value) < 1e7:
+        return str(int(value)) if hasattr(value, "__float__") else str(value)
+    size = floor(log10(abs(value)))
+    text = f"{value:.{max(digits - 1 - size, 0)}f}" if -5 < size < 7 else f"{value:.{digits - 1}e}"
+    return text.replace("-", "\N{MINUS SIGN}")

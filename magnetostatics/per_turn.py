@@ -1,0 +1,75 @@
+"""Per-turn values of a machine before its winding is chosen: flux linkage, apparent inductances, mean torque."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from magnetostatics.flux_linkage import park, phase_flux_linkage
+from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.torque import arkkio_torque
+
+_POSITIONS = 6  # over 60 electrical degrees, after which all dq quantities repeat
+
+
+@dataclass(frozen=True)
+class PerTurnValues:
+    """One current density, mean over the rotor position; per metre of active length, all coils of a phase in series.
+
+    ampere_turns: peak ampere-turns of one coil [A]
+    flux_linkage: no-load psi_m [Wb per turn]
+    inductance_d, inductance_q: apparent, (psi_d - psi_m) / i_d on the negative d axis and psi_q / i_q on the q axis
+        [H per turn^2]
+    psi_d_loaded: psi_d with the current on the q axis [Wb per turn]
+    torque: on the q axis [Nm]; torque_from_flux: 1.5 p psi_d i_q, the same torque by another route [Nm]
+    """
+
+    ampere_turns: float
+    flux_linkage: float
+    inductance_d: float
+    inductance_q: float
+    psi_d_loaded: float
+    torque: float
+    torque_from_flux: float
+
+
+def per_turn_values(model: FieldModel, amplitude: float, packing: float, first_angle: float = 0.0) -> PerTurnValues:
+    """Solve no load, q-axis and negative d-axis current over 60 electrical degrees and average.
+
+    amplitude: of the current density in the copper [A/m^2]; packing: copper share of the slot
+    first_angle: rotor angle of the first position [rad]
+    """
+    section = model.section
+    span = pi / 3 / section.machine.pole_pairs
+    angles = first_angle + span * np.arange(_POSITIONS) / _POSITIONS
+    idle = _mean_dq(model, [OperatingPoint(angle, 0.0, 0.0, packing) for angle in angles])
+    on_q = _mean_dq(model, [OperatingPoint(angle, amplitude, 0.0, packing) for angle in angles])
+    on_d = _mean_dq(model, [OperatingPoint(angle, amplitude, pi / 2, packing) for angle in angles])
+    ampere_turns = amplitude * packing * section.half_slot_area * section.half_slots_per_coil_side
+    return PerTurnValues(
+        ampere_turns=ampere_turns,
+        flux_linkage=idle[0],
+        inductance_d=(idle[0] - on_d[0]) / ampere_turns,
+        inductance_q=on_q[1] / ampere_turns,
+        psi_d_loaded=on_q[0],
+        torque=on_q[2],
+        torque_from_flux=1.5 * section.machine.pole_pairs * on_q[0] * ampere_turns,
+    )
+
+
+def _mean_dq(model: FieldModel, points: list[OperatingPoint]) -> list[float]:
+    """Mean of (psi_d, psi_q, torque) over operating points."""
+    solution, rows = None, []
+    for point in points:
+        solution = model.solve(point, start=solution)
+        rows.append(_dq_and_torque(solution))
+    return np.mean(rows, axis=0).tolist()
+
+
+def _dq_and_torque(solution: FieldSolution) -> tuple[float, float, float]:
+    section = solution.model.section
+    electrical = section.machine.pole_pairs * solution.point.angle
+    psi_d, psi_q = park(phase_flux_linkage(solution), electrical, section.layout.phase_axis)
+    return psi_d, psi_q, arkkio_torque(solution)

@@ -1,0 +1,140 @@
+"""``python -m pipeline.inspect_fields STUDY``: look into the solved fields of a study.
+
+Opens a window where there is a display. Without one it writes a PNG of every field and ``scene.html``, a page with all
+fields to zoom into that needs nothing but a browser.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+from pipeline.stage import StageError, command, results_folder
+from study.read import read_study
+
+SYSTEM_LIBRARIES = "libglu1-mesa libgl1 libxft2 libxcursor1 libxinerama1 libgomp1 libegl1"
+_WINDOW_PROBE = """
+import pyvista
+plotter = pyvista.Plotter(window_size=(80, 80))
+plotter.add_mesh(pyvista.Plane())
+plotter.show(auto_close=False, interactive=False)
+kind = type(plotter.render_window).__name__
+plotter.close()
+raise SystemExit(0 if any(system in kind for system in ("XOpenGL", "Win32", "Cocoa")) else 3)
+"""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Entry point; see the module's text."""
+    parser = argparse.ArgumentParser(prog="python -m pipeline.inspect_fields", description=__doc__)
+    parser.add_argument("study", help="path of a study file, or the name of one in studies/")
+    parser.add_argument("--out", type=Path, help="folder for the pictures (default: results/<study>/inspect)")
+    parser.add_argument("--no-window", action="store_true", help="write the files even where there is a display")
+    chosen = parser.parse_args(arguments)
+    with command():
+        study = read_study(chosen.study)
+        results = results_folder(study.study.id)
+        fields = read_fields(results / "fields")
+        if not chosen.no_window and wants_window():
+            show(fields)
+        else:
+            write_files(fields, chosen.out or results / "inspect", study.study.title)
+
+
+def read_fields(folder: Path) -> dict:
+    """Name -> field of every .vtu file in the folder; StageError when there is none or one cannot be read."""
+    from figures.export import FieldFileError, read_vtu
+
+    paths = sorted(folder.glob("*.vtu"))
+    if not paths:
+        raise StageError("there are no fields to look at yet; run `make pipeline`, or `make fields`, first.")
+    try:
+        return {path.stem: read_vtu(path) for path in paths}
+    except FieldFileError as error:
+        raise StageError(f"{error}; delete it and run `make fields`.") from None
+
+
+def wants_window() -> bool:
+    """Whether there is a display and a window opens on it; says what is missing where it does not open."""
+    if not has_display():
+        return False
+    if window_opens():
+        return True
+    print(
+        "There is a display, but no window could be opened on it: the graphics libraries of the system are missing or "
+        f"too old. On Debian and Ubuntu: sudo apt-get install {SYSTEM_LIBRARIES}\nWriting files instead."
+    )
+    return False
+
+
+def has_display() -> bool:
+    """Whether this process may open windows at all."""
+    if os.environ.get("PYVISTA_OFF_SCREEN", "").lower() in ("true", "1"):
+        return False
+    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+@cache
+def window_opens() -> bool:
+    """Open a small window in another process: without its system libraries vtk does not raise, it ends the process."""
+    try:
+        probe = subprocess.run([sys.executable, "-c", _WINDOW_PROBE], capture_output=True, timeout=60)
+    except subprocess.TimeoutExpired:
+        return False
+    return probe.returncode == 0
+
+
+def write_files(fields: dict, folder: Path, title: str) -> list[Path]:
+    """A PNG of every field and one page with all of them; returns what was written."""
+    from figures.field_map import field_map
+    from figures.scene import write_scene
+    from figures.style import save_png
+
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.png" for name in fields] + [folder / "scene.html"]
+    for path, field in zip(paths, fields.values()):
+        save_png(field_map(field), path)
+    write_scene(paths[-1], fields, title)
+    print("No window here, so there are files to look at; open scene.html in a browser:")
+    print("\n".join(f"  {path}" for path in paths))
+    return paths
+
+
+def show(fields: dict) -> None:
+    """A window with |B| and flux lines; a slider chooses the field."""
+    import pyvista
+
+    plotter = pyvista.Plotter(title="flux density and flux lines")
+    add_field(plotter, next(iter(fields.values())))
+    if len(fields) > 1:
+        plotter.add_text_slider_widget(lambda name: add_field(plotter, fields[name]), list(fields))
+    plotter.view_xy()
+    plotter.show()
+
+
+def add_field(plotter, field) -> None:
+    """Put a field into the window, in place of the one before."""
+    import numpy as np
+    import pyvista
+
+    from figures.field_map import FLUX_LINES, colour_limit
+    from figures.style import FIELD_MAP
+    from units import MILLIMETRE
+
+    smooth = field.smooth
+    points = np.column_stack([*(smooth.points / MILLIMETRE), np.zeros(smooth.points.shape[1])])
+    surface = pyvista.PolyData.from_regular_faces(points, smooth.triangles.T)
+    surface["|B| / T"], surface["A"] = smooth.b, smooth.a
+    colours = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
+    plotter.add_mesh(surface, scalars="|B| / T", name="surface", lighting=False, **colours)
+    lines = surface.contour(FLUX_LINES, scalars="A")
+    plotter.add_mesh(lines, color="black", line_width=1, name="lines", show_scalar_bar=False)
+    plotter.add_text(field.description.replace("²", "^2"), font_size=10, name="description")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
