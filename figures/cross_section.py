@@ -28,6 +28,7 @@ from units import MILLIMETRE
 
 _IRON, _SHAFT, _MAGNET, _AIR = "#B5B9BD", "#8C9196", "#F3E3B3", "#FFFFFF"
 _ARROWS_PER_MAGNET = 3
+_TO_THE_POINT = {"color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}  # arrows that end where they are told to
 
 
 @styled
@@ -81,7 +82,8 @@ def _legend(section: CrossSection) -> list:
 def _fill(axes, section: CrossSection, whole: WholeField) -> None:
     colours = np.array([region_colour(name, section) for name in whole.region.names])
     corners = whole.points[:, whole.cells[:3]].transpose(2, 1, 0) / MILLIMETRE
-    axes.add_collection(PolyCollection(corners, facecolors=colours[whole.region.index], edgecolors="face", linewidths=0.6))
+    look = {"facecolors": colours[whole.region.index], "edgecolors": "face", "linewidths": 0.6}
+    axes.add_collection(PolyCollection(corners, **look))
 
 
 def region_colour(name: str, section: CrossSection) -> str:
@@ -117,7 +119,7 @@ def _draw_magnetisation(axes, section: CrossSection, angle: float) -> None:
 
 def _arrow(axes, centre: complex, vector: complex) -> None:
     tail, head = centre - vector / 2, centre + vector / 2
-    style = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", "color": BLACK, "lw": 0.8, "shrinkA": 0, "shrinkB": 0}
+    style = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", **_TO_THE_POINT, "lw": 0.8}
     axes.annotate("", (head.real, head.imag), (tail.real, tail.imag), arrowprops=style)
 
 
@@ -211,7 +213,7 @@ def _draw_dimensions(axes, m: Machine) -> None:
 def _point_at_gap(axes, m: Machine) -> None:
     """The gap is too thin for a dimension line: a leader from the tooth points at it."""
     x = -0.22 * m.tooth_width / MILLIMETRE
-    style = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", "color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
+    style = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
     above = (m.shoe_top_radius + 0.8 * m.tooth_width) / MILLIMETRE
     look = {"ha": "center", "va": "bottom", "fontsize": 11, "arrowprops": style}
     axes.annotate("$g$", (x, m.mid_gap_radius / MILLIMETRE), (x, above), **look)
@@ -224,7 +226,7 @@ def _measure_radially(axes, inner: float, outer: float, angle: float, name: str)
 
 
 def _measure(axes, start, end, name: str, offset) -> None:
-    style = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", "color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
+    style = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
     axes.annotate("", end, start, arrowprops=style)
     middle = (np.array(start) + np.array(end)) / 2 + np.array(offset)
     axes.text(*middle, name, ha="center", va="center", fontsize=11)

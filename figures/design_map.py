@@ -26,6 +26,7 @@ _PROBE_MAPS = (
 )
 _COLUMNS = 4  # panels side by side in the overview
 _UNBUILDABLE = "#BDBDBD"
+_STAR = {"marker": "*", "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,9 @@ def design_map(
 @styled
 def design_maps(maps: xr.Dataset, optima: pd.DataFrame, slots: int, reading: str, limit_T: float) -> Figure:
     """One small torque map for each stator diameter; the axes are shares of the stator radius, the colours shares of
-    the torque at the optimum (of the largest feasible torque on the grid where there is no optimum). Arguments as in ``design_map``.
+    the torque at the optimum (of the largest feasible torque on the grid where there is no optimum).
+
+    Arguments as in ``design_map``.
     """
     diameters = [float(value) for value in maps.stator_diameter_mm.values]
     optimum = {diameter: select_optimum(optima, slots, diameter, reading, limit_T) for diameter in diameters}
@@ -195,7 +198,7 @@ def _draw_domain(axes, design: Design) -> None:
     if known.size and known.min() <= design.limit <= known.max():
         axes.contour(design.x, design.y, design.constrained, levels=[design.limit], colors=VERMILION, linewidths=2.0)
     if design.optimum is not None:
-        axes.plot(*design.optimum, "*", markersize=15, markerfacecolor="white", markeredgecolor=BLACK, clip_on=False, zorder=5)
+        axes.plot(*design.optimum, markersize=15, clip_on=False, zorder=5, **_STAR)
 
 
 def _legend() -> list:
@@ -204,7 +207,7 @@ def _legend() -> list:
         Line2D([], [], color=BLACK, linestyle="--", linewidth=1.4, label="this probe at the limit"),
         Patch(facecolor="white", edgecolor="#404040", hatch="///", label="above the limit"),
         Patch(color=_UNBUILDABLE, label="cannot be built"),
-        Line2D([], [], marker="*", markersize=12, markerfacecolor="white", markeredgecolor=BLACK, linestyle="", label="optimum"),
+        Line2D([], [], markersize=12, label="optimum", **_STAR),
     ]
 
 

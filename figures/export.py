@@ -57,8 +57,9 @@ def read_vtu(path: Path) -> WholeField:
     """
     import pyvista
 
+    _check_kind(Path(path))
     grid = pyvista.read(Path(path))
-    _check(grid, path)
+    _check_contents(grid, Path(path))
     cells = grid.cells_dict[pyvista.CellType.QUADRATIC_TRIANGLE].T
     region = Region(np.asarray(grid.cell_data[REGION]), tuple(str(name) for name in grid.field_data[_REGION_NAMES]))
     points = np.asarray(grid.points)[:, :2].T.astype(float)
@@ -78,8 +79,15 @@ def _from_ascii(text: str) -> str:
     return text
 
 
-def _check(grid, path: Path) -> None:
+def _check_kind(path: Path) -> None:
+    """Before VTK opens the file: of a wrong one it prints a page of its own errors."""
+    with path.open("rb") as file:
+        if b'type="UnstructuredGrid"' not in file.read(500):
+            raise FieldFileError(f"{path.name} is not a .vtu file: it was not written by this project")
+
+
+def _check_contents(grid, path: Path) -> None:
     there = {*grid.point_data.keys(), *grid.cell_data.keys(), *grid.field_data.keys()}
     absent = [name for name in (POTENTIAL, REGION, _REGION_NAMES, _DESCRIPTION) if name not in there]
     if absent:
-        raise FieldFileError(f"{Path(path).name} holds no {', '.join(absent)}: it was not written by this project")
+        raise FieldFileError(f"{path.name} holds no {', '.join(absent)}: it was not written by this project")

@@ -82,7 +82,8 @@ def _draw_flux_lines(axes, smooth: SmoothField) -> None:
     x, y = smooth.points / MILLIMETRE
     triangulation = Triangulation(x, y, smooth.triangles.T)
     levels = np.linspace(smooth.a.min(), smooth.a.max(), FLUX_LINES + 2)[1:-1]
-    axes.tricontour(triangulation, smooth.a, levels=levels, colors="black", linewidths=0.6, alpha=0.8, linestyles="solid")
+    look = {"colors": "black", "linewidths": 0.6, "alpha": 0.8, "linestyles": "solid"}
+    axes.tricontour(triangulation, smooth.a, levels=levels, **look)
 
 
 def _finish(axes, field: WholeField, title: str) -> None:

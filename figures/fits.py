@@ -66,7 +66,8 @@ def _draw_fit(axes, fit, radius, slots, look) -> None:
     fine = np.linspace(radius.min(), radius.max(), 100)
     refused = is_refused(fit.refused)
     label = f"{slots} slots, fit" + (" (refused)" if refused else "")
-    axes.plot(fine, np.polyval([fit.p2, fit.p1, fit.p0], fine), color=look["color"], linestyle=":" if refused else "-", label=label)
+    value = np.polyval([fit.p2, fit.p1, fit.p0], fine)
+    axes.plot(fine, value, color=look["color"], linestyle=":" if refused else "-", label=label)
 
 
 def _quality(fit, slots, unit) -> str:

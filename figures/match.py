@@ -9,7 +9,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from figures.style import BLACK, GREY, LIGHT_GREY, SERIES, VERMILION, letter, new_figure, series_style, show_grid, styled
+from figures.style import (
+    BLACK,
+    GREY,
+    LIGHT_GREY,
+    SERIES,
+    VERMILION,
+    letter,
+    new_figure,
+    series_style,
+    show_grid,
+    styled,
+)
 from units import MILLIMETRE
 
 _TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
@@ -103,9 +114,10 @@ def _draw_lengths(axes, curves, match, length_limit: float) -> None:
         look = {"linestyle": "-", "label": name} if enforced else {"linestyle": ":", "label": f"{name} (not enforced)"}
         axes.plot(ratio, length / MILLIMETRE, color=SERIES[number % len(SERIES)], **look)
     active = np.where(curves.feasible, curves.active_length, np.nan) / MILLIMETRE
-    axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, solid_capstyle="butt", label="possible solutions")
-    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2, label="rotor speed limit")
-    axes.axhline(length_limit / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2, label="active length limit")
+    axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, label="possible solutions")
+    bound = {"color": GREY, "linewidth": 1.2}
+    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, linestyle="--", label="rotor speed limit", **bound)
+    axes.axhline(length_limit / MILLIMETRE, linestyle="-.", label="active length limit", **bound)
     axes.plot(match.transmission_ratio / MILLIMETRE, match.active_length / MILLIMETRE, label="optimum", **_cross())
     axes.set_ylim(0.0, 1.2 * length_limit / MILLIMETRE)
     axes.set_ylabel("active length / mm")

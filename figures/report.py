@@ -41,14 +41,21 @@ class Table:
     marked: tuple[int, ...] = ()
 
     @property
-    def columns(self) -> list[str]:
-        return [self.headings.get(name, heading(str(name))) for name in self.frame.columns]
+    def columns(self) -> list[tuple[str, str]]:
+        """(heading, kind) of every column; kind is "text" or "number" and decides the side it is set to."""
+        names = [self.headings.get(name, heading(str(name))) for name in self.frame.columns]
+        kinds = ["text" if _holds_text(self.frame[name]) else "number" for name in self.frame.columns]
+        return list(zip(names, kinds, strict=True))
 
     @property
-    def rows(self) -> list[tuple[bool, list[str]]]:
-        """(stressed, cells) of every row."""
+    def rows(self) -> list[tuple[bool, list[tuple[str, str]]]]:
+        """(stressed, cells) of every row, a cell being (text, kind)."""
+        kinds = [kind for _, kind in self.columns]
         rows = self.frame.itertuples(index=False, name=None)
-        return [(number in self.marked, [number_text(value) for value in row]) for number, row in enumerate(rows)]
+        return [
+            (number in self.marked, [(number_text(value), kind) for value, kind in zip(row, kinds, strict=True)])
+            for number, row in enumerate(rows)
+        ]
 
 
 @dataclass(frozen=True)
@@ -114,7 +121,12 @@ class Section:
 
 
 def write_report(
-    path: Path, sections: tuple[Section, ...], *, title: str, subtitle: str = "", provenance: dict[str, str] | None = None
+    path: Path,
+    sections: tuple[Section, ...],
+    *,
+    title: str,
+    subtitle: str = "",
+    provenance: dict[str, str] | None = None,
 ) -> None:
     """Write the page.
 
@@ -139,11 +151,15 @@ def template_environment():
 
 
 def heading(column: str) -> str:
-    """A column name as a heading: ``back_iron_width_mm`` becomes ``back iron width / mm``."""
+    """A column name as a heading: ``back_iron_width_mm`` becomes ``back iron width / mm`` (unbroken)."""
     for ending, unit in _UNITS.items():
         if column.endswith(ending) and len(column) > len(ending):
-            return f"{column.removesuffix(ending).replace('_', ' ')} / {unit}"
+            return f"{column.removesuffix(ending).replace('_', ' ')}\N{NO-BREAK SPACE}/\N{NO-BREAK SPACE}{unit}"
     return column.replace("_", " ")
+
+
+def _holds_text(column: pd.Series) -> bool:
+    return any(isinstance(value, str) for value in column)
 
 
 def number_text(value, digits: int = SIGNIFICANT_DIGITS) -> str:

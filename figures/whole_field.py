@@ -17,13 +17,13 @@ from scipy.spatial import cKDTree
 
 from figures.style import degrees
 from geometry.cross_section import CrossSection
-from magnetostatics.elements import ELEMENT, element_dofs
+from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, refine_order
 from magnetostatics.model import FieldSolution, OperatingPoint
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
 # Reference coordinates of the six nodes and the gradients of the six functions there (function, direction, node).
 _NODES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]], dtype=float)
-_REFERENCE = np.stack([ELEMENT.lbasis(_NODES, i)[1] for i in range(6)])
+_REFERENCE = QUADRATIC.gradients_at(_NODES)
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # a quadratic triangle as four straight ones
 _SAME_PLACE = 1e-8  # m; nodes closer than that are one node
 
@@ -100,18 +100,19 @@ class SmoothField:
 
 def whole_field(solution: FieldSolution) -> WholeField:
     """The whole machine around a solution, rotor turned to its angle; nodes that meet are one node."""
-    rest = solution.model.unknowns.turn(solution.point.angle).rest
-    return _copied_around(solution.model.section, solution.a, solution.point.angle, rest, describe(solution.point))
+    model, angle = solution.model, solution.point.angle
+    a = refine_order(model.section.mesh, solution.a) if model.order is LINEAR else solution.a
+    return _copied_around(model.section, a, angle, model.unknowns.turn(angle).rest, describe(solution.point))
 
 
 def whole_geometry(section: CrossSection, angle: float = 0.0) -> WholeField:
     """The whole machine without a field (A = 0 everywhere), rotor at this mechanical angle [rad]."""
-    _, size = element_dofs(section.mesh)
+    _, size = element_dofs(section.mesh, QUADRATIC)
     return _copied_around(section, np.zeros(size), angle, 0.0, "")
 
 
 def _copied_around(section: CrossSection, a: np.ndarray, angle: float, rest: float, description: str) -> WholeField:
-    cells, _ = element_dofs(section.mesh)
+    cells, _ = element_dofs(section.mesh, QUADRATIC)
     points = _nodes_in_space(section, cells, angle, rest)
     copies = range(section.sectors)
     all_points = np.hstack([_turn(points, k * 2 * pi / section.sectors) for k in copies])
@@ -137,8 +138,8 @@ def whole_region(section: CrossSection) -> Region:
 def describe(point: OperatingPoint) -> str:
     """The operating point in words."""
     density = point.current_density / AMPERE_PER_SQUARE_MILLIMETRE
-    current = f"{density:.3f} A/mm² (peak), current angle {degrees(point.current_angle / DEGREE)}" if density else "no current"
-    return f"rotor at {degrees(point.angle / DEGREE)}, {current}"
+    current = f"{density:.3f} A/mm² (peak), current angle {degrees(point.current_angle / DEGREE)}"
+    return f"rotor at {degrees(point.angle / DEGREE)}, {current if density else 'no current'}"
 
 
 def rotor_cells(section: CrossSection) -> np.ndarray:

@@ -90,9 +90,9 @@ def force_velocity(
 
 
 def _mark(axes, point: RequiredPoint) -> None:
-    look = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION, "markeredgecolor": "white", "zorder": 5}
-    axes[0].plot(point.speed / RPM, point.torque, label=point.name, **look)
-    axes[1].plot(point.speed / RPM, point.torque * point.speed / 1e3, label=point.name, **look)
+    look = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION, "markeredgecolor": "white"}
+    for axis, value in zip(axes, (point.torque, point.torque * point.speed / 1e3), strict=True):
+        axis.plot(point.speed / RPM, value, label=point.name, zorder=5, **look)
 
 
 def _map(figure, axes, velocity, force, values, label: str) -> None:

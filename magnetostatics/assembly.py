@@ -13,14 +13,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from magnetostatics.cholesky import SymmetricSystem
-from magnetostatics.elements import PAIRS
 
 
 @dataclass(frozen=True, eq=False)
 class Entries:
-    """Addresses of the local entries (21, E) of a set of elements in the reduced matrix.
+    """Addresses of the local entries (K, E) of a set of elements in the reduced matrix.
 
-    keys (k,): sorted distinct keys; position (21 E,): where each local entry goes; sign (21 E,): 0 on fixed unknowns
+    keys (k,): sorted distinct keys; position (K E,): where each local entry goes; sign (K E,): 0 on fixed unknowns
     """
 
     keys: np.ndarray
@@ -28,9 +27,12 @@ class Entries:
     sign: np.ndarray
 
     @classmethod
-    def of(cls, dofs: np.ndarray, column: np.ndarray, sign: np.ndarray, size: int) -> Entries:
-        """Addresses for elements with degrees of freedom (6, E), given the map of every degree of freedom."""
-        i, j = PAIRS
+    def of(cls, pairs, dofs: np.ndarray, column: np.ndarray, sign: np.ndarray, size: int) -> Entries:
+        """Addresses for elements with degrees of freedom (F, E), given the map of every degree of freedom.
+
+        pairs: local (row, column) of the K entries
+        """
+        i, j = pairs
         a, b = column[dofs][i], column[dofs][j]
         local_sign = sign[dofs]
         keys = np.minimum(a, b) * np.int64(size) + np.maximum(a, b)
@@ -38,7 +40,7 @@ class Entries:
         return cls(distinct, position.ravel(), (local_sign[i] * local_sign[j]).ravel())
 
     def sum(self, local: np.ndarray) -> np.ndarray:
-        """Add local entries (21, E) up, one value per key."""
+        """Add local entries (K, E) up, one value per key."""
         return np.bincount(self.position, weights=local.ravel() * self.sign, minlength=len(self.keys))
 
 
@@ -50,8 +52,6 @@ class JoinedSystem:
 
     def __init__(self, iron: Entries, linear: np.ndarray, linear_keys: np.ndarray, band: Entries, band_values, size: int):
         keys = _merge(iron.keys, linear_keys, band.keys)
-        diagonal = np.arange(size, dtype=np.int64) * (size + 1)
-        assert np.isin(diagonal, keys).all()
         self._iron_position = np.searchsorted(keys, iron.keys)
         self._iron = iron
         self._linear = np.zeros(len(keys))
@@ -75,7 +75,7 @@ class JoinedSystem:
         return self.linear_matrix @ u + self.linear_matrix.T @ u - self._diagonal * u
 
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
-        """Factorise linear part plus the local iron entries (21, E)."""
+        """Factorise linear part plus the local iron entries (K, E)."""
         if self._system is None:
             self._system = SymmetricSystem(self._rows, self._columns, self._size)
         values = self._linear.copy()

@@ -1,4 +1,4 @@
-"""Quadratic triangles laid out for fast assembly.
+"""Straight triangles, linear or quadratic, laid out for fast assembly.
 
 Weak form for the vector potential A (per metre of length), B = (dA/dy, -dA/dx):
     integral nu(|B|^2) grad A . grad v = integral J v + integral nu (B_rx dv/dy - B_ry dv/dx)
@@ -12,36 +12,73 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from skfem import ElementTriP2, MeshTri
+from skfem import ElementTriP1, ElementTriP2, MeshTri
+from skfem.element import Element
 from skfem.assembly import Dofs
 from skfem.quadrature import get_quadrature
 
-ELEMENT = ElementTriP2()
-_POINTS, _WEIGHTS = get_quadrature(ELEMENT, 2)  # exact for a constant reluctivity on straight triangles
-_VALUES = np.stack([ELEMENT.lbasis(_POINTS, i)[0] for i in range(6)])  # (6, Q)
-_REFERENCE = np.stack([ELEMENT.lbasis(_POINTS, i)[1] for i in range(6)])  # (6, 2, Q)
-
-PAIRS = tuple(np.array(x) for x in np.tril_indices(6))  # local (row, column) of the 21 entries of a symmetric 6 x 6 matrix
 
 
-def element_dofs(mesh: MeshTri) -> tuple[np.ndarray, int]:
-    """Degrees of freedom (6, E) of quadratic triangles, nodes first, then edges, and their total number."""
-    dofs = Dofs(mesh, ELEMENT)
+@dataclass(frozen=True, eq=False)
+class TriangleOrder:
+    """Lagrange functions on the reference triangle at the quadrature points.
+
+    values (F, Q), gradients (F, 2, Q), points (2, Q), weights (Q,); pairs: local (row, column) of the lower triangle
+    """
+
+    element: Element
+    values: np.ndarray
+    gradients: np.ndarray
+    points: np.ndarray
+    weights: np.ndarray
+    pairs: tuple[np.ndarray, np.ndarray]
+
+    @classmethod
+    def of(cls, element: Element, functions: int) -> TriangleOrder:
+        points, weights = get_quadrature(element, 2)  # exact for a constant reluctivity on straight quadratic triangles
+        values, gradients = zip(*(element.lbasis(points, i) for i in range(functions)))
+        return cls(element, np.stack(values), _same_shape(gradients), points, weights, np.tril_indices(functions))
+
+    def gradients_at(self, local: np.ndarray) -> np.ndarray:
+        """Reference gradients (F, 2, n) at local coordinates (2, n)."""
+        return _same_shape([self.element.lbasis(local, i)[1] for i in range(len(self.values))])
+
+
+def _same_shape(gradients) -> np.ndarray:
+    """Stack gradients of which some are constants."""
+    return np.stack(np.broadcast_arrays(*(np.asarray(g, dtype=float) for g in gradients)))
+
+
+LINEAR = TriangleOrder.of(ElementTriP1(), 3)
+QUADRATIC = TriangleOrder.of(ElementTriP2(), 6)
+
+
+def element_dofs(mesh: MeshTri, order: TriangleOrder) -> tuple[np.ndarray, int]:
+    """Degrees of freedom (F, E), nodes first, then edges, and their total number."""
+    dofs = Dofs(mesh, order.element)
     return dofs.element_dofs, dofs.N
 
 
-def dof_locations(mesh: MeshTri) -> np.ndarray:
-    """Where the degrees of freedom sit (2, n) [m]: the nodes, then the middles of the edges."""
+def dof_locations(mesh: MeshTri, order: TriangleOrder) -> np.ndarray:
+    """Where the degrees of freedom sit (2, n) [m]: the nodes, then for quadratic functions the middles of the edges."""
+    if order is LINEAR:
+        return mesh.p
     return np.hstack([mesh.p, mesh.p[:, mesh.facets].mean(axis=1)])
+
+
+def refine_order(mesh: MeshTri, a: np.ndarray) -> np.ndarray:
+    """Degrees of freedom of the quadratic functions that describe the same field as linear ones (n,)."""
+    return np.concatenate([a, a[mesh.facets].mean(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """A set of straight quadratic triangles.
+    """A set of straight triangles with F functions each (3 linear, 6 quadratic).
 
-    dofs (6, E); gradients of the functions (6, Q, E) [1/m]; weights (Q, E) [m^2]; points (2, Q, E) [m]
+    dofs (F, E); gradients of the functions (F, Q, E) [1/m]; weights (Q, E) [m^2]; points (2, Q, E) [m]
     """
 
+    order: TriangleOrder
     dofs: np.ndarray
     gradient_x: np.ndarray
     gradient_y: np.ndarray
@@ -49,20 +86,21 @@ class Elements:
     points: np.ndarray
 
     @classmethod
-    def of(cls, corners: np.ndarray, dofs: np.ndarray) -> Elements:
-        """Elements with corners (2, 3, E) [m] and degrees of freedom (6, E)."""
+    def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
+        """Elements with corners (2, 3, E) [m] and degrees of freedom (F, E)."""
         a, b, c = corners.transpose(1, 0, 2)
         u, v = b - a, c - a
         determinant = u[0] * v[1] - u[1] * v[0]
-        along_u, along_v = _REFERENCE[:, 0, :, None], _REFERENCE[:, 1, :, None]
+        along_u, along_v = order.gradients[:, 0, :, None], order.gradients[:, 1, :, None]
         gradient_x = (along_u * v[1] - along_v * u[1]) / determinant
         gradient_y = (along_v * u[0] - along_u * v[0]) / determinant
-        points = a[:, None] + u[:, None] * _POINTS[0][:, None] + v[:, None] * _POINTS[1][:, None]
-        return cls(dofs, gradient_x, gradient_y, _WEIGHTS[:, None] * np.abs(determinant), points)
+        points = a[:, None] + u[:, None] * order.points[0][:, None] + v[:, None] * order.points[1][:, None]
+        return cls(order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points)
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices."""
         return Elements(
+            self.order,
             self.dofs[:, which],
             self.gradient_x[:, :, which],
             self.gradient_y[:, :, which],
@@ -72,8 +110,8 @@ class Elements:
 
     @cached_property
     def stiffness_basis(self) -> np.ndarray:
-        """weights * grad phi_i . grad phi_j for the 21 pairs (21, Q, E): times nu it is the element matrix."""
-        i, j = PAIRS
+        """weights * grad phi_i . grad phi_j for the pairs of functions (K, Q, E): times nu it is the element matrix."""
+        i, j = self.order.pairs
         return (self.gradient_x[i] * self.gradient_x[j] + self.gradient_y[i] * self.gradient_y[j]) * self.weights
 
     def gradient(self, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -82,14 +120,14 @@ class Elements:
         return np.einsum("iqe,ie->qe", self.gradient_x, local), np.einsum("iqe,ie->qe", self.gradient_y, local)
 
     def forces(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Local vectors integral (x dv/dx + y dv/dy) (6, E) of a vector field given at the quadrature points (Q, E)."""
+        """Local vectors integral (x dv/dx + y dv/dy) (F, E) of a vector field given at the quadrature points (Q, E)."""
         x, y = x * self.weights, y * self.weights
         return np.einsum("iqe,qe->ie", self.gradient_x, x) + np.einsum("iqe,qe->ie", self.gradient_y, y)
 
     def means(self) -> np.ndarray:
-        """Local vectors integral v / total area (6, E)."""
-        return _VALUES @ self.weights / self.weights.sum()
+        """Local vectors integral v / total area (F, E)."""
+        return self.order.values @ self.weights / self.weights.sum()
 
     def scatter(self, local: np.ndarray, size: int) -> np.ndarray:
-        """Sum local vectors (6, E) into a global vector (size,)."""
+        """Sum local vectors (F, E) into a global vector (size,)."""
         return np.bincount(self.dofs.ravel(), weights=local.ravel(), minlength=size)

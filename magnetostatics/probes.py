@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from skfem import MeshTri
 
 from geometry.machine import GeometryError
-from magnetostatics.elements import ELEMENT
+from magnetostatics.elements import TriangleOrder
 from magnetostatics.model import FieldModel, FieldSolution
 
 _NEAREST = 12  # elements tried around a point, by distance of their centres
@@ -19,7 +19,7 @@ _NEAREST = 12  # elements tried around a point, by distance of their centres
 class ProbeReader:
     """Gradient arrays of all probe points of a model, so that reading a solution is one product.
 
-    dofs (6, n), gradients dx, dy (6, n), weights (n,), probe number (n,), names per probe
+    dofs (F, n), gradients dx, dy (F, n), weights (n,), probe number (n,), names per probe
     """
 
     dofs: np.ndarray
@@ -44,7 +44,7 @@ def probe_reader(model: FieldModel) -> ProbeReader:
     mesh = model.section.mesh
     elements = _locate(mesh, points)
     corners = mesh.p[:, mesh.t[:, elements]]
-    dx, dy = _gradients(corners, _barycentric(corners, points))
+    dx, dy = _gradients(model.order, corners, _barycentric(corners, points))
     weights = np.concatenate([probe.weights for probe in probes])
     number = np.repeat(np.arange(len(probes)), [len(probe.weights) for probe in probes])
     return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, tuple(probe.name for probe in probes))
@@ -72,11 +72,10 @@ def _cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return u[0] * v[1] - u[1] * v[0]
 
 
-def _gradients(corners: np.ndarray, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Gradients (6, n) in x and y of the functions of the element around each point, at its barycentric coordinates."""
+def _gradients(order: TriangleOrder, corners: np.ndarray, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Gradients (F, n) in x and y of the functions of the element around each point, at its barycentric coordinates."""
     a, b, c = corners.swapaxes(0, 1)
     u, v = b - a, c - a
     determinant = _cross(u, v)
-    reference = np.stack([ELEMENT.lbasis(shares[1:], i)[1] for i in range(6)])
-    along_u, along_v = reference[:, 0], reference[:, 1]
+    along_u, along_v = order.gradients_at(shares[1:]).swapaxes(0, 1)
     return (along_u * v[1] - along_v * u[1]) / determinant, (along_v * u[0] - along_u * v[0]) / determinant

@@ -18,7 +18,7 @@ from math import pi
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from magnetostatics.elements import dof_locations
+from magnetostatics.elements import LINEAR, TriangleOrder, dof_locations
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class Unknowns:
     edge_angle: float  # of one edge of the sliding circle [rad]
     offset: float  # rotor start angle minus stator start angle at rotor angle zero [rad]
     sector_sign: int
+    steps_per_edge: int  # degrees of freedom along one edge of the sliding circle
 
     def turn(self, angle: float) -> Turn:
         """Split a rotor angle [rad] into whole edges and a rest."""
@@ -50,7 +51,7 @@ class Unknowns:
 
     def turned(self, edges: int) -> tuple[np.ndarray, np.ndarray]:
         """(column, sign) of every degree of freedom with the rotor turned by whole edges."""
-        position = 2 * edges + np.arange(len(self.rotor_slide))
+        position = self.steps_per_edge * edges + np.arange(len(self.rotor_slide))
         sectors_passed, index = np.divmod(position, len(self.stator_slide))
         column, sign = self.column.copy(), self.sign.copy()
         column[self.rotor_slide] = self.column[self.stator_slide[index]]
@@ -58,15 +59,16 @@ class Unknowns:
         return column, sign
 
 
-def number_unknowns(section: CrossSection) -> Unknowns:
-    """Number the free unknowns of a meshed cross-section."""
-    locations = dof_locations(section.mesh)
+def number_unknowns(section: CrossSection, order: TriangleOrder) -> Unknowns:
+    """Number the free unknowns of a meshed cross-section; those of nodes come first, so orders share their numbers."""
+    locations = dof_locations(section.mesh, order)
+    steps_per_edge = 1 if order is LINEAR else 2
     stator_slide = _around(section, locations, "stator_slide", section.machine.slot_pitch)
     rotor_slide = _around(section, locations, "rotor_slide", section.machine.pole_pitch)
     sign, master = np.ones(locations.shape[1]), np.arange(locations.shape[1])
     for start, end in _ray_pairs(section, locations):
         master[end], sign[end] = start, section.sign
-    sign[_on(section, "outer")] = 0.0
+    sign[_on(section, "outer", locations)] = 0.0
     if section.sign < 0:
         sign[np.hypot(*locations) < 1e-12] = 0.0  # the centre would have to equal its own negative
     is_free = (master == np.arange(len(master))) & (sign != 0)
@@ -80,21 +82,23 @@ def number_unknowns(section: CrossSection) -> Unknowns:
         count=int(is_free.sum()),
         stator_slide=masters,
         rotor_slide=rotor_slide,
-        edge_angle=4 * pi / section.sectors / len(masters),
+        edge_angle=2 * pi * steps_per_edge / section.sectors / len(masters),
         offset=(section.machine.slot_pitch - section.machine.pole_pitch) / 2,
         sector_sign=section.sign,
+        steps_per_edge=steps_per_edge,
     )
 
 
-def _on(section: CrossSection, name: str) -> np.ndarray:
-    """Degrees of freedom on a named boundary: its nodes and its edges."""
-    edges = section.mesh.boundaries[name]
-    return np.concatenate([np.unique(section.mesh.facets[:, edges]), section.mesh.p.shape[1] + edges])
+def _on(section: CrossSection, name: str, locations: np.ndarray) -> np.ndarray:
+    """Degrees of freedom on a named boundary: its nodes and, where the edges carry some, its edges."""
+    edges, nodes = section.mesh.boundaries[name], section.mesh.p.shape[1]
+    on_nodes = np.unique(section.mesh.facets[:, edges])
+    return on_nodes if locations.shape[1] == nodes else np.concatenate([on_nodes, nodes + edges])
 
 
 def _around(section: CrossSection, locations: np.ndarray, name: str, pitch: float) -> np.ndarray:
     """Degrees of freedom on a circle in the order of angle, from the start of its sector, half a pitch below zero."""
-    dofs = _on(section, name)
+    dofs = _on(section, name, locations)
     x, y = locations[:, dofs]
     angle = np.mod(np.arctan2(y, x) + pitch / 2 + 1e-9, 2 * pi)
     return dofs[np.argsort(angle)]
@@ -106,7 +110,7 @@ def _ray_pairs(section: CrossSection, locations: np.ndarray) -> list[tuple[np.nd
         return []
     radius = np.hypot(*locations)
     rays = {
-        f"{piece}_{side}": sorted(_on(section, f"{piece}_{side}"), key=radius.__getitem__)
+        f"{piece}_{side}": sorted(_on(section, f"{piece}_{side}", locations), key=radius.__getitem__)
         for piece in ("stator", "rotor")
         for side in ("start", "end")
     }

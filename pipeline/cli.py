@@ -55,12 +55,12 @@ def _add_overrides(parser: argparse.ArgumentParser) -> None:
 
 
 def _check(options) -> None:
-    from study.check import describe
+    from study.check import summary
     from study.read import check_study, read_study
 
     study = read_study(options.study, options.set)
     check_study(study)
-    print(describe(study))
+    print(summary(study))
 
 
 def _solve(options) -> None:
@@ -77,27 +77,26 @@ def _solve(options) -> None:
         write_vtu(_writable(options.vtu), solution)
     if options.png:
         from figures.field_map import field_map
+        from figures.whole_field import whole_field
 
-        field_map(solution).savefig(_writable(options.png), dpi=150)
+        field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
 
 
 def _field(study, options):
-    from geometry.cross_section import mesh_cross_section
-    from magnetostatics.model import FieldModel, OperatingPoint
-    from pipeline.models import detail_density, layout_of, materials_of
+    from magnetostatics.model import OperatingPoint
+    from pipeline.models import detail_density, field_model
     from study.convert import to_machine, to_mesh_density
     from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
     amplitude = _amplitude(options)
     density = to_mesh_density(study.mesh) if options.sweep_mesh else detail_density(study)
-    section = mesh_cross_section(to_machine(study.machine), layout_of(study), density)
     point = OperatingPoint(
         options.angle_deg * DEGREE,
         amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
         options.current_angle_deg * DEGREE,
         study.winding.packing_factor,
     )
-    return FieldModel(section, materials_of(study)).solve(point)
+    return field_model(study, to_machine(study.machine), density).solve(point)
 
 
 def _amplitude(options) -> float:

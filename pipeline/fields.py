@@ -58,7 +58,7 @@ def solve_angle(task: dict) -> dict:
     from pipeline.models import nominal_amplitude
     from units import DEGREE
 
-    study, model = _model(task["study"], task["machine"])
+    study, model = _model(task["study"], task["machine"], detailed=False)
     angle, packing = task["angle_deg"] * DEGREE, study.winding.packing_factor
     idle = model.solve(OperatingPoint(angle, 0.0, 0.0, packing))
     loaded = model.solve(OperatingPoint(angle, nominal_amplitude(study), 0.0, packing), start=idle)
@@ -72,11 +72,13 @@ def solve_angle(task: dict) -> dict:
 
 
 @lru_cache(maxsize=2)
-def _model(path: str, machine: str):
-    from pipeline.winding import field_model
+def _model(path: str, machine: str, detailed: bool):
+    from pipeline.models import detail_density, field_model
+    from study.convert import to_mesh_density
 
     study = read_study(path)
-    return study, field_model(study, machine_of(study, machine))
+    density = detail_density(study) if detailed else to_mesh_density(study.mesh)
+    return study, field_model(study, machine_of(study, machine), density)
 
 
 def tasks_of(study) -> dict[str, dict]:
@@ -110,7 +112,7 @@ def _write_fields(study, run) -> None:
     from figures.export import write_vtu
 
     for name in MACHINES:
-        _, model = _model(str(study.path.resolve()), name)
+        _, model = _model(str(study.path.resolve()), name, detailed=True)
         for state, point in null_points(study, model).items():
             solution = model.solve(point)
             run.note(**{f"newton_{name}_{state}": list(solution.newton.residuals)})

@@ -38,7 +38,7 @@ def main(arguments: list[str] | None = None) -> None:
     with command():
         study = read_study(chosen.study)
         results = results_folder(study.study.id)
-        fields = read_fields(results / "fields")
+        fields = read_fields(results)
         if not chosen.no_window and wants_window():
             show(fields)
         else:
@@ -49,7 +49,7 @@ def read_fields(folder: Path) -> dict:
     """Name -> field of every .vtu file in the folder; StageError when there is none or one cannot be read."""
     from figures.export import FieldFileError, read_vtu
 
-    paths = sorted(folder.glob("*.vtu"))
+    paths = sorted(path for path in folder.glob("*.vtu") if not path.name.startswith("."))
     if not paths:
         raise StageError("there are no fields to look at yet; run `make pipeline`, or `make fields`, first.")
     try:
@@ -108,32 +108,51 @@ def show(fields: dict) -> None:
     """A window with |B| and flux lines; a slider chooses the field."""
     import pyvista
 
-    plotter = pyvista.Plotter(title="flux density and flux lines")
+    plotter = pyvista.Plotter(title="flux density and flux lines", window_size=(1000, 1000))
     add_field(plotter, next(iter(fields.values())))
     if len(fields) > 1:
-        plotter.add_text_slider_widget(lambda name: add_field(plotter, fields[name]), list(fields))
+        place = {"pointa": (0.62, 0.94), "pointb": (0.97, 0.94)}
+        plotter.add_text_slider_widget(lambda name: add_field(plotter, fields[name]), list(fields), value=0, **place)
     plotter.view_xy()
     plotter.show()
 
 
 def add_field(plotter, field) -> None:
     """Put a field into the window, in place of the one before."""
+    from figures.field_map import FLUX_LINES, colour_limit, outlines
+    from figures.style import FIELD_MAP
+
+    surface = surface_of(field)
+    colours = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
+    bar = {"title": "flux density / T", "vertical": True, "position_x": 0.88, "position_y": 0.25, "height": 0.5}
+    plotter.add_mesh(surface, scalars="B", name="surface", lighting=False, scalar_bar_args=bar, **colours)
+    lines = surface.contour(FLUX_LINES, scalars="A")
+    plotter.add_mesh(lines, color="black", line_width=1, name="flux lines", show_scalar_bar=False)
+    plotter.add_mesh(pieces_of(outlines(field.points, field.cells, field.region)), color="white", name="outlines")
+    plotter.add_text(field.description.replace("²", "^2"), font_size=10, name="description")
+
+
+def surface_of(field):
+    """The field as triangles [mm] with |B| [T] and A [Wb/m] at their corners."""
     import numpy as np
     import pyvista
 
-    from figures.field_map import FLUX_LINES, colour_limit
-    from figures.style import FIELD_MAP
     from units import MILLIMETRE
 
     smooth = field.smooth
     points = np.column_stack([*(smooth.points / MILLIMETRE), np.zeros(smooth.points.shape[1])])
     surface = pyvista.PolyData.from_regular_faces(points, smooth.triangles.T)
-    surface["|B| / T"], surface["A"] = smooth.b, smooth.a
-    colours = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
-    plotter.add_mesh(surface, scalars="|B| / T", name="surface", lighting=False, **colours)
-    lines = surface.contour(FLUX_LINES, scalars="A")
-    plotter.add_mesh(lines, color="black", line_width=1, name="lines", show_scalar_bar=False)
-    plotter.add_text(field.description.replace("²", "^2"), font_size=10, name="description")
+    surface["B"], surface["A"] = smooth.b, smooth.a
+    return surface
+
+
+def pieces_of(pieces):
+    """Straight pieces (k, 2, 2) as lines in the plane."""
+    import numpy as np
+    import pyvista
+
+    ends = np.concatenate([pieces.reshape(-1, 2), np.zeros((2 * len(pieces), 1))], axis=1)
+    return pyvista.line_segments_from_points(ends)
 
 
 if __name__ == "__main__":

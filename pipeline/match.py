@@ -125,18 +125,23 @@ class Matcher:
         best = min((results[slots, overload] for slots in self.study.sweep.slots), key=lambda result: result.best.cost.total)
         if wanted.chosen_slots is None and wanted.chosen_stator_diameter_mm is None:
             return best.best, "least cost over all radii and slot counts"
-        chosen = self._match_at(wanted, overload, best.best.section)
+        chosen = self._wanted(overload, best.best.section)
         return chosen, self._compare(chosen, best)
 
-    def _match_at(self, wanted, overload: str, least):
-        from drivetrain.match import match
+    def _wanted(self, overload: str, least):
         from units import MILLIMETRE
 
+        wanted = self.study.match
         slots = wanted.chosen_slots or least.slots
         if slots not in self.study.sweep.slots:
             raise StageError(f"match.chosen_slots = {slots} is not among sweep.slots {list(self.study.sweep.slots)}; add it there.")
         diameter = wanted.chosen_stator_diameter_mm
-        radius = diameter / 2 * MILLIMETRE if diameter else least.stator_outer_radius
+        return self.match_at(slots, overload, diameter / 2 * MILLIMETRE if diameter else least.stator_outer_radius)
+
+    def match_at(self, slots: int, overload: str, radius: float):
+        """``Match`` of one slot count and stator radius [m]."""
+        from drivetrain.match import match
+
         section = self.section(slots, overload, radius)
         chosen = self.constraints(section)
         return match(section, **vars(chosen), gearbox=self.gearbox, scales=self.scales, weights=self.weights)

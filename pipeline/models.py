@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
+from geometry.cross_section import mesh_cross_section
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from geometry.winding import WindingLayout, star_of_slots
-from magnetostatics.model import MachineMaterials
+from magnetostatics.model import FieldModel, MachineMaterials
 from materials.library import load_steel
 from optimisation.design import Judge
 from optimisation.states import READINGS, SaturationReading
@@ -55,6 +56,11 @@ def layout_of(study: Study, slots: int | None = None) -> WindingLayout:
 def detail_density(study: Study) -> MeshDensity:
     """Mesh for single states: what the study asks for, or twice the resolution of the sweep."""
     return to_mesh_density(study.mesh) if study.mesh.model_fields_set else DETAIL
+
+
+def field_model(study: Study, machine: Machine, density: MeshDensity) -> FieldModel:
+    """Field model of a machine with the materials and the winding of a study."""
+    return FieldModel(mesh_cross_section(machine, layout_of(study, machine.slots), density), materials_of(study))
 
 
 def nominal_amplitude(study: Study) -> float:

@@ -13,6 +13,27 @@ from pipeline.stage import Stage, StageError, command, results_folder
 from study.read import read_study
 
 OUTPUT = "optima.csv"
+COLUMNS = (
+    "slots",
+    "stator_diameter_mm",
+    "stator_outer_radius_mm",
+    "back_iron_width_mm",
+    "rotor_outer_radius_mm",
+    "tooth_width_mm",
+    "half_slot_area_mm2",
+    "torque_nominal_Nm_per_m",
+    "torque_nominal_maxwell_Nm_per_m",
+    "torque_overload_Nm_per_m",
+    "torque_overload_linear_Nm_per_m",
+    "limited_T",
+    "limit_T",
+    "limit_binds",
+    "tooth_worst_T",
+    "back_iron_worst_T",
+    "reading",
+    "field_solutions",
+    "newton_iterations",
+)
 
 
 def stage_of(study) -> Stage:
@@ -66,27 +87,28 @@ def _row(study, task, optimum, overload) -> dict:
 
     design, machine = optimum.design, optimum.design.machine
     ratio = study.sweep.j_overload_rms_A_per_mm2 / study.sweep.j_nominal_rms_A_per_mm2
-    return {
-        "slots": task["slots"],
-        "stator_diameter_mm": task["stator_diameter_mm"],
-        "stator_outer_radius_mm": task["stator_diameter_mm"] / 2,
-        "back_iron_width_mm": machine.back_iron_width / MILLIMETRE,
-        "rotor_outer_radius_mm": machine.rotor_outer_radius / MILLIMETRE,
-        "tooth_width_mm": machine.tooth_width / MILLIMETRE,
-        "half_slot_area_mm2": design.coil_side_area / SQUARE_MILLIMETRE,
-        "torque_nominal_Nm_per_m": design.torque,
-        "torque_nominal_maxwell_Nm_per_m": design.torque_maxwell,
-        "torque_overload_Nm_per_m": overload.torque,
-        "torque_overload_linear_Nm_per_m": design.torque * ratio,
-        "limited_T": design.limited,
-        "limit_T": study.saturation.limit_T,
-        "limit_binds": optimum.limit_binds,
-        "tooth_worst_T": design.tooth_worst,
-        "back_iron_worst_T": design.back_iron_worst,
-        "reading": study.saturation.reading,
-        "field_solutions": optimum.solves,
-        "newton_iterations": design.newton_iterations,
-    }
+    values = (
+        task["slots"],
+        task["stator_diameter_mm"],
+        task["stator_diameter_mm"] / 2,
+        machine.back_iron_width / MILLIMETRE,
+        machine.rotor_outer_radius / MILLIMETRE,
+        machine.tooth_width / MILLIMETRE,
+        design.coil_side_area / SQUARE_MILLIMETRE,
+        design.torque,
+        design.torque_maxwell,
+        overload.torque,
+        design.torque * ratio,
+        design.limited,
+        study.saturation.limit_T,
+        optimum.limit_binds,
+        design.tooth_worst,
+        design.back_iron_worst,
+        study.saturation.reading,
+        optimum.solves,
+        design.newton_iterations,
+    )
+    return dict(zip(COLUMNS, values, strict=True))
 
 
 def tasks_of(study) -> dict[str, dict]:
@@ -118,7 +140,7 @@ def main(name: str) -> None:
                 f"{study.saturation.reading}: raise saturation.limit_T or widen the sweep."
             )
         run.note(without_optimum=without, constraint_tolerance=2e-4)
-        run.write(OUTPUT, lambda path: pd.DataFrame(found).to_csv(path, index=False))
+        run.write(OUTPUT, lambda path: pd.DataFrame(found, columns=COLUMNS).to_csv(path, index=False))
 
     stage_of(study).run(work)
 

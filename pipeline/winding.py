@@ -37,16 +37,6 @@ def matched_machine(study):
     return StudyFamily(study.machine).machine(found["slots"], *lengths)
 
 
-def field_model(study, machine):
-    """Field model of a machine of the study at the resolution for single states."""
-    from geometry.cross_section import mesh_cross_section
-    from magnetostatics.model import FieldModel
-    from pipeline.models import detail_density, layout_of, materials_of
-
-    section = mesh_cross_section(machine, layout_of(study, machine.slots), detail_density(study))
-    return FieldModel(section, materials_of(study))
-
-
 def solve_per_turn(study, model) -> dict:
     """Per-turn values at the nominal and the overload current density."""
     from magnetostatics.per_turn import per_turn_values
@@ -83,6 +73,18 @@ def per_turn_machine(study, model, overload):
         overload_torque=overload.torque,
         overload_ampere_turns=overload.ampere_turns,
     )
+
+
+def read_per_turn_machine(study):
+    """``PerTurnMachine`` of a finished stage."""
+    from electrical.winding_selection import PerTurnMachine
+
+    return PerTurnMachine(**read_winding(study)["machine"])
+
+
+def read_winding(study) -> dict:
+    """The outcome of a finished stage."""
+    return json.loads((results_folder(study.study.id) / OUTPUT).read_text(encoding="utf-8"))
 
 
 def row(winding, chosen: bool) -> dict:
@@ -128,8 +130,10 @@ def main(name: str) -> None:
 
         import pandas as pd
         from electrical.winding_selection import WindingError
+        from pipeline.models import field_model
+        from study.convert import to_mesh_density
 
-        model = field_model(study, matched_machine(study))
+        model = field_model(study, matched_machine(study), to_mesh_density(study.mesh))
         values = solve_per_turn(study, model)
         machine = per_turn_machine(study, model, values["overload"])
         try:
