@@ -1,1 +1,1 @@
-"""Pictures of results: every function takes data and returns a matplotlib Figure; nothing here reads a study or solves."""
+"""Pictures of results: functions from data to a matplotlib Figure, and exports; nothing here reads a study or solves."""

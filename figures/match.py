@@ -58,7 +58,7 @@ def match_over_radius(table: pd.DataFrame, *, best: pd.DataFrame | None = None) 
 
     table: columns slots, overload ("field" or "linear", drawn solid and dashed), stator_outer_radius_mm,
         transmission_ratio_mm_per_rad, active_length_mm, cost; NaN where there is no match. See ``radius_table``
-    best: rows of the same columns to mark with a star, usually the least cost of each slot count
+    best: rows of the same columns to mark with a star, usually the chosen machine
     """
     panels = (
         ("transmission_ratio_mm_per_rad", "transmission ratio / (mm/rad)"),
@@ -163,4 +163,4 @@ def _draw_best(axes, best: pd.DataFrame | None, column: str) -> None:
     if best is None or best.empty:
         return
     look = {"marker": "*", "markersize": 14, "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
-    axes.plot(best.stator_outer_radius_mm, best[column], label="least cost", zorder=5, **look)
+    axes.plot(best.stator_outer_radius_mm, best[column], label="chosen", zorder=5, **look)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from base64 import b64encode
 from dataclasses import dataclass, field
-from math import floor, log10
+from math import floor, isinf, log10
 from pathlib import Path
 from typing import ClassVar
 
@@ -19,11 +19,11 @@ SIGNIFICANT_DIGITS = 4  # of numbers in tables
 
 # Ends of column names, longest first, and how the unit is written.
 _UNITS = {
-    "_mm_per_rad": "(mm/rad)", "_Nm_per_m": "(Nm/m)", "_Nm_per_A": "(Nm/A)", "_mNm_per_A": "(mNm/A)", "_A_per_mm2": "(A/mm²)",
-    "_rad_per_s": "(rad/s)", "_m_per_s": "(m/s)", "_kNs_per_m": "(kNs/m)", "_Ns_per_m": "(Ns/m)", "_Wb_per_m": "(Wb/m)",
+    "_mm_per_rad": "(mm/rad)", "_Nm_per_m": "(Nm/m)", "_Nm_per_A": "(Nm/A)", "_mNm_per_A": "(mNm/A)",
+    "_A_per_mm2": "(A/mm²)", "_rad_per_s": "(rad/s)", "_m_per_s": "(m/s)", "_kNs_per_m": "(kNs/m)", "_Ns_per_m": "(Ns/m)", "_Wb_per_m": "(Wb/m)",
     "_H_per_m": "(H/m)", "_degC": "°C", "_deg": "°", "_mm2": "mm²", "_mm": "mm", "_kg": "kg", "_Nm": "Nm", "_kN": "kN",
     "_N": "N", "_kW": "kW", "_W": "W", "_rpm": "rpm", "_mOhm": "mΩ", "_Ohm": "Ω", "_ohm": "Ω", "_uH": "µH", "_mH": "mH",
-    "_H": "H", "_V": "V", "_A": "A", "_T": "T", "_s": "s", "_m": "m",
+    "_H": "H", "_V": "V", "_A": "A", "_T": "T", "_s": "s", "_rad": "rad", "_m": "m",
 }  # fmt: skip
 
 
@@ -168,8 +168,15 @@ def number_text(value, digits: int = SIGNIFICANT_DIGITS) -> str:
         return "yes" if value else "no"
     if value is None or value != value:
         return "–"
-    if not hasattr(value, "__float__") or float(value).is_integer() and abs(value) < 1e7:
-        return str(int(value)) if hasattr(value, "__float__") else str(value)
+    if not hasattr(value, "__float__"):
+        return str(value)
+    return _digits(float(value), digits).replace("-", "\N{MINUS SIGN}")
+
+
+def _digits(value: float, digits: int) -> str:
+    if isinf(value):
+        return "∞" if value > 0 else "-∞"
+    if value.is_integer() and abs(value) < 1e7:
+        return str(int(value))
     size = floor(log10(abs(value)))
-    text = f"{value:.{max(digits - 1 - size, 0)}f}" if -5 < size < 7 else f"{value:.{digits - 1}e}"
-    return text.replace("-", "\N{MINUS SIGN}")
+    return f"{value:.{max(digits - 1 - size, 0)}f}" if -5 < size < 7 else f"{value:.{digits - 1}e}"

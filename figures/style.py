@@ -66,9 +66,8 @@ def new_figure(height: float, width: float = WIDTH) -> Figure:
 def series_style(values) -> dict:
     """Colour and marker for each of the values, in their sorted order: ``style[9]["color"]``."""
     ordered = sorted(set(values))
-    return {
-        value: {"color": SERIES[i % len(SERIES)], "marker": MARKERS[i % len(MARKERS)]} for i, value in enumerate(ordered)
-    }
+    looks = ({"color": SERIES[i % len(SERIES)], "marker": MARKERS[i % len(MARKERS)]} for i in range(len(ordered)))
+    return dict(zip(ordered, looks, strict=True))
 
 
 def show_grid(*axes) -> None:

@@ -20,19 +20,22 @@ from geometry.plane_mesh import Drawing, PlaneMesh, triangulate
 class MeshDensity:
     """How fine to mesh. The defaults hold torque to about 0.1 % with quadratic elements.
 
-    gap_edges: least number of edges around the sliding circle (rounded up so that slots and poles both fit)
+    gap_edges: least number of edges around the sliding circle
+    longest_gap_edge: longest edge on the sliding circle, as a multiple of the air gap
     gap_layers: structured layers between the sliding circle and the iron, on each side
     across_iron: elements across a tooth
     """
 
     gap_edges: int = 180
-    gap_layers: int = 1
+    longest_gap_edge: float = 1.25
+    gap_layers: int = 2
     across_iron: float = 2.0
 
     def edges_around(self, machine: Machine) -> int:
         """Edges on the whole sliding circle: a whole number per half slot pitch and per half pole pitch."""
         unit = lcm(2 * machine.slots, 2 * machine.poles)
-        return unit * ceil(self.gap_edges / unit)
+        needed = 2 * pi * machine.mid_gap_radius / (self.longest_gap_edge * machine.airgap)
+        return unit * ceil(max(self.gap_edges, needed) / unit)
 
     def gap_edge_length(self, machine: Machine) -> float:
         """Edge length on the sliding circle [m]."""

@@ -22,11 +22,13 @@ OVERLOADS = {"field": "torque_overload_Nm_per_m", "linear": "torque_overload_lin
 def stage_of(study) -> Stage:
     """The match of a study."""
     from pipeline.fits import OUTPUT as FITS
+    from pipeline.models import FIELD_CODE, FIELD_SECTIONS
+    from pipeline.sweep import steel_files
 
     folder = results_folder(study.study.id)
-    values = study.subset("machine", "winding", "sweep", "requirements", "linkage", "match", "materials", "winding_selection")
-    code = ("drivetrain", "electrical", "optimisation.polynomial_fits", "study.convert", "pipeline.fits", "pipeline.match")
-    return Stage("match", folder, values, (folder / FITS,), code, (TABLE, OUTPUT))
+    values = study.subset(*FIELD_SECTIONS, "requirements", "linkage", "match", "printed_machine", "winding_selection")
+    code = (*FIELD_CODE, "drivetrain", "electrical", "pipeline.fits", "pipeline.match")
+    return Stage("match", folder, values, (folder / FITS, *steel_files(study)), code, (TABLE, OUTPUT))
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,22 @@ class Matcher:
             half_slot_area=fit("half_slot_area_mm2") * SQUARE_MILLIMETRE,
             torque_per_length_nominal=fit("torque_nominal_Nm_per_m"),
             torque_per_length_overload=fit(OVERLOADS[overload]),
+        )
+
+    def reference_section(self, torque_nominal: float, torque_overload: float, half_slot_area: float):
+        """``CrossSection`` of the study's own machine with given torques [Nm/m] and half-slot area [m^2]."""
+        from drivetrain.match import CrossSection
+        from pipeline.models import layout_of
+        from study.convert import to_machine
+
+        machine = to_machine(self.study.machine)
+        shared = "slots stator_outer_radius rotor_outer_radius back_iron_width tooth_width shoe_d1 shoe_d2 airgap".split()
+        return CrossSection(
+            **{name: getattr(machine, name) for name in shared},
+            coils_in_series=layout_of(self.study).coils_in_series,
+            half_slot_area=half_slot_area,
+            torque_per_length_nominal=torque_nominal,
+            torque_per_length_overload=torque_overload,
         )
 
     def constraints(self, section):
@@ -140,9 +158,12 @@ class Matcher:
 
     def match_at(self, slots: int, overload: str, radius: float):
         """``Match`` of one slot count and stator radius [m]."""
+        return self.match_section(self.section(slots, overload, radius))
+
+    def match_section(self, section):
+        """``Match`` of one cross-section."""
         from drivetrain.match import match
 
-        section = self.section(slots, overload, radius)
         chosen = self.constraints(section)
         return match(section, **vars(chosen), gearbox=self.gearbox, scales=self.scales, weights=self.weights)
 
@@ -156,6 +177,38 @@ class Matcher:
             f"{chosen.cost.total:.3f}); the least cost, {least.cost.total:.3f}, belongs to {least.section.slots} slots and "
             f"{2 * least.section.stator_outer_radius / MILLIMETRE:.1f} mm{edge}"
         )
+
+
+def reference_matches(matcher: Matcher) -> dict:
+    """Summaries of the study's own machine, matched with its solved torques and, if stated, with somebody else's."""
+    from drivetrain.match import linear_overload
+    from units import SQUARE_MILLIMETRE
+
+    study = matcher.study
+    nominal, overload, area = _solved_reference(study)
+    solved = matcher.match_section(matcher.reference_section(nominal, overload, area))
+    found = {"field": summary(solved, "the study's machine with its torques from the field solution, mean over a period")}
+    printed = study.printed_machine
+    if printed is not None:
+        sweep = study.sweep
+        scaled = linear_overload(printed.torque_nominal_Nm_per_m, sweep.j_nominal_rms_A_per_mm2, sweep.j_overload_rms_A_per_mm2)
+        area = printed.half_slot_area_mm2 * SQUARE_MILLIMETRE
+        section = matcher.reference_section(printed.torque_nominal_Nm_per_m, scaled, area)
+        reason = f"the study's machine with the torque stated by {printed.source}, scaled linearly to the overload"
+        found["printed"] = summary(matcher.match_section(section), reason)
+    return found
+
+
+def _solved_reference(study) -> tuple[float, float, float]:
+    """Mean torques at the nominal and the overload current density [Nm/m] and half-slot area [m^2] of [machine]."""
+    from magnetostatics.per_turn import per_turn_values
+    from pipeline.models import field_model, nominal_amplitude, overload_amplitude
+    from study.convert import to_machine, to_mesh_density
+
+    model = field_model(study, to_machine(study.machine), to_mesh_density(study.mesh))
+    packing = study.winding.packing_factor
+    nominal, overload = (per_turn_values(model, f(study), packing) for f in (nominal_amplitude, overload_amplitude))
+    return nominal.torque, overload.torque, model.section.half_slot_area * model.section.half_slots_per_coil_side
 
 
 def summary(chosen, reason: str) -> dict:
@@ -205,8 +258,12 @@ def main(name: str) -> None:
         except (MatchError, FitRefused) as error:
             raise StageError(f"no match: {error}") from None
         outcome = {**summary(chosen, reason), "overload_torque": study.match.overload_torque}
+        outcome["reference_machine"] = reference_matches(matcher)
         for line in (reason, *chosen.notes):
             print(f"match: {line}")
+        for name, found in outcome["reference_machine"].items():
+            for note in found["notes"]:
+                print(f"match: reference machine, {name}: {note}")
         run.write(TABLE, lambda path: _table(results).to_csv(path, index=False))
         run.write_text(OUTPUT, json.dumps(outcome, indent=2) + "\n")
 

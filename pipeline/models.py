@@ -21,7 +21,7 @@ from units import AMPERE_PER_SQUARE_MILLIMETRE
 FIELD_CODE = ("units", "materials", "geometry", "magnetostatics", "optimisation", "study.convert", "pipeline.models")
 FIELD_SECTIONS = ("machine", "materials", "winding", "mesh", "sweep", "saturation")
 # Twice the resolution of the sweep, for single states that are looked at.
-DETAIL = MeshDensity(gap_edges=360, gap_layers=2, across_iron=3.0)
+DETAIL = MeshDensity(gap_edges=360, longest_gap_edge=0.75, gap_layers=2, across_iron=3.0)
 
 
 @dataclass(frozen=True)

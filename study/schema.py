@@ -241,6 +241,14 @@ class MatchSection(Section):
     gear_poisson_ratio: Annotated[float, Quantity("Poisson's ratio of the gears", 0, 0.49)]
 
 
+class PrintedMachineSection(Section):
+    """What somebody else states for the machine of ``[machine]``; it is matched in the same way and shown beside ours."""
+
+    source: Annotated[str, Field(min_length=1)]
+    torque_nominal_Nm_per_m: Annotated[float, Quantity("stated torque per length at the nominal current density", 0.01, 1e5)]
+    half_slot_area_mm2: Annotated[float, Quantity("stated half-slot area", 0.01, 1e5)]
+
+
 class WindingSelectionSection(Section):
     """Wire, supply and limits from which turns and strands are chosen (thesis eqs 3.119-3.120)."""
 
@@ -266,6 +274,7 @@ class Study(Section):
     requirements: RequirementsSection
     linkage: LinkageSection
     match: MatchSection
+    printed_machine: Optional[PrintedMachineSection] = None
     winding_selection: WindingSelectionSection
 
     _path: Path = PrivateAttr(default=Path("study.toml"))
@@ -277,7 +286,8 @@ class Study(Section):
 
     def subset(self, *sections: str) -> dict:
         """The named sections as plain data for a stage's input hash, without the path of the file."""
-        return {name: getattr(self, name).model_dump(mode="json") for name in sections}
+        present = {name: getattr(self, name) for name in sections}
+        return {name: section and section.model_dump(mode="json") for name, section in present.items()}
 
 
 def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:

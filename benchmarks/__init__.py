@@ -1,0 +1,1 @@
+"""Speed and accuracy against other codes, measured as ratios in one run."""
