@@ -44,7 +44,7 @@ def to_grid(field: WholeField):
     grid.point_data[POTENTIAL] = field.a
     grid.cell_data[FLUX_DENSITY] = np.vstack([field.cell_flux_density, np.zeros(count)]).T
     grid.cell_data[FLUX_DENSITY_NORM] = np.hypot(*field.flux_density[:, :3]).mean(axis=0)
-    grid.cell_data[REGION] = field.region.index[::-1].astype(np.int32)
+    grid.cell_data[REGION] = field.region.index.astype(np.int32)
     grid.field_data[_REGION_NAMES] = list(field.region.names)
     grid.field_data[_DESCRIPTION] = [_to_ascii(field.description)]
     return grid

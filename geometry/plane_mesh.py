@@ -72,21 +72,22 @@ class PlaneMesh:
 def triangulate(drawing: Drawing) -> PlaneMesh:
     """Triangles of every region of the drawing, conforming along shared curves.
 
+    gmsh is started anew for every drawing (1 ms): its random numbers go on from one mesh to the next, and the mesh of a
+    machine must not depend on what was meshed before.
     Raises GeometryError when gmsh cannot mesh the drawing.
     """
     _start_gmsh()
-    gmsh.clear()
     try:
         tags = _draw(drawing)
         gmsh.model.mesh.generate(2)
         return _collect(tags)
     except Exception as error:  # gmsh raises bare Exception
         raise GeometryError(f"gmsh could not triangulate the cross-section: {error}") from error
+    finally:
+        gmsh.finalize()
 
 
 def _start_gmsh() -> None:
-    if gmsh.isInitialized():
-        return
     gmsh.initialize(readConfigFiles=False, interruptible=False)
     for option, value in (
         ("General.Terminal", 0),

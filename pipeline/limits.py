@@ -13,7 +13,6 @@ from pipeline.stage import Stage, command, results_folder
 from study.read import read_study
 
 OUTPUT = "limits.csv"
-_WIDTHS, _RADII = 8, 7  # grid of the map, over the ranges of the sweep
 
 
 def stage_of(study) -> Stage:
@@ -54,17 +53,11 @@ def _machine(task: dict):
     return StudyFamily(section).machine(section.slots, section.stator_outer_radius_mm * MILLIMETRE, width, radius)
 
 
-def _grid(study):
-    import numpy as np
-
-    s, radius = study.sweep, study.machine.stator_outer_radius_mm
-    widths = radius * np.linspace(s.back_iron_fraction_min, s.back_iron_fraction_max, _WIDTHS)
-    return widths, radius * np.linspace(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, _RADII)
-
-
 def tasks_of(study) -> dict[str, dict]:
-    """Designs of the map: once in the null state, which serves two readings, once over the period."""
-    widths, radii = _grid(study)
+    """Designs of the map on the grid of the sweep: once in the null state, which serves two readings, once over the period."""
+    from pipeline.sweep import grid
+
+    widths, radii = grid(study, 2 * study.machine.stator_outer_radius_mm)
     return {
         f"{reading}, {i}, {k}": {
             "study": str(study.path.resolve()),
@@ -83,11 +76,13 @@ def table(study, results: dict[str, list | None]):
     import numpy as np
     import pandas as pd
     from optimisation.design_map import DesignMap
+    from pipeline.sweep import grid
     from units import MILLIMETRE
 
     nothing = [np.nan] * 4
-    values = np.array([row or nothing for row in results.values()], dtype=float).reshape(2, _WIDTHS, _RADII, 4)
-    widths, radii = (x * MILLIMETRE for x in _grid(study))
+    values = np.array([row or nothing for row in results.values()], dtype=float)
+    widths, radii = (x * MILLIMETRE for x in grid(study, 2 * study.machine.stator_outer_radius_mm))
+    values = values.reshape(2, len(widths), len(radii), 4)
     null, period = values
     maps = {
         "aligned_tooth": DesignMap(widths, radii, null[..., 0], null[..., 1]),

@@ -126,7 +126,9 @@ def main(name: str) -> None:
 
     def work(run):
         from pipeline.parallel import default_workers, run_parallel
+        from study.read import check_study
 
+        check_study(study)
         columns = run_parallel(solve_column, tasks_of(study), default_workers(), run.checkpoint(), "sweep")
         dataset = dataset_of(study, columns)
         run.note(designs=int(dataset.torque_Nm_per_m.size), not_buildable=int(dataset.torque_Nm_per_m.isnull().sum()))

@@ -36,8 +36,15 @@ def test_outlines_follow_the_borders(field):
     radius = np.hypot(pieces[..., 0], pieces[..., 1])
     assert radius.max() == pytest.approx(42.5)
     assert (np.abs(radius - 15.95).min(axis=1) > 0.05).all(), "the sliding circle is not a border"
+    bore = pieces[(np.abs(radius - 16.2) < 1e-6).all(axis=1)]
+    openings = 12 * 2 * 16.2 * np.arcsin(1.0 / 16.2)
+    assert _length(bore) == pytest.approx(2 * np.pi * 16.2 - openings, rel=0.002), "gap and opening are both air"
     outer = pieces[(np.abs(radius - 42.5) < 1e-6).all(axis=1)]
-    assert np.hypot(*(outer[:, 1] - outer[:, 0]).T).sum() == pytest.approx(2 * np.pi * 42.5, rel=0.002)
+    assert _length(outer) == pytest.approx(2 * np.pi * 42.5, rel=0.002)
+
+
+def _length(pieces):
+    return np.hypot(*(pieces[:, 1] - pieces[:, 0]).T).sum()
 
 
 @pytest.mark.parametrize("name, teeth", [("half_machine", 6), ("full_machine", 9)])
@@ -71,6 +78,7 @@ def test_dimensions_are_written_in_millimetres(half_machine):
 
 
 def test_settings_of_the_caller_are_left_alone(field):
-    before = matplotlib.rcParams.copy()
-    field_map(field)
-    assert matplotlib.rcParams == before
+    with matplotlib.rc_context({"font.size": 7.0, "axes.spines.top": True}):
+        before = matplotlib.rcParams.copy()
+        field_map(field)
+        assert matplotlib.rcParams == before

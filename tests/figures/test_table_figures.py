@@ -1,5 +1,6 @@
 """Figures from tables: design maps, fits, limits, rotation, match, winding."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -34,6 +35,7 @@ def test_feasible_is_below_the_limit_and_buildable(design_space):
     assert (design.feasible == expected).all()
     assert not design.feasible[:, -1].any(), "what cannot be built is not feasible"
     assert design.feasible.any() and not design.feasible[:, 0].all()
+    assert not replace(design, torque=np.full((6, 7), np.nan)).feasible.any()
     assert design.x[0] == pytest.approx(0.05 * 42.5) and design.y[-1] == pytest.approx(0.47 * 42.5)
 
 
@@ -191,7 +193,7 @@ def test_radius_without_a_match_stays_empty(assert_readable):
     assert table.stator_outer_radius_mm.tolist() == [35.0, 42.5] * 2
     assert table.cost.isna().tolist() == [True, False] * 2
     figure = match_over_radius(table, best=best_row(12, "field", matched(42.5e-3)))
-    assert "12 slots, overload torque scaled linearly" in words(figure) and "least cost" in words(figure)
+    assert "12 slots, overload torque scaled linearly" in words(figure) and "chosen" in words(figure)
     assert_readable(figure)
 
 
@@ -220,6 +222,8 @@ def test_maps_are_drawn_at_the_wheel(assert_readable):
     figure = force_velocity(operating, 2.3e-3, title="7 turns", required=(point,), limits=limit)
     axes = figure.axes[0]
     assert axes.get_xlabel() == "velocity at the wheel / (m/s)" and axes.get_ylabel() == "force at the wheel / kN"
+    assert axes.get_xlim() == pytest.approx((-1500 * 2.3e-3, 1500 * 2.3e-3))
+    assert axes.get_ylim() == pytest.approx((-6 / 2.3, 6 / 2.3), rel=0.02)
     marker = [line for line in axes.lines if line.get_label() == "force peak"][0]
     assert marker.get_xydata().tolist() == [[1.6, -2.614]]
     assert "limit 27.7 V" in words(figure) and "peak phase current / A" in words(figure)

@@ -131,7 +131,7 @@ def wound():
     """The ring with the currents of its winding in the copper, and the exact field of every order."""
     ring = Ring(recoil_permeability=1.05)
     section = section_of(ring.machine, 12, 2)
-    point = OperatingPoint(BETWEEN_NODES, 8e6, 0.4, packing_factor=0.3)
+    point = OperatingPoint(BETWEEN_NODES, 30e6, 0.4, packing_factor=0.3)
     densities = 0.3 * point.phase_densities(POLE_PAIRS, section.layout.phase_axis)
     fields = [
         ring.field(k, angle=point.angle, current=winding_harmonic(section.layout, densities, k)) for k in ORDERS

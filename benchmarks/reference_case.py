@@ -1,0 +1,159 @@
+"""The machine, states and meshes on which codes are compared, in terms that each of them understands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sqrt
+
+import numpy as np
+
+from benchmarks.conforming_mesh import ConformingMesh, conforming_mesh, quadratic
+from geometry.cross_section import CrossSection, mesh_cross_section
+from geometry.half_cell import MeshDensity
+from geometry.machine import Machine, ParallelMagnetisation, hanselman_machine
+from geometry.winding import star_of_slots
+from magnetostatics.elements import LINEAR, QUADRATIC, TriangleOrder
+from magnetostatics.model import MachineMaterials, OperatingPoint
+from materials.library import load_steel
+from materials.magnet import Magnet
+from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, MILLIMETRE
+
+ORDERS = {"P1": LINEAR, "P2": QUADRATIC}
+_HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; beyond it the last secant goes on
+_SAMPLING_GRID = 400_001
+
+
+@dataclass(frozen=True)
+class State:
+    """One operating point of the comparison, with a name."""
+
+    name: str
+    point: OperatingPoint
+
+
+def reference_machine() -> Machine:
+    """12 slots, 10 poles, R_so 42.5, R_ro 15.7, w_bi 3.3, l_m 2.5, g 0.5, w_s 2 mm (thesis chapter 3)."""
+    return hanselman_machine(
+        slots=12,
+        pole_pairs=5,
+        stator_outer_radius=42.5 * MILLIMETRE,
+        rotor_outer_radius=15.7 * MILLIMETRE,
+        back_iron_width=3.3 * MILLIMETRE,
+        magnet_length=2.5 * MILLIMETRE,
+        airgap=0.5 * MILLIMETRE,
+        slot_opening=2.0 * MILLIMETRE,
+        shoe_depth_fraction=0.52,
+        shoe_aspect_ratio=1.0,
+        shaft_radius=5.0 * MILLIMETRE,
+    )
+
+
+def reference_materials() -> MachineMaterials:
+    """35PN270 in stator and rotor, magnets of 1.3 T with the permeability of air."""
+    steel = load_steel("35PN270")
+    return MachineMaterials(steel, steel, Magnet(remanence=1.3, recoil_permeability=1.0))
+
+
+def reference_states() -> tuple[State, ...]:
+    """Rated current on the q axis first; then off it, overload, and no current where the cogging torque is large.
+
+    At all these rotor angles the nodes of the sliding circle meet for meshes with a multiple of 120 edges around it.
+    """
+    rated = 6.0 * sqrt(2) * AMPERE_PER_SQUARE_MILLIMETRE
+    return (
+        State("rated, q axis", OperatingPoint(-21.0 * DEGREE, rated)),
+        State("rated, gamma 15", OperatingPoint(-24.0 * DEGREE, rated, 15.0 * DEGREE)),
+        State("overload, q axis", OperatingPoint(-21.0 * DEGREE, rated * 20.0 / 6.0)),
+        State("no current", OperatingPoint(-22.5 * DEGREE)),
+    )
+
+
+def reference_section(density: MeshDensity = MeshDensity(), whole: bool = False) -> CrossSection:
+    """The meshed reference machine: its antiperiodic half, or the whole of it."""
+    machine = reference_machine()
+    return mesh_cross_section(machine, star_of_slots(machine.slots, machine.pole_pairs), density, whole)
+
+
+@dataclass(frozen=True, eq=False)
+class FieldCase:
+    """One field problem: a meshed section with its materials at one state, to be solved with elements of one order."""
+
+    section: CrossSection
+    materials: MachineMaterials
+    state: State
+    order_name: str  # a key of ORDERS
+
+    @property
+    def order(self) -> TriangleOrder:
+        """The elements of this project's solver."""
+        return ORDERS[self.order_name]
+
+    @property
+    def label(self) -> str:
+        """For tables: part of the machine, order, state."""
+        return f"{self.extent}, {self.order_name}, {self.state.name}"
+
+    @property
+    def extent(self) -> str:
+        """Part of the machine that is meshed."""
+        return "whole" if self.section.sectors == 1 else "sector"
+
+    @cached_property
+    def mesh(self) -> ConformingMesh:
+        """The mesh for other codes; with the middles of edges as nodes for quadratic elements."""
+        mesh = conforming_mesh(self.section, self.state.point.angle)
+        return quadratic(mesh) if self.order is QUADRATIC else mesh
+
+    @property
+    def current_densities(self) -> dict[str, float]:
+        """Current density [A/m^2] over the area of every coil side, by region."""
+        section, point = self.section, self.state.point
+        phases = point.phase_densities(section.machine.pole_pairs, section.layout.phase_axis) * point.packing_factor
+        return {name: float(sign * phases[phase]) for name, (phase, sign) in self.coil_sides.items()}
+
+    @property
+    def coil_sides(self) -> dict[str, tuple[int, int]]:
+        """Phase and direction of the conductors in every coil side, by region."""
+        return {f"slot_{slot}_{side}": self.section.layout.coil_side(slot, side) for slot, side in self.section.coil_sides}
+
+    @property
+    def remanences(self) -> dict[str, tuple[float, float]]:
+        """Remanence vector [T] of every magnet with the rotor turned, by region. Parallel magnetisation only."""
+        machine, remanence = self.section.machine, self.materials.magnet.remanence
+        if not isinstance(machine.magnetisation, ParallelMagnetisation):
+            raise ValueError(f"the comparison holds for parallel magnets, found {machine.magnetisation}")
+        angles = [self.state.point.angle + m * machine.pole_pitch + m * pi for m in range(self.section.magnets)]
+        return {f"magnet_{m}": (remanence * np.cos(t), remanence * np.sin(t)) for m, t in enumerate(angles)}
+
+    @property
+    def torque_ring(self) -> tuple[float, float]:
+        """Inner and outer radius [m] of the stator half of the air gap."""
+        return self.section.machine.mid_gap_radius, self.section.machine.stator_inner_radius
+
+
+def sampled_law(law, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points (b2, nu) between which straight lines keep to a law within a relative tolerance of nu.
+
+    b2: |B|^2 [T^2]; nu: [m/H]. Each line is the longest that holds, found by bisection.
+    """
+    b2 = np.linspace(0.0, _HIGHEST_FLUX_DENSITY**2, _SAMPLING_GRID)
+    nu, chosen = law.nu(b2), [0]
+    while chosen[-1] < len(b2) - 1:
+        chosen.append(_longest_line(b2, nu, chosen[-1], tolerance))
+    return b2[chosen], nu[chosen]
+
+
+def _longest_line(b2: np.ndarray, nu: np.ndarray, start: int, tolerance: float) -> int:
+    """Last index up to which a straight line from ``start`` stays within the tolerance."""
+    low, high = start + 1, len(b2) - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        low, high = (middle, high) if _line_holds(b2, nu, start, middle, tolerance) else (low, middle - 1)
+    return low
+
+
+def _line_holds(b2: np.ndarray, nu: np.ndarray, start: int, end: int, tolerance: float) -> bool:
+    part = slice(start, end + 1)
+    line = np.interp(b2[part], b2[[start, end]], nu[[start, end]])
+    return bool(np.all(np.abs(line - nu[part]) <= tolerance * nu[part]))

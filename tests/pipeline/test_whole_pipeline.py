@@ -1,0 +1,89 @@
+"""All stages on a small study: files, a second run without work, the report's sections, and a wrong study."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+PROJECT = Path(__file__).resolve().parents[2]
+STAGES = "sweep optima limits fits match winding fields figures report".split()
+SMALL = {
+    'id = "motorcycle"': 'id = "small-test-study"',
+    "slots = [9, 12]": "slots = [12]",
+    "[70, 75, 80, 85, 90, 95, 100, 105, 110, 115]": "[75, 80, 85, 90]",
+    "back_iron_steps = 8": "back_iron_steps = 4",
+    "rotor_radius_steps = 7": "rotor_radius_steps = 4",
+}
+FOLDER = PROJECT / "results" / "small-test-study"
+
+
+def run(stage, study):
+    return subprocess.run([sys.executable, "-m", f"pipeline.{stage}", str(study)], cwd=PROJECT, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
+    for old, new in SMALL.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path_factory.mktemp("study") / "small.toml"
+    path.write_text(text, encoding="utf-8")
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    for stage in STAGES:
+        done = run(stage, path)
+        assert done.returncode == 0, f"{stage}: {done.stdout}\n{done.stderr}"
+    yield path
+    shutil.rmtree(FOLDER, ignore_errors=True)
+
+
+def test_results_are_labelled_and_have_their_provenance(study):
+    with xr.open_dataset(FOLDER / "design_map.nc") as data:
+        assert data.torque_Nm_per_m.dims == ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
+        assert int(data.torque_Nm_per_m.notnull().sum()) > 40
+    for file in ("design_map.nc", "optima.csv", "winding.json", "reference_nominal.vtu", "figures/fits.png", "report.html"):
+        provenance = json.loads((FOLDER / f"{file}.provenance.json").read_text())
+        assert provenance["inputs"] and provenance["packages"] and provenance["wall_time_s"] >= 0
+
+
+def test_every_optimum_holds_the_limit(study):
+    optima = pd.read_csv(FOLDER / "optima.csv")
+    assert len(optima) == 4
+    assert optima.limited_T.to_numpy() == pytest.approx(1.2, rel=1e-3)
+    assert (optima.torque_overload_linear_Nm_per_m > 1.2 * optima.torque_overload_Nm_per_m).all()
+
+
+def test_a_second_run_does_no_work(study):
+    for stage in STAGES:
+        assert "unchanged" in run(stage, study).stdout
+
+
+def test_the_report_reads_from_outcome_to_winding(study):
+    html = (FOLDER / "report.html").read_text(encoding="utf-8")
+    titles = re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)
+    assert "Outcome" in titles[0] and "Winding" in titles[-1] and len(titles) == 7
+    assert html.count("data:image/png;base64") == 15
+    assert "regenerative damping 27.7 kNs/m is 12.3 kNs/m below the requirement" in html
+
+
+def test_a_stage_without_its_input_says_what_to_run(study, tmp_path):
+    other = tmp_path / "other.toml"
+    other.write_text(study.read_text(encoding="utf-8").replace("small-test-study", "small-test-never-run"), encoding="utf-8")
+    done = run("fits", other)
+    assert done.returncode == 1
+    assert "which does not exist; run the stage that writes it" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_wrong_study_stops_the_pipeline_with_one_sentence(tmp_path):
+    path = tmp_path / "wrong.toml"
+    text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace("airgap_mm = 0.5", "airgap_mm = -0.5"), encoding="utf-8")
+    done = run("sweep", path)
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1 and "machine.airgap_mm = -0.5" in done.stderr
