@@ -14,7 +14,7 @@ import numpy as np
 from skfem import MeshTri
 
 from geometry.checks import check_machine
-from geometry.half_cell import MeshDensity, rotor_half_cell, stator_half_cell
+from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import GeometryError, Machine
 from geometry.plane_mesh import PlaneMesh
 from geometry.winding import WindingLayout, sector_symmetric
@@ -39,6 +39,7 @@ class CrossSection:
         between`` and boundaries ``outer, stator_start, stator_end, rotor_start, rotor_end, stator_slide, rotor_slide``
     sectors: how many such sectors make up the machine
     antiperiodic: True when the field changes sign from one sector to the next
+    pieces: the half cells of stator and rotor that the mesh is copied from
     """
 
     machine: Machine
@@ -46,6 +47,7 @@ class CrossSection:
     mesh: MeshTri
     sectors: int
     antiperiodic: bool
+    pieces: tuple[Piece, Piece]
 
     @property
     def teeth(self) -> int:
@@ -112,45 +114,68 @@ def mesh_cross_section(
     check_machine(machine)
     sectors = 1 if whole or not sector_symmetric(layout, machine.sectors, machine.is_antiperiodic) else machine.sectors
     antiperiodic = sectors > 1 and machine.is_antiperiodic
-    stator = _copies(stator_half_cell(machine, density), machine.slot_pitch / 2, 2 * machine.slots // sectors, sectors == 1)
-    rotor = _copies(rotor_half_cell(machine, density), machine.pole_pitch / 2, 2 * machine.poles // sectors, sectors == 1)
-    mesh = _join(stator, rotor, machine, sectors)
-    return CrossSection(machine, layout, mesh, sectors, antiperiodic)
+    counts = 2 * machine.slots // sectors, 2 * machine.poles // sectors
+    cells = half_cells(machine, density)
+    stator, rotor = (Piece.of(cell, machine, count, sectors == 1) for cell, count in zip(cells, counts))
+    return CrossSection(machine, layout, _join(stator, rotor, machine, sectors), sectors, antiperiodic, (stator, rotor))
 
 
-@dataclass(frozen=True)
-class _Piece:
-    """Stator or rotor sector: points (n, 2), triangles (m, 3), region and half-cell number per triangle, named node sets."""
-
-    points: np.ndarray
-    triangles: np.ndarray
-    region: np.ndarray
-    copy: np.ndarray
-    start: np.ndarray
-    end: np.ndarray
-    region_names: tuple[str, ...]
-
-
-def _copies(cell: PlaneMesh, width: float, count: int, closed: bool) -> _Piece:
-    """Mirror and turn a half cell ``count`` times, starting half a pitch below angle zero.
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Stator or rotor of a sector: a half cell, mirrored and turned ``count`` times from half a pitch below angle zero on.
 
     Copy h covers the angles (h - 1) width .. h width; even copies are mirrored. Nodes on shared rays are shared.
+    cell, mesh: the half cell and its triangles; nodes: number in the piece of every half-cell node in every copy (count, n)
     """
-    nodes = _shared_numbering(cell, width, count, closed)
-    points = np.empty((nodes.max() + 1, 2))
-    for h in range(count):
-        points[nodes[h]] = _place(cell.points, h, width)
-    triangles = nodes[:, cell.triangles].reshape(-1, 3)
-    start, end = cell.nodes_at_angle(width), cell.nodes_at_angle(width)
-    return _Piece(
-        points,
-        _counter_clockwise(points, triangles),
-        np.tile(cell.region, count),
-        np.repeat(np.arange(count), len(cell.triangles)),
-        nodes[0][start],
-        nodes[-1][end],
-        cell.region_names,
-    )
+
+    cell: HalfCell
+    mesh: PlaneMesh
+    nodes: np.ndarray
+    width: float
+
+    @classmethod
+    def of(cls, cell: HalfCell, machine: Machine, count: int, closed: bool) -> Piece:
+        """Mesh a half cell and number its copies; closed: the last copy meets the first."""
+        mesh, width = cell.mesh(machine), cell.width(machine)
+        return cls(cell, mesh, _shared_numbering(mesh, width, count, closed), width)
+
+    @property
+    def count(self) -> int:
+        """Number of half cells."""
+        return len(self.nodes)
+
+    def place(self, points: np.ndarray) -> np.ndarray:
+        """Points of the piece (2, m) from those of the half cell (n, 2)."""
+        placed = np.empty((2, self.nodes.max() + 1))
+        for h, nodes in enumerate(self.nodes):
+            placed[:, nodes] = _place(points, h, self.width).T
+        return placed
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Triangles (3, m) of the piece, counter-clockwise, copy by copy."""
+        points = self.place(self.mesh.points).T
+        return _counter_clockwise(points, self.nodes[:, self.mesh.triangles].reshape(-1, 3)).T
+
+    @property
+    def region(self) -> np.ndarray:
+        """Region index of every triangle."""
+        return np.tile(self.mesh.region, self.count)
+
+    @property
+    def copy(self) -> np.ndarray:
+        """Number of the half cell that every triangle belongs to."""
+        return np.repeat(np.arange(self.count), len(self.mesh.triangles))
+
+    @property
+    def start(self) -> np.ndarray:
+        """Nodes on the first ray, outwards."""
+        return self.nodes[0][self.mesh.nodes_at_angle(self.width)]
+
+    @property
+    def end(self) -> np.ndarray:
+        """Nodes on the last ray, outwards."""
+        return self.nodes[-1][self.mesh.nodes_at_angle(self.width)]
 
 
 def _place(points: np.ndarray, copy: int, width: float) -> np.ndarray:
@@ -184,28 +209,27 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def _join(stator: _Piece, rotor: _Piece, machine: Machine, sectors: int) -> MeshTri:
-    offset = len(stator.points)
-    points = np.vstack([stator.points, rotor.points])
-    triangles = np.vstack([stator.triangles, rotor.triangles + offset])
-    mesh = MeshTri(points.T.copy(), triangles.T.copy(), sort_t=False, validate=False)
-    first_rotor_triangle = len(stator.triangles)
-    names = _stator_names(stator, machine.slots) | {
-        name: first_rotor_triangle + where for name, where in _rotor_names(rotor).items() if name != "gap"
-    }
-    names["gap"] = np.concatenate([names["gap"], first_rotor_triangle + _rotor_names(rotor)["gap"]])
+def _join(stator: Piece, rotor: Piece, machine: Machine, sectors: int) -> MeshTri:
+    points = [piece.place(piece.mesh.points) for piece in (stator, rotor)]
+    offset, first_rotor_triangle = points[0].shape[1], stator.triangles.shape[1]
+    triangles = np.ascontiguousarray(np.hstack([stator.triangles, rotor.triangles + offset]))
+    mesh = MeshTri(np.hstack(points), triangles, sort_t=False, validate=False)
+    names = _stator_names(stator, machine.slots)
+    for name, where in _rotor_names(rotor).items():
+        where = where + first_rotor_triangle
+        names[name] = np.concatenate([names[name], where]) if name in names else where
     mesh = mesh.with_subdomains(names)
     return mesh.with_boundaries(_boundaries(mesh, stator, rotor, machine, sectors))
 
 
-def _regions(piece: _Piece) -> dict[str, np.ndarray]:
-    return {name: np.flatnonzero(piece.region == index) for index, name in enumerate(piece.region_names)}
+def _regions(piece: Piece) -> dict[str, np.ndarray]:
+    return {name: np.flatnonzero(piece.region == index) for index, name in enumerate(piece.mesh.region_names)}
 
 
-def _stator_names(stator: _Piece, slots: int) -> dict[str, np.ndarray]:
+def _stator_names(stator: Piece, slots: int) -> dict[str, np.ndarray]:
     regions = _regions(stator)
     copper = regions.pop("copper")
-    sides = _coil_sides(slots, stator.copy.max() + 1)
+    sides = _coil_sides(slots, stator.count)
     coils = {f"slot_{slot}_{side}": copper[stator.copy[copper] == h] for h, (slot, side) in enumerate(sides)}
     return {"stator_iron": regions.pop("iron")} | regions | coils
 
@@ -215,15 +239,15 @@ def _coil_sides(slots: int, half_cells: int) -> tuple[tuple[int, str], ...]:
     return tuple(((h - 1) // 2, "R") if h % 2 else ((h // 2 - 1) % slots, "L") for h in range(half_cells))
 
 
-def _rotor_names(rotor: _Piece) -> dict[str, np.ndarray]:
+def _rotor_names(rotor: Piece) -> dict[str, np.ndarray]:
     regions = _regions(rotor)
     magnet = regions.pop("magnet")
-    magnets = {f"magnet_{m}": magnet[rotor.copy[magnet] // 2 == m] for m in range((rotor.copy.max() + 1) // 2)}
+    magnets = {f"magnet_{m}": magnet[rotor.copy[magnet] // 2 == m] for m in range(rotor.count // 2)}
     return {"rotor_iron": regions.pop("iron")} | regions | magnets
 
 
-def _boundaries(mesh: MeshTri, stator: _Piece, rotor: _Piece, machine: Machine, sectors: int) -> dict[str, np.ndarray]:
-    offset = len(stator.points)
+def _boundaries(mesh: MeshTri, stator: Piece, rotor: Piece, machine: Machine, sectors: int) -> dict[str, np.ndarray]:
+    offset = stator.nodes.max() + 1
     radius = np.hypot(*mesh.p)
     is_rotor = np.arange(mesh.p.shape[1]) >= offset
     on_slide = np.abs(radius - machine.mid_gap_radius) < 1e-9

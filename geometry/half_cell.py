@@ -42,18 +42,74 @@ class MeshDensity:
         return 2 * pi * machine.mid_gap_radius / self.edges_around(machine)
 
 
-def stator_half_cell(machine: Machine, density: MeshDensity) -> PlaneMesh:
-    """From the axis of tooth 0 (angle 0) to the centre of slot 0 (half a slot pitch); regions iron, opening, copper, gap."""
-    edges = density.edges_around(machine) // (2 * machine.slots)
-    drawing = _draw_stator(machine, density, edges)
-    return _with_gap(triangulate(drawing), machine.stator_inner_radius, machine, density, edges, machine.slot_pitch / 2)
+class HalfCell:
+    """Half a pitch of stator or rotor: how it is drawn for a machine, and how it is meshed."""
+
+    def __init__(self, density: MeshDensity, edges: int):
+        self.density, self.edges = density, edges  # edges of the half pitch on the sliding circle
+
+    def width(self, machine: Machine) -> float:
+        """Angle of the half pitch [rad]."""
+        raise NotImplementedError
+
+    def rim_radius(self, machine: Machine) -> float:
+        """Radius of the circle between the drawing and the structured gap layers [m]."""
+        raise NotImplementedError
+
+    def draw(self, machine: Machine) -> Drawing:
+        """Outline of everything but the gap layers; the same points and curves for every machine."""
+        raise NotImplementedError
+
+    def mesh(self, machine: Machine) -> PlaneMesh:
+        """Triangles of a machine, with the gap layers last."""
+        drawn = triangulate(self.draw(machine))
+        rim = drawn.nodes_at_radius(self.rim_radius(machine))
+        points = np.vstack([drawn.points, self.gap_points(machine, drawn.points[rim])])
+        grid = np.vstack([rim, np.arange(len(drawn.points), len(points)).reshape(self.density.gap_layers, -1)])
+        triangles = _split_quads(grid)
+        region = np.concatenate([drawn.region, np.full(len(triangles), len(drawn.region_names))])
+        return PlaneMesh(points, np.vstack([drawn.triangles, triangles]), region, drawn.region_names + ("gap",))
+
+    def gap_points(self, machine: Machine, rim: np.ndarray) -> np.ndarray:
+        """Nodes (n, 2) [m] of the layers from the rim, whose nodes are given by rising angle, to the sliding circle."""
+        share = np.arange(1, self.density.gap_layers + 1)[:, None] / self.density.gap_layers
+        equal = np.linspace(0, self.width(machine), self.edges + 1)
+        angles = (1 - share) * np.arctan2(rim[:, 1], rim[:, 0]) + share * equal
+        radius = self.rim_radius(machine)
+        radii = radius + share * (machine.mid_gap_radius - radius)
+        return np.stack([radii * np.cos(angles), radii * np.sin(angles)], axis=-1).reshape(-1, 2)
 
 
-def rotor_half_cell(machine: Machine, density: MeshDensity) -> PlaneMesh:
+class StatorHalfCell(HalfCell):
+    """From the axis of tooth 0 (angle 0) to the centre of slot 0; regions iron, opening, copper, gap."""
+
+    def width(self, machine):
+        return machine.slot_pitch / 2
+
+    def rim_radius(self, machine):
+        return machine.stator_inner_radius
+
+    def draw(self, machine):
+        return _draw_stator(machine, self.density, self.edges)
+
+
+class RotorHalfCell(HalfCell):
     """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet, (between,) gap."""
-    edges = density.edges_around(machine) // (2 * machine.poles)
-    drawing = _draw_rotor(machine, density, edges)
-    return _with_gap(triangulate(drawing), machine.rotor_outer_radius, machine, density, edges, machine.pole_pitch / 2)
+
+    def width(self, machine):
+        return machine.pole_pitch / 2
+
+    def rim_radius(self, machine):
+        return machine.rotor_outer_radius
+
+    def draw(self, machine):
+        return _draw_rotor(machine, self.density, self.edges)
+
+
+def half_cells(machine: Machine, density: MeshDensity) -> tuple[StatorHalfCell, RotorHalfCell]:
+    """The half cells of a machine at a mesh density."""
+    edges = density.edges_around(machine)
+    return StatorHalfCell(density, edges // (2 * machine.slots)), RotorHalfCell(density, edges // (2 * machine.poles))
 
 
 def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
@@ -136,24 +192,6 @@ def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     d.region("magnet", "core", "top", "top_edge", "core_edge")
     d.region("between", "core_edge", "top_edge", "top_pole", "core_pole")
     return d
-
-
-def _with_gap(mesh: PlaneMesh, radius: float, m: Machine, density: MeshDensity, edges: int, angle: float) -> PlaneMesh:
-    """Add structured layers from the circle of this radius to the sliding circle, whose nodes are equally spaced."""
-    rim = mesh.nodes_at_radius(radius)
-    rim_angles = np.arctan2(mesh.points[rim, 1], mesh.points[rim, 0])
-    share = np.arange(1, density.gap_layers + 1)[:, None] / density.gap_layers
-    angles = (1 - share) * rim_angles + share * np.linspace(0, angle, edges + 1)
-    radii = radius + share * (m.mid_gap_radius - radius)
-    points = np.stack([radii * np.cos(angles), radii * np.sin(angles)], axis=-1).reshape(-1, 2)
-    grid = np.vstack([rim, len(mesh.points) + np.arange(len(points)).reshape(density.gap_layers, -1)])
-    triangles = _split_quads(grid)
-    return PlaneMesh(
-        np.vstack([mesh.points, points]),
-        np.vstack([mesh.triangles, triangles]),
-        np.concatenate([mesh.region, np.full(len(triangles), len(mesh.region_names))]),
-        mesh.region_names + ("gap",),
-    )
 
 
 def _split_quads(grid: np.ndarray) -> np.ndarray:

@@ -44,27 +44,42 @@ class Entries:
         return np.bincount(self.position, weights=local.ravel() * self.sign, minlength=len(self.keys))
 
 
-class JoinedSystem:
-    """The matrix with stator and rotor joined at one turn: linear part as a product, whole matrix as a factorisation.
+class JoinedPattern:
+    """Pattern of the matrix with stator and rotor joined at one number of edges, and its symbolic factorisation.
 
-    iron, linear, band: addresses of the iron, of the other elements, and of the elements on the rotor side of the gap
+    iron: addresses of the iron entries; others: sorted keys of the linear entries, with and without the rotor's turn
     """
 
-    def __init__(self, iron: Entries, linear: np.ndarray, linear_keys: np.ndarray, band: Entries, band_values, size: int):
-        keys = _merge(iron.keys, linear_keys, band.keys)
-        self._iron_position = np.searchsorted(keys, iron.keys)
-        self._iron = iron
-        self._linear = np.zeros(len(keys))
-        self._linear[np.searchsorted(keys, linear_keys)] += linear
-        self._linear[np.searchsorted(keys, band.keys)] += band_values
-        self._rows, self._columns, self._size = keys % size, keys // size, size
-        self._system: SymmetricSystem | None = None
+    def __init__(self, iron: Entries, others: tuple[np.ndarray, ...], size: int):
+        keys = _merge(iron.keys, *others)
+        self.size, self.iron = size, iron
+        self.iron_position, *self.other_positions = (np.searchsorted(keys, part) for part in (iron.keys, *others))
+        self.rows, self.columns = keys % size, keys // size
+        self.column_starts = np.searchsorted(self.columns, np.arange(size + 1))
+
+    @cached_property
+    def system(self) -> SymmetricSystem:
+        """The matrix to factorise; every design and current with this pattern shares the analysis."""
+        return SymmetricSystem(self.rows, self.columns, self.size)
+
+
+class JoinedSystem:
+    """The matrix of one model at one rotor angle: linear part as a product, whole matrix as a factorisation.
+
+    values: of the linear entries, one array for each of the pattern's ``others``
+    """
+
+    def __init__(self, pattern: JoinedPattern, values: tuple[np.ndarray, ...]):
+        self.pattern = pattern
+        self._linear = np.zeros(len(pattern.rows))
+        for position, part in zip(pattern.other_positions, values, strict=True):
+            self._linear[position] += part
 
     @cached_property
     def linear_matrix(self) -> sp.csc_matrix:
         """Lower triangle of the linear part."""
-        starts = np.searchsorted(self._columns, np.arange(self._size + 1))
-        return sp.csc_matrix((self._linear, self._rows, starts), shape=(self._size, self._size))
+        size = self.pattern.size
+        return sp.csc_matrix((self._linear, self.pattern.rows, self.pattern.column_starts), shape=(size, size))
 
     @cached_property
     def _diagonal(self) -> np.ndarray:
@@ -75,13 +90,11 @@ class JoinedSystem:
         return self.linear_matrix @ u + self.linear_matrix.T @ u - self._diagonal * u
 
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
-        """Factorise linear part plus the local iron entries (K, E)."""
-        if self._system is None:
-            self._system = SymmetricSystem(self._rows, self._columns, self._size)
+        """Factorise linear part plus the local iron entries (K, E). Good until the next call for the same pattern."""
         values = self._linear.copy()
-        values[self._iron_position] += self._iron.sum(iron_tangent)
-        self._system.factorise(values)
-        return self._system
+        values[self.pattern.iron_position] += self.pattern.iron.sum(iron_tangent)
+        self.pattern.system.factorise(values)
+        return self.pattern.system
 
 
 def _merge(*sorted_keys: np.ndarray) -> np.ndarray:

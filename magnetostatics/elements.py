@@ -66,9 +66,9 @@ def dof_locations(mesh: MeshTri, order: TriangleOrder) -> np.ndarray:
     return np.hstack([mesh.p, mesh.p[:, mesh.facets].mean(axis=1)])
 
 
-def refine_order(mesh: MeshTri, a: np.ndarray) -> np.ndarray:
-    """Degrees of freedom of the quadratic functions that describe the same field as linear ones (n,)."""
-    return np.concatenate([a, a[mesh.facets].mean(axis=0)])
+def refine_order(facets: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Degrees of freedom of the quadratic functions (n,) that describe the same field as linear ones; facets (2, k)."""
+    return np.concatenate([a, a[facets].mean(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)

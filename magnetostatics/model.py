@@ -10,10 +10,12 @@ from time import process_time
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from magnetostatics.assembly import Entries, JoinedSystem
-from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, element_dofs, refine_order
+from magnetostatics.assembly import JoinedSystem
+from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, refine_order
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
-from magnetostatics.unknowns import Turn, number_unknowns
+from magnetostatics.topology import IRON, Topology
+from magnetostatics.unknowns import Turn, Unknowns
 from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 from units import MU_0
@@ -67,7 +69,8 @@ class FieldModel:
     """Assembles and solves the field of one meshed cross-section with given materials.
 
     What depends on neither current nor angle is prepared once. The system joined at an angle is kept until another angle
-    is asked for, so that several currents at one angle share its analysis.
+    is asked for, so that several currents at one angle share it.
+    topology: of another model whose cross-section has the same triangles; shared, it saves half of the preparation
     """
 
     def __init__(
@@ -76,16 +79,40 @@ class FieldModel:
         materials: MachineMaterials,
         settings: NewtonSettings = NewtonSettings(),
         order: TriangleOrder = QUADRATIC,
+        topology: Topology | None = None,
     ):
-        self.section, self.materials, self.settings, self.order = section, materials, settings, order
-        dofs, self.size = element_dofs(section.mesh, order)
-        self.elements = Elements.of(order, section.mesh.p[:, section.mesh.t], dofs)
-        self.unknowns = number_unknowns(section, order)
-        self._laws = ((self._region("stator_iron"), materials.stator_steel), (self._region("rotor_iron"), materials.rotor_steel))
+        self.section, self.materials, self.settings = section, materials, settings
+        self.topology = topology or Topology(section, order)
+        self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
+        self._laws = tuple(zip(map(self._region, IRON), (materials.stator_steel, materials.rotor_steel)))
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
+    @property
+    def order(self) -> TriangleOrder:
+        return self.topology.order
+
+    @property
+    def unknowns(self) -> Unknowns:
+        return self.topology.unknowns
+
+    @property
+    def size(self) -> int:
+        """Degrees of freedom of the mesh, free or not."""
+        return self.topology.size
+
+    @property
+    def rotor_band(self) -> np.ndarray:
+        """Elements of the gap on the rotor side of the sliding circle."""
+        return self.topology.rotor_band
+
+    def like(self, section: CrossSection | None = None, materials: MachineMaterials | None = None) -> FieldModel:
+        """The same problem with moved nodes (``geometry.morph``) or other materials, sharing the topology."""
+        other = FieldModel(section or self.section, materials or self.materials, self.settings, topology=self.topology)
+        other._coarse_topology = self._coarse_topology
+        return other
+
     def _region(self, name: str) -> Elements:
-        return self.elements.take(self.section.mesh.subdomains[name])
+        return self.elements.take(self.topology.regions[name])
 
     # ---- sources ----------------------------------------------------------------------------------------------
 
@@ -124,14 +151,6 @@ class FieldModel:
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
-    @cached_property
-    def rotor_band(self) -> np.ndarray:
-        """Elements of the gap on the rotor side of the sliding circle: the only ones that change with the angle."""
-        mesh = self.section.mesh
-        gap = mesh.subdomains["gap"]
-        centroids = mesh.p[:, mesh.t[:, gap]].mean(axis=1)
-        return gap[np.hypot(*centroids) < self.section.machine.mid_gap_radius]
-
     def band_elements(self, rest: float) -> Elements:
         """The rotor side of the gap, sheared so that the sliding circle moves by -rest [rad] against the rotor."""
         corners = self.section.mesh.p[:, self.section.mesh.t[:, self.rotor_band]]
@@ -140,37 +159,25 @@ class FieldModel:
         return Elements.of(self.order, corners, self.elements.dofs[:, self.rotor_band])
 
     @cached_property
-    def _iron_entries(self) -> Entries:
-        dofs = np.concatenate([elements.dofs for elements, _ in self._laws], axis=1)
-        return Entries.of(self.order.pairs, dofs, self.unknowns.column, self.unknowns.sign, self.unknowns.count)
+    def _linear_values(self) -> np.ndarray:
+        """Entries of the linear part without the rotor side of the gap."""
+        which = self.topology.linear
+        elements = self.elements.take(which)
+        return self.topology.linear_entries.sum(elements.stiffness_basis.sum(1) * self._reluctivity[which])
 
     @cached_property
-    def _linear(self) -> tuple[np.ndarray, np.ndarray]:
-        """(keys, values) of the linear part without the rotor side of the gap."""
-        reluctivity = self._linear_reluctivity()
-        reluctivity[self.rotor_band] = 0.0
-        which = np.flatnonzero(reluctivity)
-        elements = self.elements.take(which)
-        entries = Entries.of(self.order.pairs, elements.dofs, self.unknowns.column, self.unknowns.sign, self.unknowns.count)
-        return entries.keys, entries.sum(elements.stiffness_basis.sum(1) * reluctivity[which])
-
-    def _linear_reluctivity(self) -> np.ndarray:
-        subdomains = self.section.mesh.subdomains
+    def _reluctivity(self) -> np.ndarray:
+        """Of air, copper and magnets, per element of the mesh [m/H]."""
         reluctivity = np.full(self.section.mesh.nelements, 1 / MU_0)
         for m in range(self.section.magnets):
-            reluctivity[subdomains[f"magnet_{m}"]] /= self.materials.magnet.recoil_permeability
-        for name in ("stator_iron", "rotor_iron"):
-            reluctivity[subdomains[name]] = 0.0
+            reluctivity[self.topology.regions[f"magnet_{m}"]] /= self.materials.magnet.recoil_permeability
         return reluctivity
 
     def _join(self, turn: Turn) -> JoinedSystem:
         if self._joined is None or self._joined[0] != turn:
-            column, sign = self.unknowns.turned(turn.edges)
-            band = self.band_elements(turn.rest)
-            entries = Entries.of(self.order.pairs, band.dofs, column, sign, self.unknowns.count)
-            values = entries.sum(band.stiffness_basis.sum(1) / MU_0)
-            keys, linear = self._linear
-            self._joined = turn, JoinedSystem(self._iron_entries, linear, keys, entries, values, self.unknowns.count)
+            pattern, entries = self.topology.pattern(turn.edges)
+            band = entries.sum(self.band_elements(turn.rest).stiffness_basis.sum(1) / MU_0)
+            self._joined = turn, JoinedSystem(pattern, (self._linear_values, band))
         return self._joined[1]
 
     # ---- Newton -----------------------------------------------------------------------------------------------
@@ -183,42 +190,34 @@ class FieldModel:
         Raises FieldSolutionError when the iteration does not converge.
         """
         began = process_time()
-        turn = self.unknowns.turn(point.angle)
-        system = self._join(turn)
-        column, sign = self.unknowns.turned(turn.edges)
-        load = self._reduce(self.load(point), column, sign)
+        problem = _Problem(self, point)
+        first = problem.free_values(self._coarse_potential(point) if start is None else start.a)
+        u, record = newton(first, np.linalg.norm(problem.load), problem.residual, problem.direction, self.settings)
+        return FieldSolution(self, point, problem.expand(u), record, process_time() - began)
 
-        def expand(u):
-            return u[column] * sign
+    def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:
+        """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
+        problem = _Problem(self, point)
+        return problem.residual(problem.free_values(a))
 
-        def residual(u):
-            return load - system.linear_product(u) - self._reduce(self._iron_force(expand(u)), column, sign)
-
-        def direction(u, r):
-            return system.factorise(self._iron_tangent(expand(u))).solve(r)
-
-        first = self._free_values(self._coarse_potential(point) if start is None else start.a)
-        u, record = newton(first, np.linalg.norm(load), residual, direction, self.settings)
-        return FieldSolution(self, point, expand(u), record, process_time() - began)
+    def tangent(self, solution: FieldSolution) -> TangentSystem:
+        """The tangent matrix at a solution of this model, factorised."""
+        problem = _Problem(self, solution.point)
+        return TangentSystem(problem, problem.system.factorise(self._iron_tangent(solution.a)))
 
     def _coarse_potential(self, point: OperatingPoint) -> np.ndarray:
         """Potential to start from: zero for linear elements, their solution for quadratic ones (n,)."""
         if self.order is LINEAR:
             return np.zeros(self.size)
-        return refine_order(self.section.mesh, self._coarse_model.solve(point).a)
+        return refine_order(self.topology.facets, self._coarse_model.solve(point).a)
 
     @cached_property
     def _coarse_model(self) -> FieldModel:
-        return FieldModel(self.section, self.materials, _COARSE, LINEAR)
+        return FieldModel(self.section, self.materials, _COARSE, topology=self._coarse_topology)
 
-    def _reduce(self, vector: np.ndarray, column: np.ndarray, sign: np.ndarray) -> np.ndarray:
-        return np.bincount(column, weights=vector * sign, minlength=self.unknowns.count)
-
-    def _free_values(self, a: np.ndarray) -> np.ndarray:
-        free = np.zeros(self.unknowns.count)
-        known = (self.unknowns.sign == 1) & ~np.isin(np.arange(self.size), self.unknowns.rotor_slide)
-        free[self.unknowns.column[known]] = a[known]
-        return free
+    @cached_property
+    def _coarse_topology(self) -> Topology:
+        return Topology(self.section, LINEAR)
 
     def _iron_force(self, a: np.ndarray) -> np.ndarray:
         """integral nu(|B|^2) grad A . grad v over the iron (n,)."""
@@ -232,6 +231,52 @@ class FieldModel:
     def _iron_tangent(self, a: np.ndarray) -> np.ndarray:
         """Local tangent matrices of the iron (K, E)."""
         return np.concatenate([_tangent(elements, law, a) for elements, law in self._laws], axis=1)
+
+
+class _Problem:
+    """One operating point of a model in terms of its free unknowns u (m,)."""
+
+    def __init__(self, model: FieldModel, point: OperatingPoint):
+        turn = model.unknowns.turn(point.angle)
+        self.model, self.system = model, model._join(turn)
+        self.column, self.sign = model.unknowns.turned(turn.edges)
+        self.load = self.reduce(model.load(point))
+
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """All degrees of freedom (n,) from the free unknowns."""
+        return u[self.column] * self.sign
+
+    def reduce(self, vector: np.ndarray) -> np.ndarray:
+        """Forces on the free unknowns from those on all degrees of freedom."""
+        return np.bincount(self.column, weights=vector * self.sign, minlength=self.model.unknowns.count)
+
+    def free_values(self, a: np.ndarray) -> np.ndarray:
+        """Free unknowns from all degrees of freedom; the rotor side of the sliding circle does not count."""
+        return a[self.model.unknowns.free_dofs]
+
+    def residual(self, u: np.ndarray) -> np.ndarray:
+        """Load minus field forces (m,) [A]."""
+        return self.load - self.system.linear_product(u) - self.reduce(self.model._iron_force(self.expand(u)))
+
+    def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
+        """Newton step (m,)."""
+        return self.system.factorise(self.model._iron_tangent(self.expand(u))).solve(residual)
+
+
+@dataclass(frozen=True, eq=False)
+class TangentSystem:
+    """Answers how the field changes: small load in, small change of the potential out.
+
+    It is good until the model, or another one that shares its topology, is solved at the same turn of the rotor.
+    """
+
+    problem: _Problem
+    system: SymmetricSystem
+
+    def response(self, load: np.ndarray) -> np.ndarray:
+        """Change of the potential (n,) for a change of the load: (n,) on all, or (m,) on the free unknowns [A]."""
+        reduced = load if len(load) == self.problem.model.unknowns.count else self.problem.reduce(load)
+        return self.problem.expand(self.system.solve(reduced))
 
 
 def _tangent(elements: Elements, law: Reluctivity, a: np.ndarray) -> np.ndarray:

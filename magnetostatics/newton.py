@@ -53,6 +53,8 @@ def newton(
     ones are halved until the residual falls.
     Raises FieldSolutionError with the record when the tolerance is not reached.
     """
+    if scale == 0.0:  # neither magnets nor currents
+        return np.zeros_like(start), NewtonRecord((), ())
     u, r, residuals, steps = start, residual(start), [], []
     while not residuals or residuals[-1] > settings.tolerance:
         if len(residuals) == settings.most_iterations:

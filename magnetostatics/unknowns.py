@@ -36,6 +36,7 @@ class Unknowns:
     column: np.ndarray
     sign: np.ndarray
     count: int
+    free_dofs: np.ndarray  # degree of freedom of every free unknown
     stator_slide: np.ndarray  # in the order of angle, without the end of the sector
     rotor_slide: np.ndarray  # in the order of angle, with the end of the sector
     edge_angle: float  # of one edge of the sliding circle [rad]
@@ -80,6 +81,7 @@ def number_unknowns(section: CrossSection, order: TriangleOrder) -> Unknowns:
         column=np.where(is_free[master], number[master], 0),
         sign=sign,
         count=int(is_free.sum()),
+        free_dofs=np.flatnonzero(is_free),
         stator_slide=masters,
         rotor_slide=rotor_slide,
         edge_angle=2 * pi * steps_per_edge / section.sectors / len(masters),

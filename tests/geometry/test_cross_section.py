@@ -7,7 +7,7 @@ import pytest
 
 from geometry.checks import check_machine
 from geometry.cross_section import mesh_cross_section
-from geometry.half_cell import MeshDensity, stator_half_cell
+from geometry.half_cell import MeshDensity, half_cells
 from geometry.machine import GeometryError, ParallelMagnetisation, RadialMagnetisation, hanselman_machine
 from geometry.winding import star_of_slots
 
@@ -100,9 +100,9 @@ def test_probes_lie_in_teeth_and_back_iron():
 
 
 def test_mesh_does_not_depend_on_what_was_meshed_before():
-    first = stator_half_cell(machine(), MeshDensity())
-    stator_half_cell(machine(slots=9), MeshDensity())
-    again = stator_half_cell(machine(), MeshDensity())
+    first = half_cells(machine(), MeshDensity())[0].mesh(machine())
+    half_cells(machine(slots=9), MeshDensity())[0].mesh(machine(slots=9))
+    again = half_cells(machine(), MeshDensity())[0].mesh(machine())
     assert (first.points == again.points).all() and (first.triangles == again.triangles).all()
 
 

@@ -1,0 +1,148 @@
+"""Another machine on the same triangles: nodes move, connectivity, names and numbering stay.
+
+Nodes on the outline keep their place along their curve; those inside follow by a Laplace equation on the half cell, with
+small triangles stiffer than large ones; the gap layers are laid anew, so the sliding circle stays equally spaced. A
+design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a field
+solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from geometry.checks import check_machine
+from geometry.cross_section import CrossSection, Piece
+from geometry.machine import GeometryError, Machine
+from geometry.plane_mesh import Drawing
+
+_ON_CURVE = 1e-9  # m
+
+
+class Morpher:
+    """Moves the nodes of one meshed cross-section onto other machines with the same slots, poles and magnet pattern."""
+
+    def __init__(self, section: CrossSection):
+        self.section = section
+        self._pieces = [_PieceMorpher(piece, section.machine) for piece in section.pieces]
+
+    def to(self, machine: Machine) -> CrossSection:
+        """The cross-section of another machine on the same triangles.
+
+        Raises GeometryError when the machine cannot be built or triangles would turn over.
+        """
+        check_machine(machine)
+        base = self.section.machine
+        if (machine.slots, machine.poles) != (base.slots, base.poles):
+            raise GeometryError("a mesh can only be moved onto a machine with the same slots and poles: mesh it anew")
+        points = np.hstack([piece.points(machine) for piece in self._pieces])
+        mesh = replace(self.section.mesh, doflocs=points)
+        if _areas(points, mesh.t).min() <= 0:
+            raise GeometryError("the mesh cannot be moved that far, triangles would turn over: mesh the machine anew")
+        return replace(self.section, machine=machine, mesh=mesh)
+
+
+@dataclass(frozen=True, eq=False)
+class _PieceMorpher:
+    piece: Piece
+    base: Machine
+
+    def points(self, machine: Machine) -> np.ndarray:
+        """Points of the piece (2, m) for a machine."""
+        moved = self.drawn_points + self._follow(self._outline(machine) - self.drawn_points[self.outline_nodes])
+        gap = self.piece.cell.gap_points(machine, moved[self.rim])
+        return self.piece.place(np.vstack([moved, gap]))
+
+    @cached_property
+    def drawn_points(self) -> np.ndarray:
+        """Half-cell nodes that do not belong to the gap layers alone (n, 2)."""
+        gap_nodes = self.piece.cell.density.gap_layers * (self.piece.cell.edges + 1)
+        return self.piece.mesh.points[: len(self.piece.mesh.points) - gap_nodes]
+
+    @cached_property
+    def rim(self) -> np.ndarray:
+        """Nodes between drawing and gap layers, by rising angle."""
+        nodes = self.piece.mesh.nodes_at_radius(self.piece.cell.rim_radius(self.base))
+        return nodes[nodes < len(self.drawn_points)]
+
+    @cached_property
+    def _curves(self) -> dict[tuple[str, str], tuple[np.ndarray, np.ndarray]]:
+        """Nodes on every curve of the drawing and their share of the way along it."""
+        drawing = self.piece.cell.draw(self.base)
+        return {curve: _along(drawing, curve, self.drawn_points) for curve in drawing.curves}
+
+    @cached_property
+    def outline_nodes(self) -> np.ndarray:
+        return np.unique(np.concatenate([nodes for nodes, _ in self._curves.values()]))
+
+    def _outline(self, machine: Machine) -> np.ndarray:
+        """Places (k, 2) of the outline nodes for a machine."""
+        drawing, places = self.piece.cell.draw(machine), self.drawn_points.copy()
+        for curve, (nodes, share) in self._curves.items():
+            places[nodes] = _at(drawing, curve, share)
+        return places[self.outline_nodes]
+
+    @cached_property
+    def _inside(self) -> np.ndarray:
+        return np.setdiff1d(np.arange(len(self.drawn_points)), self.outline_nodes)
+
+    @cached_property
+    def _stiffness(self) -> sp.csr_matrix:
+        """Laplace matrix of the half cell, every triangle weighted by the inverse of its area."""
+        triangles = self.piece.mesh.triangles
+        triangles = triangles[(triangles < len(self.drawn_points)).all(axis=1)]
+        corners = self.drawn_points[triangles]
+        opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
+        weight = 1 / np.abs(_areas(self.drawn_points.T, triangles.T)) ** 2
+        local = np.einsum("eid,ejd,e->eij", opposite, opposite, weight)
+        rows, columns = np.repeat(triangles, 3, axis=1), np.tile(triangles, 3)
+        size = len(self.drawn_points)
+        return sp.csr_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+
+    @cached_property
+    def _factor(self):
+        return splu(self._stiffness[self._inside][:, self._inside].tocsc())
+
+    def _follow(self, outline_moves: np.ndarray) -> np.ndarray:
+        """Moves of all nodes (n, 2) from those of the outline (k, 2)."""
+        moves = np.zeros_like(self.drawn_points)
+        moves[self.outline_nodes] = outline_moves
+        moves[self._inside] = self._factor.solve(-self._stiffness[self._inside][:, self.outline_nodes] @ outline_moves)
+        return moves
+
+
+def _along(drawing: Drawing, curve: tuple[str, str], points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which points lie on a curve, and their share of the way from its start to its end."""
+    start, end = (np.array(drawing.points[name][:2]) for name in curve)
+    if drawing.curves[curve][0]:
+        angles = np.arctan2(points[:, 1], points[:, 0])
+        first, last = np.arctan2(start[1], start[0]), np.arctan2(end[1], end[0])
+        share = (angles - first) / (last - first)
+        off = np.abs(np.hypot(*points.T) - np.hypot(*start))
+    else:
+        way = end - start
+        share = (points - start) @ way / (way @ way)
+        off = np.hypot(*(points - start - share[:, None] * way).T)
+    nodes = np.flatnonzero((off < _ON_CURVE) & (share > -1e-6) & (share < 1 + 1e-6))
+    return nodes, share[nodes]
+
+
+def _at(drawing: Drawing, curve: tuple[str, str], share: np.ndarray) -> np.ndarray:
+    """Points (k, 2) at shares of the way along a curve."""
+    start, end = (np.array(drawing.points[name][:2]) for name in curve)
+    if not drawing.curves[curve][0]:
+        return start + share[:, None] * (end - start)
+    first, last = np.arctan2(start[1], start[0]), np.arctan2(end[1], end[0])
+    angle = first + share * (last - first)
+    return np.hypot(*start) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Signed areas of triangles (3, e) with points (2, n)."""
+    a, b, c = (points[:, corner] for corner in triangles)
+    u, v = b - a, c - a
+    return (u[0] * v[1] - u[1] * v[0]) / 2

@@ -1,0 +1,75 @@
+"""What a field problem knows from the connectivity of its mesh alone: numbering, regions, matrix patterns.
+
+Two cross-sections with the same triangles and other node positions share all of this, and so do all currents and rotor
+angles. It is the part of a field solution that is worth keeping.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from geometry.cross_section import CrossSection
+from magnetostatics.assembly import Entries, JoinedPattern
+from magnetostatics.elements import TriangleOrder, element_dofs
+from magnetostatics.unknowns import number_unknowns
+
+IRON = ("stator_iron", "rotor_iron")
+_MOST_PATTERNS = 80  # rotor positions whose pattern is kept; one takes about a megabyte
+
+
+class Topology:
+    """Numbering and patterns of a meshed cross-section for one order of elements."""
+
+    def __init__(self, section: CrossSection, order: TriangleOrder):
+        self.order = order
+        self.dofs, self.size = element_dofs(section.mesh, order)
+        self.unknowns = number_unknowns(section, order)
+        self.facets = section.mesh.facets
+        self.regions = section.mesh.subdomains
+        self.rotor_band = _rotor_band(section)
+        self._patterns: dict[int, tuple[JoinedPattern, Entries]] = {}
+
+    @cached_property
+    def linear(self) -> np.ndarray:
+        """Elements of constant reluctivity outside the rotor side of the gap."""
+        is_linear = np.ones(self.dofs.shape[1], dtype=bool)
+        for name in IRON:
+            is_linear[self.regions[name]] = False
+        is_linear[self.rotor_band] = False
+        return np.flatnonzero(is_linear)
+
+    @cached_property
+    def iron_entries(self) -> Entries:
+        """Addresses of the iron: stator, then rotor."""
+        return self._entries(np.concatenate([self.regions[name] for name in IRON]))
+
+    @cached_property
+    def linear_entries(self) -> Entries:
+        """Addresses of the ``linear`` elements."""
+        return self._entries(self.linear)
+
+    def _entries(self, which: np.ndarray) -> Entries:
+        u = self.unknowns
+        return Entries.of(self.order.pairs, self.dofs[:, which], u.column, u.sign, u.count)
+
+    def pattern(self, edges: int) -> tuple[JoinedPattern, Entries]:
+        """Pattern with the rotor turned by whole edges, and the addresses of the rotor side of the gap in it."""
+        if edges not in self._patterns:
+            if len(self._patterns) == _MOST_PATTERNS:
+                self._patterns.pop(next(iter(self._patterns)))
+            self._patterns[edges] = self._build_pattern(edges)
+        return self._patterns[edges]
+
+    def _build_pattern(self, edges: int) -> tuple[JoinedPattern, Entries]:
+        column, sign = self.unknowns.turned(edges)
+        band = Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
+        return JoinedPattern(self.iron_entries, (self.linear_entries.keys, band.keys), self.unknowns.count), band
+
+
+def _rotor_band(section: CrossSection) -> np.ndarray:
+    """Elements of the gap on the rotor side of the sliding circle: the only ones that change with the angle."""
+    gap = section.mesh.subdomains["gap"]
+    centroids = section.mesh.p[:, section.mesh.t[:, gap]].mean(axis=1)
+    return gap[np.hypot(*centroids) < section.machine.mid_gap_radius]
