@@ -47,6 +47,11 @@ class ConformingMesh:
         """Whether the middles of the edges are nodes."""
         return self.triangles.shape[1] == 6
 
+    @property
+    def corners(self) -> int:
+        """Number of points that are corners of triangles; they come first."""
+        return int(self.triangles[:, :3].max()) + 1
+
 
 def conforming_mesh(section: CrossSection, angle: float) -> ConformingMesh:
     """One mesh of linear triangles with the rotor turned by an angle [rad] that brings nodes onto nodes.

@@ -1,4 +1,4 @@
-"""Run other programs and know what they cost."""
+"""Run other programs on one thread and know what they cost."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-# Every code runs on one thread.
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS")}
 
 
@@ -29,14 +28,13 @@ def run(command: list[str], folder: Path) -> tuple[str, Cost]:
 
     Raises PeerError with the end of its output when it fails.
     """
-    began = time.perf_counter()
-    with open(folder / "output.txt", "wb") as output:
-        child = subprocess.Popen(
-            command, cwd=folder, stdout=output, stderr=subprocess.STDOUT, env=os.environ | ONE_THREAD
-        )
+    log, began = folder / "output.txt", time.perf_counter()
+    with open(log, "wb") as output:
+        child = subprocess.Popen(command, cwd=folder, stdout=output, stderr=output, env=os.environ | ONE_THREAD)
         _, status, usage = os.wait4(child.pid, 0)
+    cost = Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began)
     child.returncode = os.waitstatus_to_exitcode(status)
-    text = (folder / "output.txt").read_text(errors="replace")
+    text = log.read_text(errors="replace")
     if child.returncode:
         raise PeerError(f"{' '.join(command)} ended with {child.returncode}:\n{text[-2000:]}")
-    return text, Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began)
+    return text, cost

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from math import pi, sqrt
+from functools import cached_property, lru_cache
+from math import cos, pi, sin, sqrt
 
 import numpy as np
 
@@ -17,10 +17,12 @@ from magnetostatics.elements import LINEAR, QUADRATIC, TriangleOrder
 from magnetostatics.model import MachineMaterials, OperatingPoint
 from materials.library import load_steel
 from materials.magnet import Magnet
+from materials.reluctivity import Reluctivity
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, MILLIMETRE
 
 ORDERS = {"P1": LINEAR, "P2": QUADRATIC}
-_HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; beyond it the last secant goes on
+_LAW_TOLERANCE = 1e-5  # relative, of the straight lines through the sampled reluctivity
+_HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; iterations that overshoot it follow its last line
 _SAMPLING_GRID = 400_001
 
 
@@ -124,7 +126,14 @@ class FieldCase:
         if not isinstance(machine.magnetisation, ParallelMagnetisation):
             raise ValueError(f"the comparison holds for parallel magnets, found {machine.magnetisation}")
         angles = [self.state.point.angle + m * machine.pole_pitch + m * pi for m in range(self.section.magnets)]
-        return {f"magnet_{m}": (remanence * np.cos(t), remanence * np.sin(t)) for m, t in enumerate(angles)}
+        return {f"magnet_{m}": (remanence * cos(t), remanence * sin(t)) for m, t in enumerate(angles)}
+
+    @property
+    def law_table(self) -> tuple[np.ndarray, np.ndarray]:
+        """(b2, nu): points of the steel's law for straight lines between them. One steel in stator and rotor only."""
+        if self.materials.stator_steel is not self.materials.rotor_steel:
+            raise ValueError("the comparison holds for one steel in stator and rotor")
+        return sampled_law(self.materials.stator_steel)
 
     @property
     def torque_ring(self) -> tuple[float, float]:
@@ -132,10 +141,11 @@ class FieldCase:
         return self.section.machine.mid_gap_radius, self.section.machine.stator_inner_radius
 
 
-def sampled_law(law, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+@lru_cache
+def sampled_law(law: Reluctivity, tolerance: float = _LAW_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
     """Points (b2, nu) between which straight lines keep to a law within a relative tolerance of nu.
 
-    b2: |B|^2 [T^2]; nu: [m/H]. Each line is the longest that holds, found by bisection.
+    b2: |B|^2 [T^2]; nu: [m/H]. Each line is the longest on a fine grid that holds.
     """
     b2 = np.linspace(0.0, _HIGHEST_FLUX_DENSITY**2, _SAMPLING_GRID)
     nu, chosen = law.nu(b2), [0]
@@ -145,8 +155,11 @@ def sampled_law(law, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _longest_line(b2: np.ndarray, nu: np.ndarray, start: int, tolerance: float) -> int:
-    """Last index up to which a straight line from ``start`` stays within the tolerance."""
-    low, high = start + 1, len(b2) - 1
+    """Last index up to which a straight line from ``start`` stays within the tolerance: double, then halve."""
+    length = 1
+    while start + 2 * length < len(b2) and _line_holds(b2, nu, start, start + 2 * length, tolerance):
+        length *= 2
+    low, high = start + length, min(start + 2 * length, len(b2) - 1)
     while low < high:
         middle = (low + high + 1) // 2
         low, high = (middle, high) if _line_holds(b2, nu, start, middle, tolerance) else (low, middle - 1)

@@ -1,1 +1,1 @@
-"""Pictures of results: functions from data to a matplotlib Figure, and exports; nothing here reads a study or solves."""
+"""Pictures and pages of results: functions from data to a matplotlib Figure; nothing here reads a study or solves."""

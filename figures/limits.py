@@ -27,25 +27,39 @@ def limits(table: pd.DataFrame, *, chosen_reading: str | None = None, chosen_lim
     axes = figure.subplots(1, 3)
     for axis, (column, title, label) in zip(axes, _PANELS, strict=True):
         for number, (reading, rows) in enumerate(table.groupby("reading", sort=False)):
-            _draw_reading(axis, rows.sort_values("limit_T"), column, reading, number)
+            _draw_reading(axis, rows, column, number)
+        _draw_infeasible(axis, table, column)
         _ring(axis, table, column, chosen_reading, chosen_limit_T)
         axis.set(xlabel="flux-density limit / T", ylabel=label)
         axis.set_title(title, loc="left")
+        axis.margins(y=0.12)
     letter(axes)
     show_grid(*axes)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 
-def _draw_reading(axes, rows: pd.DataFrame, column: str, reading: str, number: int) -> None:
-    colour, marker = SERIES[number % len(SERIES)], MARKERS[number % len(MARKERS)]
-    label = reading.replace("_", " ")
-    axes.plot(rows.limit_T, rows[column], color=colour, marker=marker, markersize=5, label=label)
-    none = rows.limit_T[~np.isfinite(rows[column])]
-    if len(none):
-        height = np.full(len(none), 0.03 * number)  # on the lower edge, one row for each reading
-        look = {"color": colour, "marker": "x", "linestyle": "", "label": f"{label}: no machine keeps the limit"}
-        axes.plot(none, height, transform=axes.get_xaxis_transform(), clip_on=False, **look)
+def _draw_reading(axes, rows: pd.DataFrame, column: str, number: int) -> None:
+    rows = rows.sort_values("limit_T")
+    look = {"color": SERIES[number % len(SERIES)], "marker": MARKERS[number % len(MARKERS)], "markersize": 5}
+    axes.plot(rows.limit_T, rows[column], label=_in_words(rows), **look)
+
+
+def _draw_infeasible(axes, table: pd.DataFrame, column: str) -> None:
+    """Crosses on the lower edge, one row for each reading that some limits leave without a machine."""
+    row = 0
+    for number, (_, rows) in enumerate(table.groupby("reading", sort=False)):
+        none = rows.limit_T[~np.isfinite(rows[column])]
+        if len(none):
+            look = {"color": SERIES[number % len(SERIES)], "marker": "x", "markeredgewidth": 2, "linestyle": ""}
+            label = f"{_in_words(rows)}: no machine keeps the limit"
+            height = np.full(len(none), 0.04 * row)
+            axes.plot(none, height, transform=axes.get_xaxis_transform(), clip_on=False, label=label, **look)
+            row += 1
+
+
+def _in_words(rows: pd.DataFrame) -> str:
+    return rows.reading.iloc[0].replace("_", " ")
 
 
 def _ring(axes, table: pd.DataFrame, column: str, reading: str | None, limit: float | None) -> None:

@@ -35,9 +35,9 @@ def rotation(
     _draw_probes(axes[3], table, "back_iron_", "back iron")
     for axis in axes:
         _mark_angles(axis, null_angle_deg, q_axis_angle_deg)
+        axis.margins(x=0.01)
     axes[0].legend(loc="upper left", ncols=2)
     axes[-1].set_xlabel("mechanical rotor angle / °")
-    axes[-1].set_xlim(table.angle_mech_deg.min(), table.angle_mech_deg.max())
     letter(axes)
     show_grid(*axes)
     return figure

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -28,6 +28,14 @@ class ProbeReader:
     weights: np.ndarray
     number: np.ndarray
     names: tuple[str, ...]
+    elements: np.ndarray
+    shares: np.ndarray  # barycentric coordinates (3, n) of the points in their elements
+
+    def moved(self, model: FieldModel) -> ProbeReader:
+        """The same points of the same elements in a model with moved nodes."""
+        mesh = model.section.mesh
+        dx, dy = _gradients(model.order, mesh.p[:, mesh.t[:, self.elements]], self.shares)
+        return replace(self, gradient_x=dx, gradient_y=dy)
 
     def read(self, solution: FieldSolution) -> dict[str, float]:
         """Mean |B| [T] over every probe, by name (``tooth_0 ...``, ``back_iron_0 ...``)."""
@@ -44,10 +52,12 @@ def probe_reader(model: FieldModel) -> ProbeReader:
     mesh = model.section.mesh
     elements = _locate(mesh, points)
     corners = mesh.p[:, mesh.t[:, elements]]
-    dx, dy = _gradients(model.order, corners, _barycentric(corners, points))
+    shares = _barycentric(corners, points)
+    dx, dy = _gradients(model.order, corners, shares)
     weights = np.concatenate([probe.weights for probe in probes])
     number = np.repeat(np.arange(len(probes)), [len(probe.weights) for probe in probes])
-    return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, tuple(probe.name for probe in probes))
+    names = tuple(probe.name for probe in probes)
+    return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, names, elements, shares)
 
 
 def _locate(mesh: MeshTri, points: np.ndarray) -> np.ndarray:

@@ -9,6 +9,8 @@ from units import MU_0
 
 # Reversible temperature coefficient of the remanence of sintered NdFeB: -0.11 to -0.12 %/K (makers' data sheets).
 NDFEB_REMANENCE_COEFFICIENT = -0.0011  # 1/K
+# A hair below the physical bound of 1, so that a derivative can be taken at 1.
+SMALLEST_RECOIL = 0.999
 ROOM_TEMPERATURE = 20.0  # degC, at which data sheets state the remanence
 
 
@@ -28,7 +30,7 @@ class Magnet:
     def __post_init__(self):
         if not self.remanence > 0:
             raise MaterialError(f"a magnet's remanence must be positive, found {self.remanence:g} T")
-        if not self.recoil_permeability >= 1:
+        if not self.recoil_permeability >= SMALLEST_RECOIL:
             raise MaterialError(f"a recoil permeability is 1 or more, found {self.recoil_permeability:g}")
 
     def at(self, temperature: float) -> Magnet:

@@ -2,8 +2,8 @@
 
 Around the current point both torque and limited flux density are fitted by quadratics in (back-iron width, rotor radius)
 to nine field solutions in a trust box; the constrained maximum of the quadratics is the next point; the box moves when the
-maximum lies on its edge and shrinks otherwise. Fitting nine points averages the mesh noise of single ones. A last step
-in the width puts the limit to its tolerance.
+maximum lies on its edge and shrinks otherwise. The nine designs move one mesh, so that they differ by their dimensions
+alone. At the end the machine is meshed anew and a last step in the width puts the limit to its tolerance.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ import numpy as np
 from scipy.optimize import minimize
 
 from geometry.machine import GeometryError
-from optimisation.design import Design, Judge, MachineFamily
+from optimisation.design import Design, DesignSolver, Judge, MachineFamily
 
 _FIRST_BOX = (0.06, 0.045)  # half widths of the trust box relative to (w_bi, R_ro)
 _LAST_BOX = (0.02, 0.015)
+_BOX = ((0, 0), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))  # the centre, which is meshed, first
 _SHRINK = 1 / 3
 _MOST_ROUNDS = 8
 _LIMIT_TOLERANCE = 2e-4  # relative, of the limited flux density at the optimum
@@ -41,22 +42,33 @@ class Optimum:
 class _Search:
     """Field solutions by (width, radius) for one slot count and stator radius; every point is solved once."""
 
-    judge: Judge
+    solver: DesignSolver
     family: MachineFamily
     slots: int
     stator_outer_radius: float
     limit: float
     known: dict[tuple[float, float], Design | None] = field(default_factory=dict)
+    solves: int = 0  # before the last new mesh
+
+    @property
+    def all_solves(self) -> int:
+        return self.solves + len(self.known)
 
     def design(self, width: float, radius: float) -> Design | None:
         """The judged design, None when it cannot be built."""
         key = (float(width), float(radius))
         if key not in self.known:
             try:
-                self.known[key] = self.judge.judge(self.family.machine(self.slots, self.stator_outer_radius, *key))
+                self.known[key] = self.solver.design(self.family.machine(self.slots, self.stator_outer_radius, *key))
             except GeometryError:
                 self.known[key] = None
         return self.known[key]
+
+    def start_anew(self) -> None:
+        """Mesh the next design anew and solve every point again."""
+        self.solver.mesh_anew()
+        self.solves += len(self.known)
+        self.known.clear()
 
 
 def find_optimum(
@@ -68,7 +80,7 @@ def find_optimum(
     Returns the optimum with the limit held to 0.02 %.
     Raises NoOptimumError.
     """
-    search = _Search(judge, family, slots, stator_outer_radius, limit)
+    search = _Search(DesignSolver(judge), family, slots, stator_outer_radius, limit)
     point, box = np.array(start), np.array(_FIRST_BOX)
     for _ in range(_MOST_ROUNDS):
         target, on_edge = _round(search, point, box * point)
@@ -83,7 +95,7 @@ def find_optimum(
 
 def _round(search: _Search, centre: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, bool]:
     """Constrained maximum of the quadratics around a centre, and whether it lies on the edge of the box."""
-    offsets = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)], dtype=float)
+    offsets = np.array(_BOX, dtype=float)
     designs = [search.design(*(centre + half * offset)) for offset in offsets]
     built = [k for k, design in enumerate(designs) if design is not None]
     if len(built) < 6:
@@ -120,14 +132,15 @@ def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarr
 def _settle(search: _Search, point: np.ndarray) -> Optimum:
     """Put the width on the limit (secant) where it binds, and return the design."""
     width, radius = point
+    search.start_anew()
     design = _require(search, width, radius)
     if design.limited < search.limit * (1 - 5e-3):
-        return Optimum(design, False, len(search.known))
+        return Optimum(design, False, search.all_solves)
     other_width = width * 1.01
     other = _require(search, other_width, radius)
     for _ in range(_MOST_CORRECTIONS):
         if abs(design.limited / search.limit - 1) < _LIMIT_TOLERANCE:
-            return Optimum(design, True, len(search.known))
+            return Optimum(design, True, search.all_solves)
         slope = (other.limited - design.limited) / (other_width - width)
         other_width, other = width, design
         width = width + (search.limit - design.limited) / slope

@@ -7,11 +7,13 @@ from math import nan
 from statistics import fmean
 from typing import Protocol
 
+from geometry.checks import check_machine
 from geometry.cross_section import mesh_cross_section
 from geometry.half_cell import MeshDensity
-from geometry.machine import Machine
+from geometry.machine import GeometryError, Machine
+from geometry.morph import Morpher
 from geometry.winding import WindingLayout, star_of_slots
-from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials
+from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingPoint
 from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from optimisation.states import SaturationReading, aligned_teeth
@@ -47,21 +49,70 @@ class Judge:
         """The same judge with another current density amplitude [A/m^2]."""
         return replace(self, amplitude=amplitude)
 
+    def states(self, machine: Machine) -> list[OperatingPoint]:
+        """The states in which a machine is solved."""
+        return self.reading.states(machine, self.layout(machine), self.amplitude, self.packing)
+
     def judge(self, machine: Machine) -> Design:
         """Mesh and solve a machine in every state of the reading.
 
         Raises GeometryError when it cannot be built, FieldSolutionError when the field does not converge.
         """
-        layout = self.layout(machine)
-        section = mesh_cross_section(machine, layout, self.density)
-        model = FieldModel(section, self.materials)
-        states = self.reading.states(machine, layout, self.amplitude, self.packing)
-        probes = probe_reader(model)
-        solution, seen = None, []
-        for state in states:
-            solution = model.solve(state, start=solution)
+        return DesignSolver(self).design(machine)
+
+
+# A mesh is moved onto machines whose dimensions differ by up to this share, beyond it a new one is made. Within these
+# the torque on the moved mesh agrees with that on a new one to 0.2 %, and to 0.05 % at a third of them.
+_FARTHEST = {"back_iron_width": 0.4, "rotor_outer_radius": 0.1, "stator_outer_radius": 0.1}
+
+
+class DesignSolver:
+    """Solves designs one after another. A design close to the last mesh moves that mesh and starts from its field."""
+
+    def __init__(self, judge: Judge):
+        self.judge = judge
+        self._morpher: Morpher | None = None
+        self._solutions: list[FieldSolution] = []
+
+    def design(self, machine: Machine) -> Design:
+        """The judged machine. Raises as ``Judge.judge``."""
+        check_machine(machine)
+        model = self._moved(machine) or self._meshed(machine)
+        starts = self._solutions or [None] * len(self.judge.states(machine))
+        probes, seen, solutions = probe_reader(model), [], []
+        for state, start in zip(self.judge.states(machine), starts, strict=True):
+            solution = model.solve(state, start=start or (solutions[-1] if solutions else None))
+            solutions.append(solution)
             seen.append(_look(solution, probes.read(solution)))
-        return _summary(machine, section.half_slot_area * section.half_slots_per_coil_side, self.reading, seen)
+        self._solutions = solutions
+        section = model.section
+        return _summary(machine, section.half_slot_area * section.half_slots_per_coil_side, self.judge.reading, seen)
+
+    def mesh_anew(self) -> None:
+        """Forget the mesh: the next design gets its own."""
+        self._morpher, self._solutions = None, []
+
+    def _meshed(self, machine: Machine) -> FieldModel:
+        self.mesh_anew()
+        section = mesh_cross_section(machine, self.judge.layout(machine), self.judge.density)
+        self._morpher = Morpher(section)
+        return FieldModel(section, self.judge.materials)
+
+    def _moved(self, machine: Machine) -> FieldModel | None:
+        if self._morpher is None or not _is_near(machine, self._morpher.section.machine):
+            return None
+        try:
+            section = self._morpher.to(machine)
+        except GeometryError:  # the machine is sound, its distance from the mesh is not
+            return None
+        return self._solutions[0].model.like(section)
+
+
+def _is_near(machine: Machine, base: Machine) -> bool:
+    same = (machine.slots, machine.poles) == (base.slots, base.poles)
+    return same and all(
+        abs(getattr(machine, name) / getattr(base, name) - 1) <= share for name, share in _FARTHEST.items()
+    )
 
 
 @dataclass(frozen=True)

@@ -98,7 +98,7 @@ class _Page:
 
         s = self.study
         shown = "slots stator_diameter_mm back_iron_width_mm rotor_outer_radius_mm half_slot_area_mm2 torque_nominal_Nm_per_m"
-        shown += " torque_overload_Nm_per_m torque_overload_linear_Nm_per_m limited_T tooth_worst_T back_iron_worst_T"
+        shown += " torque_overload_Nm_per_m torque_overload_linear_Nm_per_m limited_T tooth_worst_T"
         over = (self.optima.torque_overload_linear_Nm_per_m / self.optima.torque_overload_Nm_per_m - 1) * 100
         text = (
             f"Largest torque per metre with a flux density of at most {s.saturation.limit_T:g} T, read as {s.saturation.reading}: "
@@ -130,8 +130,12 @@ class _Page:
         """Fits over the stator radius."""
         from figures.report import Section, Table
 
+        from figures.report import heading
+
         columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual"]
-        table = Table(self.fits[columns], "y = p2 R² + p1 R + p0 with R in mm and y in the unit of its name.")
+        shown = self.fits[columns].assign(quantity=self.fits.quantity.map(heading))
+        caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
+        table = Table(shown, caption, headings={"r_squared": "R²"})
         refused = [f"Refused: {row.quantity}, {row.slots} slots: {row.refused}" for row in self.fits.dropna(subset="refused").itertuples()]
         picture = self.picture("fits", "Optima (points) and second-order polynomials (lines) over the stator radius.")
         return Section("Polynomials over the stator radius", (picture, table, *refused))
@@ -182,7 +186,7 @@ class _Page:
                 f"{self.winding['reason']}",
                 Table(near.drop(columns=["chosen"]), caption, marked=marked),
                 self.picture("torque_speed", "Largest torque and power of neighbouring windings over the speed."),
-                self.picture("force_velocity", "Peak phase voltage and current at the wheel."),
+                self.picture("force_velocity", "Peak phase voltage and current at the wheel, up to the largest speed of the study."),
             ),
         )
 

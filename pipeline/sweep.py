@@ -40,23 +40,27 @@ def steel_files(study) -> tuple[Path, ...]:
 
 
 def solve_column(task: dict) -> list[list[float]]:
-    """All back-iron widths at one rotor radius: one row of ``VARIABLES`` per width, NaN where no machine can be built."""
-    from geometry.machine import GeometryError
+    """All back-iron widths at one rotor radius: one row of ``VARIABLES`` per width, NaN where no machine can be built.
+
+    The widths are taken from the middle outwards, so that one mesh can be moved onto most of them.
+    """
     from math import nan
+
+    from geometry.machine import GeometryError
+    from optimisation.design import DesignSolver
     from units import MILLIMETRE
 
     judge, family = _tools(task["study"])
-    rows = []
-    for width in task["back_iron_widths_mm"]:
-        machine = family.machine(
-            task["slots"], task["stator_diameter_mm"] / 2 * MILLIMETRE, width * MILLIMETRE, task["rotor_outer_radius_mm"] * MILLIMETRE
-        )
+    solver, widths = DesignSolver(judge), task["back_iron_widths_mm"]
+    radii = task["stator_diameter_mm"] / 2 * MILLIMETRE, task["rotor_outer_radius_mm"] * MILLIMETRE
+    rows = {}
+    for number in sorted(range(len(widths)), key=lambda k: abs(k - len(widths) // 2)):
         try:
-            design = judge.judge(machine)
-            rows.append([getattr(design, name) for name in VARIABLES.values()])
+            design = solver.design(family.machine(task["slots"], radii[0], widths[number] * MILLIMETRE, radii[1]))
+            rows[number] = [getattr(design, name) for name in VARIABLES.values()]
         except GeometryError:
-            rows.append([nan] * len(VARIABLES))
-    return rows
+            rows[number] = [nan] * len(VARIABLES)
+    return [rows[number] for number in range(len(widths))]
 
 
 @lru_cache(maxsize=1)

@@ -65,7 +65,8 @@ def design_space():
     torque = np.where(width > 0.105, np.nan, torque)
     flux = np.where(np.isnan(torque), np.nan, flux)
     dims = ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
-    both = {"torque_Nm_per_m": torque, "tooth_aligned_T": flux, "tooth_worst_T": 1.1 * flux, "back_iron_worst_T": 1.2 * flux}
+    both = {"torque_Nm_per_m": torque, "tooth_aligned_T": flux}
+    both |= {"tooth_worst_T": 1.1 * flux, "back_iron_worst_T": 1.2 * flux}
     data = {name: (dims, np.stack([values, 0.9 * values])) for name, values in both.items()}
     data["back_iron_width_mm"] = (dims[1:3], np.outer(diameters, widths) / 2)
     data["rotor_outer_radius_mm"] = ((dims[1], dims[3]), np.outer(diameters, radii) / 2)

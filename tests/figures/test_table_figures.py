@@ -84,11 +84,8 @@ def test_no_optimum_is_not_invented(optima):
 
 @pytest.fixture
 def polynomials():
-    rows = [
-        {"slots": slots, "quantity": name, "p2": 0.01, "p1": 1.0, "p0": 2.0, "r_squared": 0.98765, "rms_residual": 0.123}
-        for slots in (9, 12)
-        for name, _, _ in QUANTITIES
-    ]
+    fit = {"p2": 0.01, "p1": 1.0, "p0": 2.0, "r_squared": 0.98765, "rms_residual": 0.123}
+    rows = [{"slots": slots, "quantity": name, **fit} for slots in (9, 12) for name, _, _ in QUANTITIES]
     return pd.DataFrame(rows).assign(refused=["R2 below 0.99"] + [np.nan] * (len(rows) - 1))
 
 
@@ -97,8 +94,9 @@ def test_fits_print_their_quality(optima, polynomials, assert_readable):
     text = words(figure)
     assert text.count("= 0.98765") == 12 and text.count("rms residual 0.123") == 12
     assert text.count("refused") == 2, "beside the quality and in the legend"
-    for part in ("torque per length / (Nm/m)", "back-iron width / mm", "half-slot area / mm²", "stator outer radius / mm"):
+    for part in ("torque per length / (Nm/m)", "back-iron width / mm", "half-slot area / mm²"):
         assert part in text
+    assert "stator outer radius / mm" in text
     dotted = [line for line in figure.axes[0].lines if line.get_linestyle() == ":"]
     assert len(dotted) == 1 and dotted[0].get_ydata()[0] == pytest.approx(0.01 * 35**2 + 35 + 2)
     assert_readable(figure)
@@ -121,6 +119,7 @@ def test_limits_show_what_is_infeasible(assert_readable):
     figure = limits(table, chosen_reading=READING, chosen_limit_T=1.2)
     crosses = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
     assert [line.get_xdata().tolist() for line in crosses] == [[1.2]]
+    assert crosses[0].get_ydata().tolist() == [0.0], "on the lower edge, where no data are"
     assert "every tooth: no machine keeps the limit" in words(figure)
     assert "flux-density limit / T" in words(figure) and "choice of the study" in words(figure)
     assert_readable(figure)
@@ -223,7 +222,7 @@ def test_maps_are_drawn_at_the_wheel(assert_readable):
     axes = figure.axes[0]
     assert axes.get_xlabel() == "velocity at the wheel / (m/s)" and axes.get_ylabel() == "force at the wheel / kN"
     assert axes.get_xlim() == pytest.approx((-1500 * 2.3e-3, 1500 * 2.3e-3))
-    assert axes.get_ylim() == pytest.approx((-6 / 2.3, 6 / 2.3), rel=0.02)
+    assert axes.dataLim.y1 == pytest.approx(6 / 2.3)
     marker = [line for line in axes.lines if line.get_label() == "force peak"][0]
     assert marker.get_xydata().tolist() == [[1.6, -2.614]]
     assert "limit 27.7 V" in words(figure) and "peak phase current / A" in words(figure)

@@ -118,7 +118,7 @@ def _section(machine, stator, rotor) -> CrossSection:
     mesh = mesh.with_subdomains(_regions(machine, mesh))
     mesh = mesh.with_boundaries(_boundaries(machine, mesh, offset))
     layout = star_of_slots(machine.slots, machine.pole_pairs)
-    return CrossSection(machine, layout, mesh, machine.sectors, machine.is_antiperiodic)
+    return CrossSection(machine, layout, mesh, machine.sectors, machine.is_antiperiodic, pieces=())
 
 
 def _regions(m, mesh):

@@ -1,0 +1,96 @@
+"""Eddy currents in the magnets, while they are too weak to act back on the field.
+
+    J = -sigma (dA/dt - mean of dA/dt over the piece),     P = integral J^2/sigma        per metre
+
+A as the rotor sees it. The mean is the voltage per length that keeps the net current of each piece at zero: every magnet,
+or every segment of it, is insulated from its neighbours and carries its current back within itself.
+
+Assumptions: two dimensions, so the current closes far away at the ends and pieces must be long against their width (shorter
+ones lose less: the estimate is an upper one); resistance-limited, so the skin depth of what moves must exceed the width of
+the piece (``frequency_limit``); sinusoidal currents without the inverter's ripple.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from losses.loci import Loci, PartOfPeriod, magnet_potential_loci
+from units import MU_0
+
+NDFEB_RESISTIVITY = 1.4e-6  # Ohm m, sintered NdFeB across the grain at room temperature (makers' data: 1.2 to 1.6)
+
+
+@dataclass(frozen=True)
+class MagnetLoss:
+    """Loss of all magnets, P = eddy f^2 [W/m] with the electrical frequency f [Hz].
+
+    order: harmonic of the electrical frequency, seen by the rotor, that loses most; 0 where nothing moves
+    width: of one piece [m]; resistivity [Ohm m]; permeability: relative
+    """
+
+    eddy: float
+    order: float
+    width: float
+    resistivity: float
+    permeability: float
+
+    def at(self, frequency):
+        """Loss [W/m] at an electrical frequency [Hz]."""
+        return self.eddy * np.square(frequency)
+
+    @property
+    def frequency_limit(self) -> float:
+        """Electrical frequency [Hz] up to which the skin depth at ``order`` exceeds the width: rho/(pi mu w^2 order)."""
+        if self.order == 0:
+            return np.inf
+        return self.resistivity / (pi * MU_0 * self.permeability * self.width**2 * self.order)
+
+
+def magnet_loss(part: PartOfPeriod, resistivity: float = NDFEB_RESISTIVITY, segments: int = 1) -> MagnetLoss:
+    """Eddy-current loss of the magnets at one current.
+
+    resistivity: [Ohm m]; segments: equal pieces into which every magnet is cut along the circumference
+    """
+    section = part.model.section
+    machine = section.machine
+    arc = machine.magnet_arc_fraction * machine.pole_pitch
+    total, by_order = 0.0, 0.0
+    for number, loci in enumerate(magnet_potential_loci(part)):
+        elements = part.model.elements.take(loci.elements)
+        pieces = _pieces(elements.points, number * machine.pole_pitch, arc, segments)
+        density, spectrum, orders = _piece_losses(loci, elements.weights.T, pieces, segments)
+        total, by_order = total + density, by_order + spectrum
+    return MagnetLoss(
+        eddy=float(section.sectors * total / resistivity),
+        order=float(orders[np.argmax(by_order)]) if total > 0 else 0.0,
+        width=arc * (machine.rotor_outer_radius - machine.magnet_length / 2) / segments,
+        resistivity=resistivity,
+        permeability=part.model.materials.magnet.recoil_permeability,
+    )
+
+
+def skin_depth(frequency: float, resistivity: float = NDFEB_RESISTIVITY, permeability: float = 1.05) -> float:
+    """sqrt(rho / (pi f mu)) [m]."""
+    return sqrt(resistivity / (pi * frequency * MU_0 * permeability))
+
+
+def _pieces(points: np.ndarray, centre: float, arc: float, segments: int) -> np.ndarray:
+    """Number of the segment of every quadrature point (E, Q)."""
+    x, y = points.transpose(0, 2, 1)
+    angle = np.mod(np.arctan2(y, x) - centre + pi, 2 * pi) - pi
+    return np.clip(((angle / arc + 0.5) * segments).astype(int), 0, segments - 1)
+
+
+def _piece_losses(loci: Loci, weights: np.ndarray, pieces: np.ndarray, segments: int):
+    """integral <(dA/dt - mean)^2> per f^2, the same by order, and the orders."""
+    w, piece = weights.ravel(), pieces.ravel()
+    rate = loci.rate().reshape(len(loci.values), -1)
+    for k in range(segments):
+        inside = piece == k
+        rate[:, inside] -= (rate[:, inside] @ w[inside] / w[inside].sum())[:, None]
+    steps = len(rate)
+    power = 2 * np.abs(np.fft.rfft(rate, axis=0) / steps) ** 2 @ w
+    return (rate**2).mean(0) @ w, power, np.arange(len(power)) / loci.periods

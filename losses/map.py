@@ -1,0 +1,163 @@
+"""Electrical losses over torque and speed (what thesis Fig. 4.5 shows): copper, iron and magnets, and the efficiency.
+
+The field is solved on a grid of currents, once; every speed follows by the frequency terms, every winding by its turns.
+Signs as in ``electrical``: motor, peak phase values. The torque is that of the air gap; iron and magnet losses count as
+electrical (a resistance across the machine), bearings and windage are left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, hypot, pi
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+
+from electrical.synchronous_machine import OperatingMap
+from losses.copper import WoundMachine, copper_loss
+from losses.iron import FrequencyTerms, iron_loss
+from losses.loci import Repetition, rotor_loci, solve_part, stator_loci
+from losses.magnet import NDFEB_RESISTIVITY, magnet_loss
+from magnetostatics.model import FieldModel, OperatingPoint
+from materials.iron_loss import IronLossLaw
+
+STEPS = 48  # per electrical period
+# Grid of the currents as shares of the largest. The direct axis reaches into the strengthening side because the currents of
+# least amplitude of a machine with L_d > L_q lie there.
+DIRECT = (-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)
+QUADRATURE = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+
+@dataclass(frozen=True)
+class FieldLosses:
+    """Losses in iron and magnets at one current, whole machine per metre."""
+
+    stator: FrequencyTerms
+    rotor: FrequencyTerms
+    magnet: FrequencyTerms
+
+    def at(self, frequency) -> tuple:
+        """(stator, rotor, magnet) [W/m] at an electrical frequency [Hz]."""
+        return self.stator.at(frequency), self.rotor.at(frequency), self.magnet.at(frequency)
+
+
+def current_point(section, direct: float, quadrature: float, packing: float, angle: float = 0.0) -> OperatingPoint:
+    """Operating point of ampere-turns on the d and q axes [A peak per coil]; packing: copper share of the slot."""
+    area = section.half_slot_area * section.half_slots_per_coil_side
+    return OperatingPoint(angle, hypot(direct, quadrature) / (packing * area), atan2(-direct, quadrature), packing)
+
+
+def field_losses(
+    model: FieldModel,
+    point: OperatingPoint,
+    law: IronLossLaw,
+    *,
+    steps: int = STEPS,
+    repetition: Repetition | None = None,
+    resistivity: float = NDFEB_RESISTIVITY,
+    segments: int = 1,
+) -> FieldLosses:
+    """Iron and magnet losses at one current; stator and rotor of the same sheet.
+
+    steps, repetition: see ``solve_part``; resistivity, segments: see ``magnet_loss``
+    """
+    part = solve_part(model, point, steps, repetition)
+    magnet = magnet_loss(part, resistivity, segments)
+    return FieldLosses(
+        stator=iron_loss(stator_loci(part), law).total,
+        rotor=iron_loss(rotor_loci(part), law).total,
+        magnet=FrequencyTerms(0.0, magnet.eddy, 0.0),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FieldLossTable:
+    """Losses over the ampere-turns of a coil.
+
+    direct (D,), quadrature (Q,): peak ampere-turns on the axes [A], quadrature from 0 up
+    terms (D, Q, 3, 3): of stator, rotor, magnet; hysteresis, eddy, excess [W s^n/m]
+    """
+
+    direct: np.ndarray
+    quadrature: np.ndarray
+    terms: np.ndarray
+
+    def at(self, direct, quadrature) -> FieldLosses:
+        """Interpolated linearly; arrays that broadcast, NaN in, NaN out. The sign of the quadrature current does not matter.
+
+        Raises ValueError outside the grid.
+        """
+        points = np.stack(np.broadcast_arrays(np.asarray(direct, dtype=float), np.abs(quadrature)), axis=-1)
+        known = np.isfinite(points).all(-1)
+        self._check(points[known])
+        values = np.full((*points.shape[:-1], 3, 3), np.nan)
+        table = RegularGridInterpolator((self.direct, self.quadrature), self.terms, bounds_error=False, fill_value=None)
+        values[known] = table(points[known])
+        return FieldLosses(*(FrequencyTerms(*(values[..., part, k] for k in range(3))) for part in range(3)))
+
+    def _check(self, points: np.ndarray) -> None:
+        for name, axis, column in (("d", self.direct, 0), ("q", self.quadrature, 1)):
+            slack = 1e-6 * (axis[-1] - axis[0])
+            if len(points) and not (axis[0] - slack <= points[:, column].min() and points[:, column].max() <= axis[-1] + slack):
+                raise ValueError(
+                    f"{name}-axis ampere-turns from {points[:, column].min():.4g} to {points[:, column].max():.4g} A leave the "
+                    f"table ({axis[0]:.4g} to {axis[-1]:.4g} A): build it for a larger current"
+                )
+
+
+def grid(largest: float) -> list[tuple[float, float]]:
+    """(d, q) ampere-turns [A] of a table up to ``largest`` peak ampere-turns of a coil, d outermost."""
+    return [(d * largest, q * largest) for d in DIRECT for q in QUADRATURE]
+
+
+def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
+    """The table of the losses at the currents of ``grid(largest)``, in that order."""
+    terms = [[[t.hysteresis, t.eddy, t.excess] for t in (one.stator, one.rotor, one.magnet)] for one in losses]
+    shaped = np.array(terms).reshape(len(DIRECT), len(QUADRATURE), 3, 3)
+    return FieldLossTable(largest * np.array(DIRECT), largest * np.array(QUADRATURE), shaped)
+
+
+def field_loss_table(model: FieldModel, law: IronLossLaw, largest: float, packing: float, **settings) -> FieldLossTable:
+    """Solve the whole grid in this process; settings: those of ``field_losses``."""
+    points = (current_point(model.section, d, q, packing) for d, q in grid(largest))
+    return table_of(largest, [field_losses(model, point, law, **settings) for point in points])
+
+
+@dataclass(frozen=True, eq=False)
+class LossMap:
+    """Losses [W] over torque [Nm] and speed [rad/s, mechanical], all of one shape; NaN where out of reach."""
+
+    torque: np.ndarray
+    speed: np.ndarray
+    copper: np.ndarray
+    stator_iron: np.ndarray
+    rotor_iron: np.ndarray
+    magnet: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        """All electrical losses [W]."""
+        return self.copper + self.stator_iron + self.rotor_iron + self.magnet
+
+    @property
+    def efficiency(self) -> np.ndarray:
+        """Power out over power in, as motor and as generator; NaN where nothing comes out."""
+        mechanical = self.torque * self.speed
+        electrical = mechanical + self.total
+        with np.errstate(divide="ignore", invalid="ignore"):
+            motor, generator = mechanical / electrical, electrical / mechanical
+        return np.where(mechanical > 0, motor, np.where(electrical < 0, generator, np.nan))
+
+
+def loss_map(operating: OperatingMap, wound: WoundMachine, table: FieldLossTable, resistance: float) -> LossMap:
+    """Losses at the currents of an operating map, field weakening included.
+
+    operating: torque, speed and peak phase currents i_d, i_q, for example of ``electrical`` ``operating_map``
+    resistance: of one phase [Ohm] at the temperature of the copper, ``wound.phase_resistance(...)``
+    The magnets keep the temperature that the table was solved at.
+    """
+    frequency = wound.machine.pole_pairs * operating.speed / (2 * pi)
+    fields = table.at(wound.turns * operating.i_d, wound.turns * operating.i_q)
+    stator, rotor, magnet = (wound.active_length * loss for loss in fields.at(frequency))
+    copper = copper_loss(resistance, operating.i_d, operating.i_q)
+    return LossMap(operating.torque, operating.speed, copper, stator, rotor, magnet)
