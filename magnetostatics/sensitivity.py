@@ -35,24 +35,30 @@ def sensitivities(solution: FieldSolution, variations: dict[str, Variation], rea
     variations: parameters by name; their models must share the triangles of the solution (``FieldModel.like``)
     read: results of a solution as a vector, for example torque and flux densities
     """
+    ends = {name: _both_ways(solution, variation) for name, variation in variations.items()}
     tangent = solution.model.tangent(solution)
-    slopes = {name: tangent.response(_residual_slope(solution, v)) for name, v in variations.items()}
-    return {name: _along(solution, variation, slopes[name], read) for name, variation in variations.items()}
+    slopes = {name: tangent.response(_residual_slope(solution, two)) for name, two in ends.items()}
+    return {name: _along(solution, two, slopes[name], read) for name, two in ends.items()}
 
 
-def _residual_slope(solution: FieldSolution, variation: Variation) -> np.ndarray:
+# (change, model, point) on both sides of the solution
+_Ends = tuple[tuple[float, FieldModel, OperatingPoint], tuple[float, FieldModel, OperatingPoint]]
+
+
+def _both_ways(solution: FieldSolution, variation: Variation) -> _Ends:
+    changes = variation.step, -variation.step
+    return tuple((change, *variation.at(solution.model, solution.point, change)) for change in changes)
+
+
+def _residual_slope(solution: FieldSolution, ends: _Ends) -> np.ndarray:
     """dR/dp at fixed potential (m,)."""
-    ends = []
-    for change in (variation.step, -variation.step):
-        model, point = variation.at(solution.model, solution.point, change)
-        ends.append(model.residual(point, solution.a))
-    return (ends[0] - ends[1]) / (2 * variation.step)
+    forward, back = (model.residual(point, solution.a) for _, model, point in ends)
+    return (forward - back) / (ends[0][0] - ends[1][0])
 
 
-def _along(solution: FieldSolution, variation: Variation, slope: np.ndarray, read: Reader) -> np.ndarray:
+def _along(solution: FieldSolution, ends: _Ends, slope: np.ndarray, read: Reader) -> np.ndarray:
     """Derivative of the results along the changed problem and the changed potential."""
-    ends = []
-    for change in (variation.step, -variation.step):
-        model, point = variation.at(solution.model, solution.point, change)
-        ends.append(read(replace(solution, model=model, point=point, a=solution.a + change * slope)))
-    return (ends[0] - ends[1]) / (2 * variation.step)
+    forward, back = (
+        read(replace(solution, model=model, point=point, a=solution.a + change * slope)) for change, model, point in ends
+    )
+    return (forward - back) / (ends[0][0] - ends[1][0])

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from math import nan
 from statistics import fmean
-from typing import Protocol
+from typing import Callable, Protocol
+
+import numpy as np
 
 from geometry.checks import check_machine
 from geometry.cross_section import mesh_cross_section
@@ -14,8 +17,10 @@ from geometry.machine import GeometryError, Machine
 from geometry.morph import Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingPoint
-from magnetostatics.probes import probe_reader
+from magnetostatics.probes import ProbeReader, probe_reader
+from magnetostatics.sensitivity import sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
+from magnetostatics.variations import Dimension
 from optimisation.states import SaturationReading, aligned_teeth
 
 
@@ -66,6 +71,9 @@ class Judge:
 _FARTHEST = {"back_iron_width": 0.4, "rotor_outer_radius": 0.1, "stator_outer_radius": 0.1}
 
 
+_TINY = 1e-9  # step along the slopes of the flux densities, per unit of a change
+
+
 class DesignSolver:
     """Solves designs one after another. A design close to the last mesh moves that mesh and starts from its field."""
 
@@ -88,6 +96,29 @@ class DesignSolver:
         section = model.section
         return _summary(machine, section.half_slot_area * section.half_slots_per_coil_side, self.judge.reading, seen)
 
+    def gradient(self, machine_of: Callable[[np.ndarray], Machine], steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of torque and limited flux density of the last design, each (k,), per unit of the k changes.
+
+        machine_of: changes (k,) -> machine, zero for the last design; steps: small size of each change
+        """
+        variations = {
+            number: Dimension(self._morpher, partial(_one_change, machine_of, number, len(steps)), step)
+            for number, step in enumerate(steps)
+        }
+        reader = probe_reader(self._solutions[0].model)
+        found = [sensitivities(s, variations, partial(_results, reader)) for s in self._solutions]
+        slopes = np.array([[state[number] for number in variations] for state in found])  # (states, k, results)
+        values = np.array([_results(reader, solution) for solution in self._solutions])
+        return slopes[:, :, 0].mean(axis=0), self._limited_slope(values[:, 1:], slopes[:, :, 1:])
+
+    def _limited_slope(self, values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Derivative of the limited flux density from (states, 3) worst flux densities and (states, k, 3) slopes."""
+        worst = [int(np.nanargmax(column)) if np.isfinite(column).any() else 0 for column in values.T]
+        here = np.array([values[state, kind] for kind, state in enumerate(worst)])
+        along = np.stack([slopes[state, :, kind] for kind, state in enumerate(worst)], axis=1)  # (k, 3)
+        limited = self.judge.reading.limited
+        return np.array([limited(*(here + _TINY * slope)) - limited(*(here - _TINY * slope)) for slope in along]) / (2 * _TINY)
+
     def mesh_anew(self) -> None:
         """Forget the mesh: the next design gets its own."""
         self._morpher, self._solutions = None, []
@@ -106,6 +137,18 @@ class DesignSolver:
         except GeometryError:  # the machine is sound, its distance from the mesh is not
             return None
         return self._solutions[0].model.like(section)
+
+
+def _one_change(machine_of, number: int, count: int, change: float) -> Machine:
+    changes = np.zeros(count)
+    changes[number] = change
+    return machine_of(changes)
+
+
+def _results(reader: ProbeReader, solution: FieldSolution) -> np.ndarray:
+    """(torque, aligned teeth, worst tooth, worst back iron) of one state, probes moved with the mesh."""
+    seen = _look(solution, reader.moved(solution.model).read(solution))
+    return np.array([seen["torque"], seen["aligned"], seen["tooth"], seen["back_iron"]])
 
 
 def _is_near(machine: Machine, base: Machine) -> bool:

@@ -3,6 +3,7 @@
 import pytest
 
 from optimisation.constrained_optimum import NoOptimumError, find_optimum
+from optimisation.gradient_optimum import find_optimum_by_gradients
 from optimisation.states import READINGS
 from pipeline.models import StudyFamily, judge_of
 from study.read import read_study
@@ -27,6 +28,15 @@ def test_optimum_reproduces_the_bracket_from_two_starts(study, reading):
         assert optimum.design.limited == pytest.approx(LIMIT, rel=1e-3)
         assert optimum.design.torque == pytest.approx(BRACKET[reading], rel=0.015)
     assert found[0].design.torque == pytest.approx(found[1].design.torque, rel=2e-3)
+
+
+@pytest.mark.parametrize("slots, start", ((12, (2.75e-3, 14.2e-3)), (9, (2.7e-3, 17.2e-3))))
+def test_gradients_and_quadratics_find_the_same_optimum(study, slots, start):
+    arguments = judge_of(study), StudyFamily(study.machine), slots, 42.5e-3, LIMIT, start
+    by_gradients, by_quadratics = find_optimum_by_gradients(*arguments), find_optimum(*arguments)
+    assert by_gradients.design.torque == pytest.approx(by_quadratics.design.torque, rel=1e-3)
+    assert by_gradients.design.limited == pytest.approx(LIMIT, rel=1e-3)
+    assert by_gradients.limit_binds
 
 
 def test_a_limit_that_does_not_bind_is_said_so(study):

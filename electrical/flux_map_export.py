@@ -1,0 +1,81 @@
+"""A flux map for other programs: one .mat or .npz file that motulator, SyR-e and Simulink look-up tables read.
+
+All values in SI, peak phase values in the amplitude-invariant rotor frame with the magnet on the d axis. In every table the
+first index runs along d, the second along q, which is how a Simulink 2-D Lookup Table (n-D) takes breakpoints 1 and 2.
+
+    for                                     fields
+    Simulink, Flux-Based PM Controller      id_index (n,), iq_index (m,): currents [A]
+                                            lambda_d, lambda_q, torque (n, m): flux linkages [Wb], torque [Nm]
+    Simulink, Flux-Based PMSM               flux_d (k,), flux_q (l,): flux linkages [Wb]
+                                            id, iq (k, l): currents [A]; inside (k, l): 1 where the map was solved,
+                                            0 in corners where it is continued along straight lines
+    Simscape, FEM-Parameterized PMSM (2-D)  id_index, iq_index, lambda_d, lambda_q, torque
+    motulator (MagneticModel)               i_s_dq, psi_s_dq (n, m) complex d + jq [A, Wb], tau_M (n, m) [Nm]
+    motulator import_syre_data, SyR-e       motorModel.FluxMap_dq with Id, Iq, Fd, Fq, T (m, n) in SyR-e's axes, whose d axis
+                                            is our q axis and whose q axis is our -d axis (.mat only)
+    all                                     pole_pairs, resistance [ohm], description
+
+In motulator: ``MagneticModel(i_s_dq=f["i_s_dq"], psi_s_dq=f["psi_s_dq"], tau_M=f["tau_M"], type="flux_map")``, then
+``.invert()`` gives the current map that its machine model takes; or ``import_syre_data("flux_map_export.mat")``.
+Field names: MathWorks "Generate Parameters for Flux-Based Blocks"; motulator 0.5 and 0.6 ``_flux_maps``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from scipy.io import savemat
+
+from electrical.flux_map_machine import FluxMapMachine
+
+DESCRIPTION = (
+    "Flux map, mean over the rotor angle. SI units, peak phase values, amplitude-invariant rotor frame, magnet flux on "
+    "the d axis, T = 1.5 p (psi_d i_q - psi_q i_d). First index along d, second along q."
+)
+
+
+def flux_tables(machine: FluxMapMachine, points: int = 41) -> dict:
+    """Fields of the export over regular currents and over regular flux linkages.
+
+    points: along each axis of either table. The flux linkages span those of all currents in the map.
+    """
+    i_d, i_q = (np.linspace(axis[0], axis[-1], points) for axis in (machine.i_d, machine.i_q))
+    current_d, current_q = np.meshgrid(i_d, i_q, indexing="ij")
+    psi_d, psi_q, torque = machine(current_d, current_q)
+    return {
+        "id_index": i_d,
+        "iq_index": i_q,
+        "lambda_d": psi_d,
+        "lambda_q": psi_q,
+        "torque": torque,
+        "i_s_dq": current_d + 1j * current_q,
+        "psi_s_dq": psi_d + 1j * psi_q,
+        "tau_M": torque,
+        "pole_pairs": machine.pole_pairs,
+        "resistance": machine.resistance,
+        "description": DESCRIPTION,
+    } | _current_tables(machine, points)
+
+
+def _current_tables(machine: FluxMapMachine, points: int) -> dict:
+    flux_d, flux_q = (np.linspace(psi.min(), psi.max(), points) for psi in (machine.psi_d, machine.psi_q))
+    i_d, i_q, inside = machine.continued_currents(*np.meshgrid(flux_d, flux_q, indexing="ij"))
+    return {"flux_d": flux_d, "flux_q": flux_q, "id": i_d, "iq": i_q, "inside": inside.astype(float)}
+
+
+def syre_structure(tables: dict) -> dict:
+    """``motorModel`` as SyR-e stores it: its d axis is our q axis, its q axis our negative d axis; i_d along columns."""
+    i_d, i_q = np.meshgrid(tables["iq_index"], -tables["id_index"][::-1])
+    turned = {"Id": i_d, "Iq": i_q, "Fd": tables["lambda_q"][::-1], "Fq": -tables["lambda_d"][::-1], "T": tables["torque"][::-1]}
+    return {"FluxMap_dq": turned}
+
+
+def write_mat(path: Path, tables: dict) -> None:
+    """Write the fields of ``flux_tables`` as a MATLAB file, with SyR-e's structure."""
+    savemat(path, {**tables, "motorModel": syre_structure(tables)}, oned_as="column")
+
+
+def write_npz(path: Path, tables: dict) -> None:
+    """Write the fields of ``flux_tables`` for ``numpy.load``."""
+    np.savez_compressed(path, **tables)

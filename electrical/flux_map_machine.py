@@ -1,0 +1,286 @@
+"""A synchronous machine handed over as a flux map: saturation and cross-saturation in, the same questions out.
+
+Rotor frame, amplitude-invariant: currents, voltages and flux linkages are peak phase values. Motor signs.
+
+    (i_d, i_q) -> psi_d, psi_q      a bicubic spline each, twice continuously differentiable
+    T   = 1.5 p (psi_d i_q - psi_q i_d)
+    v_d = R i_d - omega_e psi_q,    v_q = R i_q + omega_e psi_d
+
+Steady state and mean over the rotor angle: no ripple, no iron loss. ``SynchronousMachine`` is the same machine with
+constant parameters; what a current and a voltage limit leave of this one is in ``flux_map_limits``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from electrical.synchronous_machine import SynchronousMachine
+
+_FEWEST = 4  # points along an axis that a cubic spline needs
+_CHECKED_PER_CELL = 4  # where the Jacobian is looked at, points along each side of a cell
+_OUTSIDE = 1e-9  # relative to the span of the map; a current this far beyond its edge counts as on it
+_INVERSE_TOLERANCE = 1e-13  # of the flux linkage, relative to the largest in the map
+_MOST_ITERATIONS = 60
+
+
+class FluxMapMachineError(ValueError):
+    """A flux map that does not describe a machine, or a current or flux linkage outside it; the message says which."""
+
+
+@dataclass(frozen=True, eq=False)
+class FluxMapMachine:
+    """Machine described by its flux linkages over a rectangular grid of currents.
+
+    pole_pairs: p
+    i_d (n,), i_q (m,): peak phase currents, increasing, four or more each [A]
+    psi_d, psi_q (n, m): peak flux linkages of one phase [Wb]
+    resistance: one phase R [ohm], may be zero
+
+    Raises FluxMapMachineError when the spline through the points is not strictly monotone, that is when the symmetric
+    part of its incremental inductances is not positive definite somewhere: only then is the inverse unique everywhere.
+    Currents outside the grid are refused, not extrapolated.
+    """
+
+    pole_pairs: int
+    i_d: np.ndarray
+    i_q: np.ndarray
+    psi_d: np.ndarray
+    psi_q: np.ndarray
+    resistance: float
+
+    def __post_init__(self):
+        _check_axis("i_d", self.i_d)
+        _check_axis("i_q", self.i_q)
+        for name in ("psi_d", "psi_q"):
+            _check_table(name, getattr(self, name), (len(self.i_d), len(self.i_q)))
+        if self.pole_pairs < 1 or self.resistance < 0:
+            raise FluxMapMachineError(
+                f"a machine has a pole pair or more and no negative resistance; found {self.pole_pairs}, {self.resistance}"
+            )
+        self._check_monotone()
+
+    @classmethod
+    def from_per_turn(cls, data, *, turns: int, active_length: float, resistance: float) -> FluxMapMachine:
+        """The machine with a winding: i = NI / N_t, psi = N_t l psi_1, mean over the rotor angle.
+
+        data: map per turn and metre with the variables psi_d, psi_q over angle, id, iq (an ``xarray.Dataset`` of
+            ``magnetostatics.flux_map``), the angles evenly spaced over one period
+        turns: N_t of one coil; active_length: l [m]; resistance: of one phase [ohm]
+        """
+        mean = data[["psi_d", "psi_q"]].mean("angle").transpose("id", "iq")
+        scale = turns * active_length
+        return cls(
+            pole_pairs=int(data.attrs["pole_pairs"]),
+            i_d=data["id"].values / turns,
+            i_q=data["iq"].values / turns,
+            psi_d=scale * mean["psi_d"].values,
+            psi_q=scale * mean["psi_q"].values,
+            resistance=resistance,
+        )
+
+    # ---- current to flux linkage --------------------------------------------------------------------------------
+
+    def __call__(self, i_d, i_q):
+        """(psi_d, psi_q, torque) [Wb, Wb, Nm] at peak phase currents [A]; arrays broadcast."""
+        psi_d, psi_q = self.flux_linkage(i_d, i_q)
+        return psi_d, psi_q, 1.5 * self.pole_pairs * (psi_d * i_q - psi_q * i_d)
+
+    def flux_linkage(self, i_d, i_q):
+        """(psi_d, psi_q) [Wb] at peak phase currents [A]."""
+        i_d, i_q = self._inside(i_d, i_q)
+        return self._psi_d.ev(i_d, i_q), self._psi_q.ev(i_d, i_q)
+
+    def torque(self, i_d, i_q):
+        """T = 1.5 p (psi_d i_q - psi_q i_d) [Nm]."""
+        return self(i_d, i_q)[2]
+
+    def voltage(self, i_d, i_q, speed):
+        """(v_d, v_q) in the steady state [V peak phase] at mechanical speed [rad/s]."""
+        psi_d, psi_q = self.flux_linkage(i_d, i_q)
+        omega_e = self.pole_pairs * speed
+        return self.resistance * i_d - omega_e * psi_q, self.resistance * i_q + omega_e * psi_d
+
+    def incremental_inductances(self, i_d, i_q) -> np.ndarray:
+        """d(psi_d, psi_q) / d(i_d, i_q) (2, 2, ...) [H].
+
+        Reciprocity (L_dq = L_qd) holds for the map itself and for the two splines as far as they follow it.
+        """
+        return self._jacobian(*self._inside(i_d, i_q))
+
+    def apparent_inductances(self, i_d, i_q):
+        """((psi_d(i_d, i_q) - psi_d(0, i_q)) / i_d, psi_q / i_q) [H]; currents of zero are refused.
+
+        On the axes these are the usual apparent inductances; elsewhere cross-saturation of the magnet flux is left in
+        psi_d(0, i_q).
+        """
+        if np.any(np.asarray(i_d) == 0) or np.any(np.asarray(i_q) == 0):
+            raise FluxMapMachineError("no apparent inductance at zero current: take the incremental one there")
+        psi_d, psi_q = self.flux_linkage(i_d, i_q)
+        return (psi_d - self.flux_linkage(np.zeros_like(i_d, dtype=float), i_q)[0]) / i_d, psi_q / i_q
+
+    # ---- flux linkage to current --------------------------------------------------------------------------------
+
+    def currents(self, psi_d, psi_q):
+        """(i_d, i_q) [A] at flux linkages [Wb]: Newton's method with the spline's derivatives, to 1e-13 of the flux.
+
+        Raises FluxMapMachineError when a flux linkage belongs to no current of the map.
+        """
+        i_d, i_q, inside = self.continued_currents(psi_d, psi_q)
+        if not np.all(inside):
+            raise FluxMapMachineError(
+                f"{np.size(inside) - np.count_nonzero(inside)} of {np.size(inside)} flux linkages need currents outside "
+                f"the map, {self._extent()}: solve a larger map"
+            )
+        return i_d, i_q
+
+    def continued_currents(self, psi_d, psi_q):
+        """(i_d, i_q, inside) for any flux linkage [Wb]; ``inside`` tells which belong to the map.
+
+        Beyond its edge the map is continued along straight lines with its smallest incremental inductance, which keeps
+        it monotone. Meant for the corners of look-up tables, which no drive within the limits visits.
+        """
+        psi_d, psi_q = np.broadcast_arrays(np.asarray(psi_d, dtype=float), np.asarray(psi_q, dtype=float))
+        i = self._nearest(psi_d.ravel(), psi_q.ravel())
+        i = self._newton(np.stack([psi_d.ravel(), psi_q.ravel()]), i).reshape(2, *psi_d.shape)
+        inside = np.all(np.abs(i - self._clip(i)) <= self._slack(i), axis=0)
+        return *np.where(inside, self._clip(i), i), inside
+
+    # ---- the constant-parameter machine -------------------------------------------------------------------------
+
+    def constant_parameters(self, current: float) -> SynchronousMachine:
+        """No-load flux linkage, and apparent inductances at a current [A] on the negative d axis and on the q axis."""
+        psi_m = float(self.flux_linkage(0.0, 0.0)[0])
+        inductance_d = (psi_m - float(self.flux_linkage(-current, 0.0)[0])) / current
+        inductance_q = float(self.flux_linkage(0.0, current)[1]) / current
+        return SynchronousMachine(self.pole_pairs, psi_m, inductance_d, inductance_q, self.resistance)
+
+    @property
+    def reach(self) -> float:
+        """Largest peak current of which the whole motoring quarter (i_d <= 0 <= i_q) lies in the map [A]."""
+        return float(min(-self.i_d[0], self.i_q[-1]))
+
+    # ---- splines ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _psi_d(self) -> RectBivariateSpline:
+        return RectBivariateSpline(self.i_d, self.i_q, self.psi_d)
+
+    @cached_property
+    def _psi_q(self) -> RectBivariateSpline:
+        return RectBivariateSpline(self.i_d, self.i_q, self.psi_q)
+
+    def _jacobian(self, i_d, i_q) -> np.ndarray:
+        rows = [[psi.ev(i_d, i_q, dx=1), psi.ev(i_d, i_q, dy=1)] for psi in (self._psi_d, self._psi_q)]
+        return np.array(rows)
+
+    @cached_property
+    def _box(self) -> np.ndarray:
+        """Lower and upper end of i_d and i_q (2, 2): [[d low, q low], [d high, q high]]."""
+        return np.array([[self.i_d[0], self.i_q[0]], [self.i_d[-1], self.i_q[-1]]])
+
+    def _clip(self, i: np.ndarray) -> np.ndarray:
+        low, high = self._box.reshape(2, 2, *[1] * (i.ndim - 1))
+        return np.clip(i, low, high)
+
+    def _slack(self, i: np.ndarray) -> np.ndarray:
+        return _OUTSIDE * (self._box[1] - self._box[0]).reshape(2, *[1] * (i.ndim - 1))
+
+    def _inside(self, i_d, i_q) -> np.ndarray:
+        i = np.stack(np.broadcast_arrays(np.asarray(i_d, dtype=float), np.asarray(i_q, dtype=float)))
+        if np.any(np.abs(i - self._clip(i)) > self._slack(i)):  # NaN passes and stays NaN
+            raise FluxMapMachineError(f"a current lies outside the map, {self._extent()}: solve a larger map")
+        return self._clip(i)
+
+    def _extent(self) -> str:
+        return f"i_d {self.i_d[0]:.4g} to {self.i_d[-1]:.4g} A, i_q {self.i_q[0]:.4g} to {self.i_q[-1]:.4g} A"
+
+    @cached_property
+    def _fine_jacobian(self) -> np.ndarray:
+        return self._jacobian(*np.meshgrid(_refined(self.i_d), _refined(self.i_q), indexing="ij"))
+
+    def _check_monotone(self) -> None:
+        (dd, dq), (qd, qq) = self._fine_jacobian
+        definite = (dd > 0) & (dd * qq > ((dq + qd) / 2) ** 2)
+        if not definite.all():
+            row, column = np.argwhere(~definite)[0]
+            raise FluxMapMachineError(
+                f"the map is not monotone near i_d = {_refined(self.i_d)[row]:.4g} A, i_q = {_refined(self.i_q)[column]:.4g} A: "
+                "check the order of the axes and the signs, or solve a finer grid to a tighter tolerance"
+            )
+
+    # ---- inverse ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _edge_inductance(self) -> np.ndarray:
+        """Slope (2,) with which the map goes on beyond its edge [H]."""
+        return np.array([self._fine_jacobian[0, 0].min(), self._fine_jacobian[1, 1].min()])
+
+    def _nearest(self, psi_d: np.ndarray, psi_q: np.ndarray) -> np.ndarray:
+        """Grid currents (2, k) whose flux linkages are closest."""
+        distance = (self.psi_d.ravel()[:, None] - psi_d) ** 2 + (self.psi_q.ravel()[:, None] - psi_q) ** 2
+        row, column = np.unravel_index(distance.argmin(axis=0), self.psi_d.shape)
+        return np.stack([self.i_d[row], self.i_q[column]])
+
+    def _newton(self, psi: np.ndarray, i: np.ndarray) -> np.ndarray:
+        """Currents (2, k) of the continued map at flux linkages psi (2, k), every column with its own step length."""
+        scale = np.hypot(self.psi_d, self.psi_q).max()
+        miss = self._miss(i, psi)
+        for _ in range(_MOST_ITERATIONS):
+            size = np.hypot(*miss)
+            if np.all(size <= _INVERSE_TOLERANCE * scale):
+                return i
+            i, miss = self._step(i, miss, psi, size)
+        raise FluxMapMachineError(
+            f"the inverse of the map was not found to {_INVERSE_TOLERANCE:g} for {np.count_nonzero(size > 1e-12 * scale)} "
+            f"flux linkages in {_MOST_ITERATIONS} steps: solve a finer map"
+        )
+
+    def _step(self, i, miss, psi, size):
+        step = _solve_2x2(self._continued_jacobian(i), miss)
+        length = np.ones_like(size)
+        for _ in range(10):
+            trial = i + length * step
+            found = self._miss(trial, psi)
+            worse = np.hypot(*found) > np.maximum(size, _INVERSE_TOLERANCE * np.abs(psi).max())
+            if not worse.any():
+                break
+            length = np.where(worse, length / 2, length)
+        return trial, found
+
+    def _miss(self, i: np.ndarray, psi: np.ndarray) -> np.ndarray:
+        inside = self._clip(i)
+        beyond = self._edge_inductance[:, None] * (i - inside)
+        return psi - np.stack([self._psi_d.ev(*inside), self._psi_q.ev(*inside)]) - beyond
+
+    def _continued_jacobian(self, i: np.ndarray) -> np.ndarray:
+        inside = self._clip(i)
+        edge = np.diag(self._edge_inductance)[:, :, None]
+        return np.where((i != inside)[None], edge, self._jacobian(*inside))
+
+
+def _check_axis(name: str, values: np.ndarray) -> None:
+    if np.ndim(values) != 1 or len(values) < _FEWEST or np.any(np.diff(values) <= 0):
+        raise FluxMapMachineError(f"{name} must be {_FEWEST} increasing currents or more; found shape {np.shape(values)}")
+    if not values[0] <= 0 <= values[-1]:
+        raise FluxMapMachineError(f"{name} must reach zero; found {values[0]:.4g} to {values[-1]:.4g} A")
+
+
+def _check_table(name: str, values: np.ndarray, shape: tuple[int, int]) -> None:
+    if np.shape(values) != shape or not np.all(np.isfinite(values)):
+        raise FluxMapMachineError(f"{name} must be finite with one value per (i_d, i_q), {shape}; found {np.shape(values)}")
+
+
+def _refined(axis: np.ndarray) -> np.ndarray:
+    """The axis with every interval divided."""
+    count = _CHECKED_PER_CELL * (len(axis) - 1) + 1
+    return np.interp(np.linspace(0, len(axis) - 1, count), np.arange(len(axis)), axis)
+
+
+def _solve_2x2(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions (2, k) of k systems (2, 2, k)."""
+    (a, b), (c, d) = matrix
+    return np.stack([d * right[0] - b * right[1], a * right[1] - c * right[0]]) / (a * d - b * c)
