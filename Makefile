@@ -48,8 +48,14 @@ check: $(SET_UP)
 test: $(SET_UP)
 	$(PYTHON) -m pytest
 
-benchmark: $(SET_UP)
-	$(PYTHON) -m pipeline.benchmark
+BENCHMARK_SET_UP := .venv-benchmark/.set-up
+
+benchmark: $(SET_UP) $(BENCHMARK_SET_UP)
+	$(PYTHON) -m benchmarks.other_codes
+	$(PYTHON) -m benchmarks.speed
+
+$(BENCHMARK_SET_UP): benchmarks/peer_requirements.txt benchmarks/set_up
+	@sh benchmarks/set_up
 
 clean:
 	find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +

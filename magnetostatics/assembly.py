@@ -35,9 +35,9 @@ class Entries:
         i, j = pairs
         a, b = column[dofs][i], column[dofs][j]
         local_sign = sign[dofs]
-        keys = np.minimum(a, b) * np.int64(size) + np.maximum(a, b)
+        keys = (np.minimum(a, b) * np.int64(size) + np.maximum(a, b)).ravel()
         distinct, position = np.unique(keys, return_inverse=True)
-        return cls(distinct, position.ravel(), (local_sign[i] * local_sign[j]).ravel())
+        return cls(distinct, position, (local_sign[i] * local_sign[j]).ravel())
 
     def sum(self, local: np.ndarray) -> np.ndarray:
         """Add local entries (K, E) up, one value per key."""

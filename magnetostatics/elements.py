@@ -23,7 +23,7 @@ from skfem.quadrature import get_quadrature
 class TriangleOrder:
     """Lagrange functions on the reference triangle at the quadrature points.
 
-    values (F, Q), gradients (F, 2, Q), points (2, Q), weights (Q,); pairs: local (row, column) of the lower triangle
+    values (F, Q), gradients (F, 2, Q), points (2, Q), weights (Q,); pairs: local (row, column) of the lower triangle, K
     """
 
     element: Element
@@ -38,6 +38,13 @@ class TriangleOrder:
         points, weights = get_quadrature(element, 2)  # exact for a constant reluctivity on straight quadratic triangles
         values, gradients = zip(*(element.lbasis(points, i) for i in range(functions)))
         return cls(element, np.stack(values), _same_shape(gradients), points, weights, np.tril_indices(functions))
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """integral of (d_u d_u, d_u d_v + d_v d_u, d_v d_v) of every pair over the reference triangle (K, 3)."""
+        i, j = self.pairs
+        u, v = self.gradients[:, 0], self.gradients[:, 1]
+        return np.stack([(u[i] * u[j]), (u[i] * v[j] + v[i] * u[j]), (v[i] * v[j])], axis=1) @ self.weights
 
     def gradients_at(self, local: np.ndarray) -> np.ndarray:
         """Reference gradients (F, 2, n) at local coordinates (2, n)."""
@@ -76,6 +83,7 @@ class Elements:
     """A set of straight triangles with F functions each (3 linear, 6 quadratic).
 
     dofs (F, E); gradients of the functions (F, Q, E) [1/m]; weights (Q, E) [m^2]; points (2, Q, E) [m]
+    edges: from the first corner to the second and third (2, 2, E) [m]
     """
 
     order: TriangleOrder
@@ -84,6 +92,7 @@ class Elements:
     gradient_y: np.ndarray
     weights: np.ndarray
     points: np.ndarray
+    edges: np.ndarray
 
     @classmethod
     def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
@@ -95,7 +104,7 @@ class Elements:
         gradient_x = (along_u * v[1] - along_v * u[1]) / determinant
         gradient_y = (along_v * u[0] - along_u * v[0]) / determinant
         points = a[:, None] + u[:, None] * order.points[0][:, None] + v[:, None] * order.points[1][:, None]
-        return cls(order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points)
+        return cls(order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points, np.stack([u, v]))
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices."""
@@ -106,6 +115,7 @@ class Elements:
             self.gradient_y[:, :, which],
             self.weights[:, which],
             self.points[:, :, which],
+            self.edges[:, :, which],
         )
 
     @cached_property
@@ -113,6 +123,17 @@ class Elements:
         """weights * grad phi_i . grad phi_j for the pairs of functions (K, Q, E): times nu it is the element matrix."""
         i, j = self.order.pairs
         return (self.gradient_x[i] * self.gradient_x[j] + self.gradient_y[i] * self.gradient_y[j]) * self.weights
+
+    @cached_property
+    def metric(self) -> np.ndarray:
+        """What a constant reluctivity multiplies in the element matrix (3, E): grad . grad in reference coordinates."""
+        u, v = self.edges
+        determinant = np.abs(u[0] * v[1] - u[1] * v[0])
+        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / determinant
+
+    def stiffness(self, reluctivity: np.ndarray | float) -> np.ndarray:
+        """Element matrices (K, E) for a reluctivity that is constant in each element (E,) [m/H]."""
+        return self.order.stiffness @ (self.metric * reluctivity)
 
     def gradient(self, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(dA/dx, dA/dy) at the quadrature points, each (Q, E) [T]."""

@@ -163,7 +163,7 @@ class FieldModel:
         """Entries of the linear part without the rotor side of the gap."""
         which = self.topology.linear
         elements = self.elements.take(which)
-        return self.topology.linear_entries.sum(elements.stiffness_basis.sum(1) * self._reluctivity[which])
+        return self.topology.linear_entries.sum(elements.stiffness(self._reluctivity[which]))
 
     @cached_property
     def _reluctivity(self) -> np.ndarray:
@@ -176,7 +176,7 @@ class FieldModel:
     def _join(self, turn: Turn) -> JoinedSystem:
         if self._joined is None or self._joined[0] != turn:
             pattern, entries = self.topology.pattern(turn.edges)
-            band = entries.sum(self.band_elements(turn.rest).stiffness_basis.sum(1) / MU_0)
+            band = entries.sum(self.band_elements(turn.rest).stiffness(1 / MU_0))
             self._joined = turn, JoinedSystem(pattern, (self._linear_values, band))
         return self._joined[1]
 
