@@ -58,32 +58,29 @@ class SaturationReading:
         raise NotImplementedError
 
 
-def _null_state(machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> list[OperatingPoint]:
-    angle, gamma = null_angle(machine, layout), null_current_angle(machine, layout)
-    return [OperatingPoint(angle, amplitude, gamma, packing)]
+class NullStateReading(SaturationReading):
+    """Readings that look at the null state alone."""
+
+    def states(self, machine, layout, amplitude, packing):
+        angle, gamma = null_angle(machine, layout), null_current_angle(machine, layout)
+        return [OperatingPoint(angle, amplitude, gamma, packing)]
 
 
 @dataclass(frozen=True)
-class AlignedTooth(SaturationReading):
-    """The thesis's reading: the tooth with a magnet exactly on it, in the null state."""
+class AlignedTooth(NullStateReading):
+    """The thesis's reading: the tooth with a magnet exactly on it."""
 
     name: str = "aligned_tooth"
-
-    def states(self, machine, layout, amplitude, packing):
-        return _null_state(machine, layout, amplitude, packing)
 
     def limited(self, aligned, tooth, back_iron):
         return aligned
 
 
 @dataclass(frozen=True)
-class EveryTooth(SaturationReading):
-    """Every tooth, in the null state."""
+class EveryTooth(NullStateReading):
+    """Every tooth."""
 
     name: str = "every_tooth"
-
-    def states(self, machine, layout, amplitude, packing):
-        return _null_state(machine, layout, amplitude, packing)
 
     def limited(self, aligned, tooth, back_iron):
         return tooth
