@@ -1,4 +1,4 @@
-"""A case solved by this project, from the meshed section in memory: numbering, pattern, Newton, torque, flux linkage."""
+"""A case solved by this project, from the meshed section in memory to torque and flux linkage."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ def _sides(points: np.ndarray, edges: np.ndarray, middle: float, width: float) -
         return first, first
     distance, partner = cKDTree(points[others]).query(_as_points(place[first] * np.exp(1j * width)))
     if distance.max() > _SAME_PLACE or 2 * len(first) != len(edges):
-        raise ValueError(f"the two sides of the sector do not match: {len(first)} of {len(edges)} edges are on the first")
+        raise ValueError(f"the sides of the sector do not match: {len(first)} of {len(edges)} edges are on the first")
     return first, others[partner]
 
 

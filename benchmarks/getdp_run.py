@@ -59,9 +59,10 @@ def solve_getdp(
         post = ("Results", "Potential") if with_potential else ("Results",)
         files = ("getdp", "machine.pro", "-msh", "case.msh", "-v", "3")
         output, cost = run([*files, "-solve", "Newton", "-pos", *post, *solver.options], folder)
-        torque, *linkage = (_last_number(folder / f"{name}.txt") for name in ("torque", *map("linkage_{}".format, _PHASES)))
+        torque = _last_number(folder / "torque.txt")
+        linkage = np.array([_last_number(folder / f"linkage_{phase}.txt") for phase in _PHASES])
         potential = _potential(folder / "potential.txt", case.mesh.corners) if with_potential else None
-    return CodeResult(solver.name, torque, np.array(linkage), _residuals(output, tolerance), cost, potential, {})
+    return CodeResult(solver.name, torque, linkage, _residuals(output, tolerance), cost, potential, {})
 
 
 def _last_number(path: Path) -> float:
@@ -133,8 +134,10 @@ def _functions(case: FieldCase) -> list[str]:
     numbers, (b2, nu) = region_numbers(case.mesh), case.law_table
     pairs = ", ".join(f"{x!r}, {y!r}" for x, y in zip(b2.tolist(), nu.tolist()))
     lines = [f"  law() = {{{pairs}}};"]
-    lines += [f"  j[Region[{numbers[name]}]] = Vector[0, 0, {value!r}];" for name, value in case.current_densities.items()]
-    lines += [f"  br[Region[{numbers[name]}]] = Vector[{x!r}, {y!r}, 0];" for name, (x, y) in case.remanences.items()]
+    for name, density in case.current_densities.items():
+        lines.append(f"  j[Region[{numbers[name]}]] = Vector[0, 0, {density!r}];")
+    for name, (x, y) in case.remanences.items():
+        lines.append(f"  br[Region[{numbers[name]}]] = Vector[{x!r}, {y!r}, 0];")
     for name, (phase, sign) in case.coil_sides.items():
         lines += [f"  turn_{i}[Region[{numbers[name]}]] = {sign if i == phase else 0};" for i in _PHASES]
     return ["Function {", *lines, "}"]

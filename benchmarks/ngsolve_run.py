@@ -23,7 +23,7 @@ _VERSION = "import ngsolve; print(ngsolve.__version__)"
 def ngsolve_version() -> str:
     """Version of NGSolve in the environment of the benchmark. Raises PeerError without one."""
     if not PYTHON.is_file():
-        raise PeerError(f"there is no {PYTHON.parent.parent.name}, the environment with NGSolve: run 'sh benchmarks/set_up'")
+        raise PeerError("there is no .venv-benchmark, the environment with NGSolve: run 'sh benchmarks/set_up'")
     with TemporaryDirectory() as folder:
         output, _ = run([str(PYTHON), "-c", _VERSION], Path(folder))
     return output.split()[-1]

@@ -21,7 +21,8 @@ from materials.reluctivity import Reluctivity
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, MILLIMETRE
 
 ORDERS = {"P1": LINEAR, "P2": QUADRATIC}
-_LAW_TOLERANCE = 1e-5  # relative, of the straight lines through the sampled reluctivity
+FINE_LAW = 1e-5  # relative error of the straight lines through the sampled reluctivity: 1250 points
+SHORT_LAW = 1e-3  # the same, 123 points: peers search their tables point by point; torque moves by 2e-5
 _HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; iterations that overshoot it follow its last line
 _SAMPLING_GRID = 400_001
 
@@ -79,12 +80,16 @@ def reference_section(density: MeshDensity = MeshDensity(), whole: bool = False)
 
 @dataclass(frozen=True, eq=False)
 class FieldCase:
-    """One field problem: a meshed section with its materials at one state, to be solved with elements of one order."""
+    """One field problem: a meshed section with its materials at one state, to be solved with elements of one order.
+
+    order_name: a key of ORDERS; law_tolerance: relative, of the table of nu that the peers read
+    """
 
     section: CrossSection
     materials: MachineMaterials
     state: State
-    order_name: str  # a key of ORDERS
+    order_name: str
+    law_tolerance: float = FINE_LAW
 
     @property
     def order(self) -> TriangleOrder:
@@ -117,7 +122,8 @@ class FieldCase:
     @property
     def coil_sides(self) -> dict[str, tuple[int, int]]:
         """Phase and direction of the conductors in every coil side, by region."""
-        return {f"slot_{slot}_{side}": self.section.layout.coil_side(slot, side) for slot, side in self.section.coil_sides}
+        layout, sides = self.section.layout, self.section.coil_sides
+        return {f"slot_{slot}_{side}": layout.coil_side(slot, side) for slot, side in sides}
 
     @property
     def remanences(self) -> dict[str, tuple[float, float]]:
@@ -133,7 +139,7 @@ class FieldCase:
         """(b2, nu): points of the steel's law for straight lines between them. One steel in stator and rotor only."""
         if self.materials.stator_steel is not self.materials.rotor_steel:
             raise ValueError("the comparison holds for one steel in stator and rotor")
-        return sampled_law(self.materials.stator_steel)
+        return sampled_law(self.materials.stator_steel, self.law_tolerance)
 
     @property
     def torque_ring(self) -> tuple[float, float]:
@@ -142,7 +148,7 @@ class FieldCase:
 
 
 @lru_cache
-def sampled_law(law: Reluctivity, tolerance: float = _LAW_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
+def sampled_law(law: Reluctivity, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """Points (b2, nu) between which straight lines keep to a law within a relative tolerance of nu.
 
     b2: |B|^2 [T^2]; nu: [m/H]. Each line is the longest on a fine grid that holds.

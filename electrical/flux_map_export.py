@@ -1,7 +1,7 @@
 """A flux map for other programs: one .mat or .npz file that motulator, SyR-e and Simulink look-up tables read.
 
-All values in SI, peak phase values in the amplitude-invariant rotor frame with the magnet on the d axis. In every table the
-first index runs along d, the second along q, which is how a Simulink 2-D Lookup Table (n-D) takes breakpoints 1 and 2.
+All values in SI, peak phase values in the amplitude-invariant rotor frame with the magnet on the d axis. In every table
+the first index runs along d, the second along q, which is how a Simulink 2-D Lookup Table takes breakpoints 1 and 2.
 
     for                                     fields
     Simulink, Flux-Based PM Controller      id_index (n,), iq_index (m,): currents [A]
@@ -11,8 +11,8 @@ first index runs along d, the second along q, which is how a Simulink 2-D Lookup
                                             0 in corners where it is continued along straight lines
     Simscape, FEM-Parameterized PMSM (2-D)  id_index, iq_index, lambda_d, lambda_q, torque
     motulator (MagneticModel)               i_s_dq, psi_s_dq (n, m) complex d + jq [A, Wb], tau_M (n, m) [Nm]
-    motulator import_syre_data, SyR-e       motorModel.FluxMap_dq with Id, Iq, Fd, Fq, T (m, n) in SyR-e's axes, whose d axis
-                                            is our q axis and whose q axis is our -d axis (.mat only)
+    motulator import_syre_data, SyR-e       motorModel.FluxMap_dq with Id, Iq, Fd, Fq, T in SyR-e's axes, whose d
+                                            axis is our q axis and whose q axis is our -d axis; i_q >= 0, .mat only
     all                                     pole_pairs, resistance [ohm], description
 
 In motulator: ``MagneticModel(i_s_dq=f["i_s_dq"], psi_s_dq=f["psi_s_dq"], tau_M=f["tau_M"], type="flux_map")``, then
@@ -65,10 +65,12 @@ def _current_tables(machine: FluxMapMachine, points: int) -> dict:
 
 
 def syre_structure(tables: dict) -> dict:
-    """``motorModel`` as SyR-e stores it: its d axis is our q axis, its q axis our negative d axis; i_d along columns."""
-    i_d, i_q = np.meshgrid(tables["iq_index"], -tables["id_index"][::-1])
-    turned = {"Id": i_d, "Iq": i_q, "Fd": tables["lambda_q"][::-1], "Fq": -tables["lambda_d"][::-1], "T": tables["torque"][::-1]}
-    return {"FluxMap_dq": turned}
+    """``motorModel`` as SyR-e stores it, i_q >= 0: our q axis along the columns, our negative d axis along the rows."""
+    half = tables["iq_index"] >= 0
+    names = (("Fd", "lambda_q"), ("Fq", "lambda_d"), ("T", "torque"))
+    turned = {name: tables[ours][::-1, half] for name, ours in names}
+    i_d, i_q = np.meshgrid(tables["iq_index"][half], -tables["id_index"][::-1])
+    return {"FluxMap_dq": {**turned, "Fq": -turned["Fq"], "Id": i_d, "Iq": i_q}}
 
 
 def write_mat(path: Path, tables: dict) -> None:

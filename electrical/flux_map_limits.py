@@ -35,7 +35,9 @@ def mtpa_currents(machine: FluxMapMachine, current_peak):
     _check_reach(machine, current)
     with np.errstate(divide="ignore", invalid="ignore"):
         low = -np.arcsin(np.where(current > 0, np.minimum(machine.i_d[-1] / current, 1.0), 1.0))
-    gamma = _golden_maximum(lambda g: machine.torque(-current * np.sin(g), current * np.cos(g)), low, np.full_like(low, pi / 2))
+    gamma = _golden_maximum(
+        lambda g: machine.torque(-current * np.sin(g), current * np.cos(g)), low, np.full_like(low, pi / 2)
+    )
     return -current * np.sin(gamma), current * np.cos(gamma)
 
 
@@ -47,9 +49,10 @@ def base_speed(machine: FluxMapMachine, limits: DriveLimits):
 def torque_speed_envelope(machine: FluxMapMachine, limits: DriveLimits, speed) -> Envelope:
     """Largest motoring torque under both limits at each mechanical speed [rad/s], not negative, any shape.
 
-    For each i_d the largest allowed i_q is found by bisection on |v| = V, and a golden-section search over i_d takes the
-    best: MTPA, field weakening and MTPV in one. Torque and currents are NaN where no current keeps the voltage inside.
-    Raises FluxMapMachineError when the current limit leaves the map, or the best current lies on its edge at positive i_d.
+    For each i_d the largest allowed i_q is found by bisection on |v| = V, and a golden-section search over i_d takes
+    the best: MTPA, field weakening and MTPV in one. Torque and currents are NaN where no current keeps the voltage
+    inside. Raises FluxMapMachineError when the current limit leaves the map, or the best current lies on its edge at
+    positive i_d.
     """
     speed = np.asarray(speed, dtype=float)
     if not np.all(speed >= 0):
@@ -126,11 +129,14 @@ def _golden_maximum(merit, low, high):
 def _check_reach(machine, current):
     if np.max(current) > machine.reach * (1 + VOLTAGE_SLACK):
         raise FluxMapMachineError(
-            f"the current limit of {np.max(current):.4g} A leaves the map, which reaches {machine.reach:.4g} A: solve a larger map"
+            f"the current limit of {np.max(current):.4g} A leaves the map, which reaches {machine.reach:.4g} A: "
+            "solve a larger map"
         )
 
 
 def _check_edge(machine, limits, i_d):
     edge = machine.i_d[-1]
     if limits.current_peak > edge and np.any(edge - i_d < _ON_EDGE * (edge - machine.i_d[0])):
-        raise FluxMapMachineError(f"the best current lies on the edge of the map at i_d = {edge:.4g} A: solve a larger map")
+        raise FluxMapMachineError(
+            f"the best current lies on the edge of the map at i_d = {edge:.4g} A: solve a larger map"
+        )

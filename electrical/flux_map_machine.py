@@ -59,7 +59,8 @@ class FluxMapMachine:
             _check_table(name, getattr(self, name), (len(self.i_d), len(self.i_q)))
         if self.pole_pairs < 1 or self.resistance < 0:
             raise FluxMapMachineError(
-                f"a machine has a pole pair or more and no negative resistance; found {self.pole_pairs}, {self.resistance}"
+                "a machine has a pole pair or more and no negative resistance; "
+                f"found {self.pole_pairs}, {self.resistance}"
             )
         self._check_monotone()
 
@@ -132,8 +133,8 @@ class FluxMapMachine:
         i_d, i_q, inside = self.continued_currents(psi_d, psi_q)
         if not np.all(inside):
             raise FluxMapMachineError(
-                f"{np.size(inside) - np.count_nonzero(inside)} of {np.size(inside)} flux linkages need currents outside "
-                f"the map, {self._extent()}: solve a larger map"
+                f"{np.size(inside) - np.count_nonzero(inside)} of {np.size(inside)} flux linkages need currents "
+                f"outside the map, {self._extent()}: solve a larger map"
             )
         return i_d, i_q
 
@@ -208,7 +209,8 @@ class FluxMapMachine:
         if not definite.all():
             row, column = np.argwhere(~definite)[0]
             raise FluxMapMachineError(
-                f"the map is not monotone near i_d = {_refined(self.i_d)[row]:.4g} A, i_q = {_refined(self.i_q)[column]:.4g} A: "
+                f"the map is not monotone near i_d = {_refined(self.i_d)[row]:.4g} A, "
+                f"i_q = {_refined(self.i_q)[column]:.4g} A: "
                 "check the order of the axes and the signs, or solve a finer grid to a tighter tolerance"
             )
 
@@ -235,8 +237,9 @@ class FluxMapMachine:
                 return i
             i, miss = self._step(i, miss, psi, size)
         raise FluxMapMachineError(
-            f"the inverse of the map was not found to {_INVERSE_TOLERANCE:g} for {np.count_nonzero(size > 1e-12 * scale)} "
-            f"flux linkages in {_MOST_ITERATIONS} steps: solve a finer map"
+            f"the inverse of the map was not found to {_INVERSE_TOLERANCE:g} for "
+            f"{np.count_nonzero(size > _INVERSE_TOLERANCE * scale)} flux linkages in {_MOST_ITERATIONS} steps: "
+            "solve a finer map"
         )
 
     def _step(self, i, miss, psi, size):
@@ -264,14 +267,18 @@ class FluxMapMachine:
 
 def _check_axis(name: str, values: np.ndarray) -> None:
     if np.ndim(values) != 1 or len(values) < _FEWEST or np.any(np.diff(values) <= 0):
-        raise FluxMapMachineError(f"{name} must be {_FEWEST} increasing currents or more; found shape {np.shape(values)}")
+        raise FluxMapMachineError(
+            f"{name} must be {_FEWEST} increasing currents or more; found shape {np.shape(values)}"
+        )
     if not values[0] <= 0 <= values[-1]:
         raise FluxMapMachineError(f"{name} must reach zero; found {values[0]:.4g} to {values[-1]:.4g} A")
 
 
 def _check_table(name: str, values: np.ndarray, shape: tuple[int, int]) -> None:
     if np.shape(values) != shape or not np.all(np.isfinite(values)):
-        raise FluxMapMachineError(f"{name} must be finite with one value per (i_d, i_q), {shape}; found {np.shape(values)}")
+        raise FluxMapMachineError(
+            f"{name} must be finite with one value per (i_d, i_q), {shape}; found {np.shape(values)}"
+        )
 
 
 def _refined(axis: np.ndarray) -> np.ndarray:

@@ -33,7 +33,8 @@ def loss_maps(data: xr.Dataset, title: str) -> Figure:
     _map(figure, axes[0], data, data.total_W, levels, FIELD_MAP, "electrical loss / W")
     axes[0].set_title("copper, iron and magnets together", loc="left")
     top = next(level for level in _EFFICIENCIES if level >= float(data.efficiency.max()))
-    _map(figure, axes[1], data, data.efficiency, [x for x in _EFFICIENCIES if x <= top], DESIGN_MAP, "efficiency without friction")
+    levels = [level for level in _EFFICIENCIES if level <= top]
+    _map(figure, axes[1], data, data.efficiency, levels, DESIGN_MAP, "efficiency without friction")
     axes[1].set_title("efficiency as a motor", loc="left")
     _parts(axes[2], data)
     letter(axes)
@@ -50,7 +51,8 @@ def _levels(values: xr.DataArray) -> list[float]:
 
 
 def _map(figure, axes, data: xr.Dataset, values: xr.DataArray, levels, colours: str, label: str) -> None:
-    speed, torque, shown = data.speed_rpm.to_numpy(), data.torque_Nm.to_numpy(), values.transpose("torque_Nm", "speed_rpm")
+    speed, torque = data.speed_rpm.to_numpy(), data.torque_Nm.to_numpy()
+    shown = values.transpose("torque_Nm", "speed_rpm")
     filled = axes.contourf(speed, torque, shown, levels=levels, cmap=colours, extend="min")
     lines = axes.contour(speed, torque, shown, levels=levels[:-1:2], colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt=lambda value: f"{value:.3g}")

@@ -1,1 +1,1 @@
-"""Where the power goes: B loci and iron loss, eddy currents in the magnets, copper, and the map over torque and speed."""
+"""Where the power goes: loci of B and iron loss, eddy currents in magnets, copper, the map over torque and speed."""

@@ -2,8 +2,8 @@
 
     P = 3/2 R (i_d^2 + i_q^2)       peak phase currents
 
-Direct-current resistance: skin and proximity effect in the wires are left out (0.5 mm copper at 2 kHz: skin depth 1.5 mm),
-and so is the difference between the currents of wires in hand.
+Direct-current resistance: skin and proximity effect in the wires are left out (0.5 mm copper at 2 kHz: skin depth
+1.5 mm), and so is the difference between the currents of wires in hand.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ class WoundMachine:
     def end_turn_length(self) -> float:
         """Of one end turn [m], a half-circle (thesis eq. 3.84); coils on single teeth."""
         if self.layout.coil_pitch != 1:
-            raise ValueError(f"the end turns are known for coils on single teeth only, found a pitch of {self.layout.coil_pitch}")
+            found = self.layout.coil_pitch
+            raise ValueError(f"the end turns are known for coils on single teeth only, found a pitch of {found} slots")
         m = self.machine
         return end_turn_length(
             slots=m.slots,

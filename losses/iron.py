@@ -4,13 +4,13 @@
     eddy        k_c/(2 pi^2) <|dB/dt|^2> (1 + k_s B_ac^2)
     excess      k_e/8.763 <|dB/dt|^1.5>
 
-For a sine along one line these are the law of ``materials/iron_loss.py`` exactly. The derivative holds all harmonics that
-the steps resolve. B_ac is the largest distance of the locus from its mean: the peak of an alternating field; a constant
-part does not count.
+For a sine along one line these are the law of ``materials/iron_loss.py`` exactly. The derivative holds all harmonics
+that the steps resolve. B_ac is the largest distance of the locus from its mean: the peak of an alternating field; a
+constant part does not count.
 
-Assumptions: the losses do not act back on the field; a loop costs the same whatever constant field lies under it; both axes
-of a rotating field count in full, which is right up to about 1 T and too much towards saturation, where rotational
-hysteresis falls. Iron without constant field, cut edges, stress or stacking correction.
+Assumptions: the losses do not act back on the field; a loop costs the same whatever constant field lies under it; both
+axes of a rotating field count in full, which is right up to about 1 T and too much towards saturation, where rotational
+hysteresis falls; stator and rotor are laminated. Cut edges, stress and stacking are not corrected for.
 """
 
 from __future__ import annotations
@@ -92,8 +92,8 @@ def principal_components(values: np.ndarray) -> np.ndarray:
 def loop_sum(components: np.ndarray, exponent: float) -> np.ndarray:
     """Sum over all closed loops of (peak-to-peak/2)^exponent, both components together (E,).
 
-    components (steps, E, 2), one period. Loops are found by the rainflow count from the largest value on, so that nested
-    minor loops are split from the major one (the split that a Preisach material makes, whose loops close).
+    components (steps, E, 2), one period. Loops are found by the rainflow count from the largest value on, so that
+    nested minor loops are split from the major one (as in a Preisach material, whose loops close).
     """
     steps, count, _ = components.shape
     series = components.reshape(steps, -1)

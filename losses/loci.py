@@ -1,12 +1,12 @@
 """What every element of the machine sees over time, from a few field solutions and the symmetry of the machine.
 
-In the stator the field repeats after one electrical period. A point of the rotor is different: after one period it stands
-before other teeth, in the place of the magnet two poles on, so its own period is longer (12 slots, 10 poles: it meets a
-2.4th and a 1.2th harmonic). The picture of the field in the machine repeats sooner than either,
+In the stator the field repeats after one electrical period. A point of the rotor is different: after one period it
+stands before other teeth, in the place of the magnet two poles on, so its own period is another one (12 slots, 10
+poles: 5/6, it meets orders 1.2 and 2.4). The picture of the field in the machine repeats sooner than either,
 
     picture(t + T/parts) = sign * picture(t) turned by some slots        T: electrical period
 
-and this alone turns the solutions of one part into the whole locus of every element, by copying from element to element:
+and this alone turns the solutions of one part into the whole locus of every element, copied from element to element:
 
     stator:  b(y, t + T/parts) = sign * b(y - slots, t),     rotor:  b(x, t + T/parts) = sign * b(x + poles, t)
 
@@ -46,14 +46,14 @@ HALF_WAVE = Repetition(2, 0, 1, -1)  # north and south poles change places, and 
 
 
 def finest_repetition(section: CrossSection) -> Repetition:
-    """A sixth of the period where the winding repeats under a turn by some slots with the phases exchanged, else a half.
+    """A sixth of the period where a turn by some slots exchanges the phases of the winding, else a half.
 
-    Needs equal magnets, equal teeth and sinusoidal balanced currents; a machine with one odd magnet or an eccentric rotor
-    repeats neither after a half nor after a whole electrical period.
+    Needs equal magnets, equal teeth and sinusoidal balanced currents; a machine with one odd magnet or an eccentric
+    rotor repeats neither after a half nor after a whole electrical period.
     """
     machine = section.machine
     for slots in range(machine.slots):
-        # a sixth of the period turns the rotor by a third of a pole pitch, the picture by slots: the difference in poles
+        # a sixth of the period turns the rotor by a third of a pole pitch, the picture by slots: the rest in poles
         poles, rest = divmod(machine.slots - 3 * machine.poles * slots, 3 * machine.slots)
         sign = -1 if poles % 2 else 1
         if rest == 0 and _phases_exchange(section.layout, slots, sign):
@@ -93,7 +93,9 @@ class PartOfPeriod:
         return self.solutions[0].model
 
 
-def solve_part(model: FieldModel, point: OperatingPoint, steps: int = 48, repetition: Repetition | None = None) -> PartOfPeriod:
+def solve_part(
+    model: FieldModel, point: OperatingPoint, steps: int = 48, repetition: Repetition | None = None
+) -> PartOfPeriod:
     """Solve one part of an electrical period from the angle of ``point`` on.
 
     steps: per whole electrical period, a multiple of the parts; best a divisor of the edges of the sliding circle per
@@ -115,7 +117,8 @@ def solve_part(model: FieldModel, point: OperatingPoint, steps: int = 48, repeti
 class Loci:
     """A field quantity of some elements over one full period of what they see.
 
-    elements (E,): their numbers in the mesh of the sector; area (E,) [m^2]; values (steps, E, components), equally spaced
+    elements (E,): their numbers in the mesh of the sector; area (E,) [m^2]
+    values (steps, E, components): equally spaced in time, the end of the period left out
     periods: electrical periods that the steps cover; sectors: sectors that make up the machine
     """
 
@@ -210,9 +213,9 @@ def _in_own_frame(vectors: np.ndarray, pitch: float) -> np.ndarray:
 
 
 def _extend(block: np.ndarray, shift: int, sign: int, sector_sign: int) -> tuple[np.ndarray, int]:
-    """Repeat a block (steps, copies, ...) with its copies exchanged until every copy is back; (values, number of blocks).
+    """Repeat a block (steps, copies, ...) with its copies exchanged until every copy is back; (values, blocks).
 
-    Block n of copy c is sign^n times copy c + n shift; a copy beyond the end of the sector is one inside times its sign.
+    Block n of copy c is sign^n times copy c + n shift; a copy beyond the sector's end is one inside times its sign.
     """
     copies = block.shape[1]
     blocks = [block]

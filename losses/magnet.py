@@ -2,12 +2,12 @@
 
     J = -sigma (dA/dt - mean of dA/dt over the piece),     P = integral J^2/sigma        per metre
 
-A as the rotor sees it. The mean is the voltage per length that keeps the net current of each piece at zero: every magnet,
-or every segment of it, is insulated from its neighbours and carries its current back within itself.
+A as the rotor sees it. The mean is the voltage per length that keeps the net current of each piece at zero: every
+magnet, or every segment of it, is insulated from its neighbours and carries its current back within itself.
 
-Assumptions: two dimensions, so the current closes far away at the ends and pieces must be long against their width (shorter
-ones lose less: the estimate is an upper one); resistance-limited, so the skin depth of what moves must exceed the width of
-the piece (``frequency_limit``); sinusoidal currents without the inverter's ripple.
+Assumptions: two dimensions, so the current closes far away at the ends and pieces must be long against their width
+(shorter ones lose less: the estimate is an upper one); resistance-limited, so the skin depth of what moves must exceed
+the width of the piece (``frequency_limit``); sinusoidal currents without the inverter's ripple.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class MagnetLoss:
 
     @property
     def frequency_limit(self) -> float:
-        """Electrical frequency [Hz] up to which the skin depth at ``order`` exceeds the width: rho/(pi mu w^2 order)."""
+        """Electrical frequency [Hz] where the skin depth at ``order`` falls to the width: rho/(pi mu w^2 order)."""
         if self.order == 0:
             return np.inf
         return self.resistivity / (pi * MU_0 * self.permeability * self.width**2 * self.order)

@@ -27,17 +27,19 @@ class Entries:
     sign: np.ndarray
 
     @classmethod
-    def of(cls, pairs, dofs: np.ndarray, column: np.ndarray, sign: np.ndarray, size: int) -> Entries:
+    def of(cls, pairs, dofs: np.ndarray, column: np.ndarray, dof_sign: np.ndarray, size: int) -> Entries:
         """Addresses for elements with degrees of freedom (F, E), given the map of every degree of freedom.
 
         pairs: local (row, column) of the K entries
         """
         i, j = pairs
         a, b = column[dofs][i], column[dofs][j]
-        local_sign = sign[dofs]
+        local_sign = dof_sign[dofs]
+        sign = (local_sign[i] * local_sign[j]).ravel()
         keys = (np.minimum(a, b) * np.int64(size) + np.maximum(a, b)).ravel()
+        keys[sign == 0] = 0  # fixed unknowns must not fill the pattern; nothing is added there
         distinct, position = np.unique(keys, return_inverse=True)
-        return cls(distinct, position, (local_sign[i] * local_sign[j]).ravel())
+        return cls(distinct, position, sign)
 
     def sum(self, local: np.ndarray) -> np.ndarray:
         """Add local entries (K, E) up, one value per key."""

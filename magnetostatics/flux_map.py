@@ -24,7 +24,7 @@ from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.torque import arkkio_torque
 
 PERIOD = pi / 3  # electrical; after it every quantity in the rotor frame of a symmetric three-phase machine repeats
-_SOURCES = 3  # solved currents that a start is interpolated from; more do not help, the steel's curve is not that smooth
+_SOURCES = 3  # solved currents that a start is interpolated from; the steel's curve is not smooth enough for more
 
 _ATTRIBUTES = {
     "psi_d": {"units": "Wb/m", "long_name": "d-axis flux linkage per turn and metre"},
@@ -115,8 +115,8 @@ def flux_torque_and_inductances(solution: FieldSolution) -> dict[str, float]:
 def incremental_inductances(solution: FieldSolution) -> np.ndarray:
     """d(psi_d, psi_q) / d(i_d, i_q) at the rotor angle of a solution (2, 2) [H/m per turn^2].
 
-    L_ij = (2/3) n w_i . K^-1 w_j with the tangent K of the converged field, the load w of a unit current on axis d or q,
-    and n sectors: one factorisation and two back-substitutions, no difference quotient. Symmetric, because K is.
+    L_ij = (2/3) n w_i . K^-1 w_j with the tangent K of the converged field, the load w of a unit current on axis d or
+    q, and n sectors: one factorisation and two back-substitutions, no difference quotient. Symmetric, because K is.
     """
     model = solution.model
     loads = _axis_loads(solution)
@@ -177,8 +177,8 @@ def to_dataset(
     coordinates = {name: (name, values[name], attributes) for name, attributes in _COORDINATES.items()}
     machine, layout = model.section.machine, model.section.layout
     note = "flux linkages and torque per turn and metre in the amplitude-invariant rotor frame, d axis on magnet 0"
-    facts = {"pole_pairs": machine.pole_pairs, "coils_in_series": layout.coils_in_series, "phase_axis": layout.phase_axis}
-    return xr.Dataset(data, coordinates, {"description": note, **facts})
+    winding = {"coils_in_series": layout.coils_in_series, "phase_axis": layout.phase_axis}
+    return xr.Dataset(data, coordinates, {"description": note, "pole_pairs": machine.pole_pairs, **winding})
 
 
 def _blend(solutions: list[FieldSolution], weights: np.ndarray) -> FieldSolution | None:

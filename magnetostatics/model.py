@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.cross_section import CrossSection
 from magnetostatics.assembly import JoinedSystem
-from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.cholesky import SymmetricSystem, one_thread
 from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, refine_order
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.topology import IRON, Topology
@@ -192,7 +192,8 @@ class FieldModel:
         began = process_time()
         problem = _Problem(self, point)
         first = problem.free_values(self._coarse_potential(point) if start is None else start.a)
-        u, record = newton(first, np.linalg.norm(problem.load), problem.residual, problem.direction, self.settings)
+        with one_thread():
+            u, record = newton(first, np.linalg.norm(problem.load), problem.residual, problem.direction, self.settings)
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began)
 
     def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:

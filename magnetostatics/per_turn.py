@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import atan, hypot, pi
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.torque import arkkio_torque
 
+_WEAKENING = 0.25  # negative d-axis current over the q-axis current
 _POSITIONS = 6  # over 60 electrical degrees, after which all dq quantities repeat
 
 
@@ -20,8 +21,10 @@ class PerTurnValues:
 
     ampere_turns: peak ampere-turns of one coil [A]
     flux_linkage: no-load psi_m [Wb per turn]
-    inductance_d, inductance_q: apparent, (psi_d - psi_m) / i_d on the negative d axis and psi_q / i_q on the q axis
-        [H per turn^2]
+    inductance_q: apparent on the q axis, psi_q / i_q [H per turn^2]
+    inductance_d: apparent in the loaded machine, the change of psi_d when a quarter of the current is added on the
+        negative d axis while i_q stays. Without the load the d axis is less saturated than the q axis with it; the two
+        together would promise a reluctance torque that is not there. [H per turn^2]
     psi_d_loaded: psi_d with the current on the q axis [Wb per turn]
     torque: on the q axis [Nm]; torque_from_flux: 1.5 p psi_d i_q, the same torque by another route [Nm]
     """
@@ -36,7 +39,7 @@ class PerTurnValues:
 
 
 def per_turn_values(model: FieldModel, amplitude: float, packing: float, first_angle: float = 0.0) -> PerTurnValues:
-    """Solve no load, q-axis and negative d-axis current over 60 electrical degrees and average.
+    """Solve no load, q-axis current and the same with some negative d-axis current over 60 electrical degrees; average.
 
     amplitude: of the current density in the copper [A/m^2]; packing: copper share of the slot
     first_angle: rotor angle of the first position [rad]
@@ -46,12 +49,13 @@ def per_turn_values(model: FieldModel, amplitude: float, packing: float, first_a
     angles = first_angle + span * np.arange(_POSITIONS) / _POSITIONS
     idle = _mean_dq(model, [OperatingPoint(angle, 0.0, 0.0, packing) for angle in angles])
     on_q = _mean_dq(model, [OperatingPoint(angle, amplitude, 0.0, packing) for angle in angles])
-    on_d = _mean_dq(model, [OperatingPoint(angle, amplitude, pi / 2, packing) for angle in angles])
+    weakened = amplitude * hypot(1.0, _WEAKENING), atan(_WEAKENING)
+    with_d = _mean_dq(model, [OperatingPoint(angle, *weakened, packing) for angle in angles])
     ampere_turns = amplitude * packing * section.half_slot_area * section.half_slots_per_coil_side
     return PerTurnValues(
         ampere_turns=ampere_turns,
         flux_linkage=idle[0],
-        inductance_d=(idle[0] - on_d[0]) / ampere_turns,
+        inductance_d=(on_q[0] - with_d[0]) / (_WEAKENING * ampere_turns),
         inductance_q=on_q[1] / ampere_turns,
         psi_d_loaded=on_q[0],
         torque=on_q[2],

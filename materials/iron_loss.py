@@ -7,12 +7,12 @@ harmonics, rotation and minor loops needs no new coefficient, and because one po
 (one Steinmetz term misses the same data by up to 39 %). Without the factor (1 + k_s B^2) three terms miss 2500 Hz
 of the 0.5 mm sheet by 34 %; it stands for the flux that crowds at the surface of a saturating sheet.
 Source of the form: G. Bertotti, "General properties of power losses in soft ferromagnetic materials", IEEE Trans. Magn.
-24 (1988) 621; the factor is that of the IEM formula (D. Eggers, S. Steentjes, K. Hameyer, "Advanced iron-loss estimation
-for nonlinear material behavior", IEEE Trans. Magn. 48 (2012) 3021) with its exponent held at 2, because a free one
-trades against k_c and drives it to a tenth of the classical value.
+24 (1988) 621; the factor is that of the IEM formula (D. Eggers, S. Steentjes, K. Hameyer, "Advanced iron-loss
+estimation for nonlinear material behavior", IEEE Trans. Magn. 48 (2012) 3021) with its exponent held at 2, because a
+free one trades against k_c and drives it to a tenth of the classical value.
 
-The split into terms is a fit to the total, not a measurement of each. Below 0.2 T the law may be 57 % too high (there the
-hysteresis falls with B^3, and the makers' tables have one digit left); cut edges, stress and stacking are not in it.
+The split into terms is a fit to the total, not a measurement of each. Below 0.2 T the law may be 57 % too high (there
+the hysteresis falls with B^3, and the makers' tables have one digit left). Cut edges, stress and stacking are left out.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class IronLossLaw:
         for name in ("hysteresis", "exponent", "eddy", "saturation", "excess", "density"):
             value = getattr(self, name)
             if not (value >= 0 and np.isfinite(value)):
-                raise MaterialError(f"{name} of the iron loss of {self.grade} must be a number from 0 up, found {value}")
+                raise MaterialError(f"{name} of the iron loss of {self.grade} must be a number >= 0, found {value}")
         if not (self.exponent > 0 and self.density > 0):
             raise MaterialError(f"exponent and density of the iron loss of {self.grade} must be positive")
 

@@ -1,10 +1,10 @@
-"""Electrical losses of the wound machine over torque and speed: copper, iron, magnets (thesis Fig. 4.5), and efficiency.
+"""Electrical losses of the wound machine over torque and speed: copper, iron, magnets (thesis Fig. 4.5), efficiency.
 
     python -m pipeline.losses motorcycle M235-35A        # the loss data that stand for the study's steel
 
 Reads the study, ``match.json`` and ``winding.json``, writes ``loss_map.nc`` (torque x speed), ``losses.json`` (what the
-numbers rest on, best efficiency) and ``figures/losses.png``. The loss grade is an argument, or ``materials.loss_grade`` of
-the study; none is assumed.
+numbers rest on, best efficiency) and ``figures/losses.png``. The loss grade is an argument, or ``materials.loss_grade``
+of the study; none is assumed.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def loss_grade_of(study, stated: str | None) -> str:
     from materials.iron_loss import iron_loss_law
 
     try:
-        return iron_loss_law(stated or getattr(study.materials, "loss_grade", None)).grade
+        return iron_loss_law(stated or study.materials.loss_grade).grade
     except MaterialError as error:
         raise StageError(f"no losses for steel {study.materials.steel}: {error}") from None
 
@@ -89,13 +89,13 @@ def wound_machine(study, choice):
     from pipeline.winding import matched_machine, read_per_turn_machine
     from study.convert import to_wire
 
-    machine = matched_machine(study)
-    length, wire = read_per_turn_machine(study).active_length, to_wire(study)
-    return WoundMachine(machine, layout_of(study, machine.slots), choice.chosen.turns, choice.chosen.strands, wire.area, length)
+    machine, chosen = matched_machine(study), choice.chosen
+    length, area = read_per_turn_machine(study).active_length, to_wire(study).area
+    return WoundMachine(machine, layout_of(study, machine.slots), chosen.turns, chosen.strands, area, length)
 
 
 def operating_plane(study, choice):
-    """Currents over speed and torque, up to the limits of the winding selection (``OperatingMap``, torque outermost)."""
+    """Currents over torque (outermost) and speed, up to the limits of the winding selection (``OperatingMap``)."""
     import numpy as np
     from electrical.synchronous_machine import DriveLimits, operating_map
     from pipeline.winding import read_per_turn_machine
@@ -103,12 +103,14 @@ def operating_plane(study, choice):
 
     limits, chosen = to_winding_limits(study), choice.chosen
     drive = DriveLimits.from_dc_bus(chosen.current_peak, limits.dc_voltage)
-    speed, torque = np.meshgrid(np.linspace(0, limits.maximum_speed, _SPEEDS), np.linspace(0, chosen.peak_torque, _TORQUES))
-    reached = operating_map(chosen.machine(read_per_turn_machine(study).pole_pairs), drive, torque, speed)
+    motor = chosen.machine(read_per_turn_machine(study).pole_pairs)
+    torques = np.linspace(0, chosen.peak_torque, _TORQUES)
+    speed, torque = np.meshgrid(np.linspace(0, limits.maximum_speed, _SPEEDS), torques)
+    reached = operating_map(motor, drive, torque, speed)
     last = np.flatnonzero(np.isfinite(reached.i_q).any(axis=0))[-1]  # speeds beyond are out of reach at any torque
     top = min(last + 1, _SPEEDS - 1) / (_SPEEDS - 1) * limits.maximum_speed
-    speed, torque = np.meshgrid(np.linspace(0, top, _SPEEDS), torque[:, 0])
-    return operating_map(chosen.machine(read_per_turn_machine(study).pole_pairs), drive, torque, speed)
+    speed, torque = np.meshgrid(np.linspace(0, top, _SPEEDS), torques)
+    return operating_map(motor, drive, torque, speed)
 
 
 def dataset(losses):

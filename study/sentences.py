@@ -42,7 +42,9 @@ def sections_with(key: str) -> list[str]:
 
 
 def section_class(name: str) -> type[Section]:
-    return Study.model_fields[name].annotation
+    """The class of a section, also of one that may be left out."""
+    annotation = Study.model_fields[name].annotation
+    return annotation if isinstance(annotation, type) else get_args(annotation)[0]
 
 
 def _sentence(problem: dict) -> str:

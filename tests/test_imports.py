@@ -12,10 +12,11 @@ ALLOWED = {
     "magnetostatics": {"materials", "geometry"},
     "optimisation": {"magnetostatics", "materials", "geometry"},
     "electrical": set(),
+    "losses": {"magnetostatics", "materials", "geometry", "electrical"},
     "drivetrain": {"electrical"},
     "study": {"geometry", "materials", "electrical", "drivetrain"},
     "figures": {"geometry", "magnetostatics"},
-    "pipeline": {"study", "figures", "optimisation", "magnetostatics", "geometry", "materials", "electrical", "drivetrain"},
+    "pipeline": {"study", "figures", "optimisation", "magnetostatics", "geometry", "materials", "electrical", "drivetrain", "losses"},
 }
 
 

@@ -12,7 +12,7 @@ from tests.losses.conftest import machine
 from units import MILLIMETRE, MILLIOHM
 
 WIRE = pi * (0.5 * MILLIMETRE) ** 2 / 4
-PRINTED = WoundMachine(machine(), star_of_slots(12, 5), turns=7, strands=22, wire_area=WIRE, active_length=41 * MILLIMETRE)
+PRINTED = WoundMachine(machine(), star_of_slots(12, 5), 7, 22, WIRE, active_length=41 * MILLIMETRE)
 
 
 @pytest.mark.reference

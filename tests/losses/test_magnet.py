@@ -19,8 +19,7 @@ def test_synchronous_field_loses_nothing(loaded):
     nodes = np.hypot(x, y) ** 2 * np.cos(p * np.arctan2(y, x))
     a = np.concatenate([nodes, nodes[mesh.facets].mean(axis=0)])
     still = replace(loaded, solutions=tuple(replace(solution, a=a) for solution in loaded.solutions))
-    moving = magnet_loss(loaded).eddy
-    assert magnet_loss(still).eddy < 1e-12 * moving and magnet_loss(still).frequency_limit == np.inf
+    assert magnet_loss(still).eddy < 1e-12 * magnet_loss(loaded).eddy
 
 
 @pytest.mark.physics

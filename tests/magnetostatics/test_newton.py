@@ -90,6 +90,7 @@ def without_magnets(steel=STEEL):
 def test_no_sources_no_field():
     solution = model_of(reference_machine(), materials=without_magnets()).solve(OperatingPoint(0.1))
     assert not solution.a.any()
+    assert solution.newton.iterations == 0
     assert arkkio_torque(solution) == maxwell_torque(solution) == 0.0
 
 
