@@ -114,7 +114,10 @@ def sweep(processes: int = 2) -> list[Row]:
         began = time.perf_counter()
         seconds = cost(lambda: run_parallel(solve_column, tasks, processes, checkpoint, "sweep of 4500 designs"))
     wall = time.perf_counter() - began
-    return [Row("4500 designs, meshes included", seconds, 100.0, "s"), Row("the same, wall, two processes", wall, np.nan, "s")]
+    return [
+        Row("4500 designs, meshes included", seconds, 100.0, "s"),
+        Row("the same, wall, two processes", wall, np.nan, "s"),
+    ]
 
 
 def solve_optimum(task: dict) -> float:
@@ -143,14 +146,24 @@ def optima() -> list[Row]:
     known = pd.read_csv(RESULTS.parent / "optima.csv").torque_nominal_Nm_per_m.to_numpy()
     return [
         Row("20 constrained optima by gradients", seconds, 20.0, "s"),
-        Row("largest difference from the refined grid optima", 100 * np.abs(np.array(torques) / known - 1).max(), 0.1, "%"),
+        Row(
+            "largest difference from the refined grid optima",
+            100 * np.abs(np.array(torques) / known - 1).max(),
+            0.1,
+            "%",
+        ),
     ]
 
 
 def scaling() -> pd.DataFrame:
     """CPU time of a cold solve over the number of unknowns."""
     materials, point, rows = reference_materials(), null_point(), []
-    for density in (MeshDensity(120, 3, 1, 1.0), MeshDensity(), MeshDensity(480, 1, 2, 3.0), MeshDensity(960, 1, 3, 5.0)):
+    for density in (
+        MeshDensity(120, 3, 1, 1.0),
+        MeshDensity(),
+        MeshDensity(480, 1, 2, 3.0),
+        MeshDensity(960, 1, 3, 5.0),
+    ):
         section = reference_section(density=density)
         model = FieldModel(section, materials)
         seconds = median(cost(lambda: FieldModel(section, materials).solve(point)) for _ in range(3))

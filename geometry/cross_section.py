@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
 
 import numpy as np
 from skfem import MeshTri
 
 from geometry.checks import check_machine
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
-from geometry.machine import GeometryError, Machine
+from geometry.machine import Machine
 from geometry.plane_mesh import PlaneMesh
 from geometry.winding import WindingLayout, sector_symmetric
 
@@ -99,7 +98,9 @@ class CrossSection:
         beyond = _BESIDE_THE_LINE - (self.teeth * m.slot_pitch if self.sectors > 1 else 0.0)
         sides = [(-_BESIDE_THE_LINE, _BESIDE_THE_LINE)] * (self.teeth - 1) + [(-_BESIDE_THE_LINE, beyond)]
         return tuple(
-            Probe(f"back_iron_{k}", np.hstack([_turn(points, (k + 0.5) * m.slot_pitch + side) for side in pair]), weights)
+            Probe(
+                f"back_iron_{k}", np.hstack([_turn(points, (k + 0.5) * m.slot_pitch + side) for side in pair]), weights
+            )
             for k, pair in enumerate(sides)
         )
 

@@ -18,7 +18,6 @@ from skfem.assembly import Dofs
 from skfem.quadrature import get_quadrature
 
 
-
 @dataclass(frozen=True, eq=False)
 class TriangleOrder:
     """Lagrange functions on the reference triangle at the quadrature points.
@@ -104,7 +103,9 @@ class Elements:
         gradient_x = (along_u * v[1] - along_v * u[1]) / determinant
         gradient_y = (along_v * u[0] - along_u * v[0]) / determinant
         points = a[:, None] + u[:, None] * order.points[0][:, None] + v[:, None] * order.points[1][:, None]
-        return cls(order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points, np.stack([u, v]))
+        return cls(
+            order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points, np.stack([u, v])
+        )
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices."""

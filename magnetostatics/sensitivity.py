@@ -25,8 +25,7 @@ class Variation(Protocol):
 
     step: float
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingPoint]:
-        ...
+    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingPoint]: ...
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
@@ -59,6 +58,7 @@ def _residual_slope(solution: FieldSolution, ends: _Ends) -> np.ndarray:
 def _along(solution: FieldSolution, ends: _Ends, slope: np.ndarray, read: Reader) -> np.ndarray:
     """Derivative of the results along the changed problem and the changed potential."""
     forward, back = (
-        read(replace(solution, model=model, point=point, a=solution.a + change * slope)) for change, model, point in ends
+        read(replace(solution, model=model, point=point, a=solution.a + change * slope))
+        for change, model, point in ends
     )
     return (forward - back) / (ends[0][0] - ends[1][0])

@@ -18,7 +18,17 @@ from optimisation.design import Design, DesignSolver, Judge, MachineFamily
 
 _FIRST_BOX = (0.06, 0.045)  # half widths of the trust box relative to (w_bi, R_ro)
 _LAST_BOX = (0.02, 0.015)
-_BOX = ((0, 0), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))  # the centre, which is meshed, first
+_BOX = (
+    (0, 0),
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+    (-1, 0),
+    (-1, -1),
+    (0, -1),
+    (1, -1),
+)  # the centre, which is meshed, first
 _SHRINK = 1 / 3
 _MOST_ROUNDS = 8
 _LIMIT_TOLERANCE = 2e-4  # relative, of the limited flux density at the optimum
@@ -72,7 +82,12 @@ class _Search:
 
 
 def find_optimum(
-    judge: Judge, family: MachineFamily, slots: int, stator_outer_radius: float, limit: float, start: tuple[float, float]
+    judge: Judge,
+    family: MachineFamily,
+    slots: int,
+    stator_outer_radius: float,
+    limit: float,
+    start: tuple[float, float],
 ) -> Optimum:
     """Largest torque with the limited flux density at most ``limit`` [T].
 
@@ -120,7 +135,9 @@ def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarr
     scale = abs(torque[0])
     allowed = {"type": "ineq", "fun": lambda x: (limit - _terms(x) @ limited) / limit}
     results = [
-        minimize(lambda x: -(_terms(x) @ torque) / scale, start, method="SLSQP", bounds=[(-1, 1)] * 2, constraints=[allowed])
+        minimize(
+            lambda x: -(_terms(x) @ torque) / scale, start, method="SLSQP", bounds=[(-1, 1)] * 2, constraints=[allowed]
+        )
         for start in ((0.0, 0.0), (1.0, 0.0), (0.5, -0.5), (0.5, 0.5))
     ]
     feasible = [r for r in results if allowed["fun"](r.x) > -1e-6]

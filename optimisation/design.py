@@ -27,8 +27,9 @@ from optimisation.states import SaturationReading, aligned_teeth
 class MachineFamily(Protocol):
     """Machines that differ in the four numbers of the cross-section optimisation, all lengths in m."""
 
-    def machine(self, slots: int, stator_outer_radius: float, back_iron_width: float, rotor_outer_radius: float) -> Machine:
-        ...
+    def machine(
+        self, slots: int, stator_outer_radius: float, back_iron_width: float, rotor_outer_radius: float
+    ) -> Machine: ...
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,9 @@ class DesignSolver:
         here = np.array([values[state, kind] for kind, state in enumerate(worst)])
         along = np.stack([slopes[state, :, kind] for kind, state in enumerate(worst)], axis=1)  # (k, 3)
         limited = self.judge.reading.limited
-        return np.array([limited(*(here + _TINY * slope)) - limited(*(here - _TINY * slope)) for slope in along]) / (2 * _TINY)
+        return np.array([limited(*(here + _TINY * slope)) - limited(*(here - _TINY * slope)) for slope in along]) / (
+            2 * _TINY
+        )
 
     def mesh_anew(self) -> None:
         """Forget the mesh: the next design gets its own."""

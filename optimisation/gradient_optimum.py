@@ -63,12 +63,19 @@ class _Problem:
             options={"ftol": _TOLERANCE, "maxiter": 30},
         )
         if not found.success:
-            raise NoOptimumError(f"{self.slots} slots, stator radius {self.stator_outer_radius * 1e3:g} mm: {found.message}")
+            raise NoOptimumError(
+                f"{self.slots} slots, stator radius {self.stator_outer_radius * 1e3:g} mm: {found.message}"
+            )
         return found.x
 
 
 def find_optimum_by_gradients(
-    judge: Judge, family: MachineFamily, slots: int, stator_outer_radius: float, limit: float, start: tuple[float, float]
+    judge: Judge,
+    family: MachineFamily,
+    slots: int,
+    stator_outer_radius: float,
+    limit: float,
+    start: tuple[float, float],
 ) -> Optimum:
     """Largest torque with the limited flux density at most ``limit`` [T]; arguments as ``find_optimum``.
 

@@ -58,7 +58,9 @@ def fit_polynomial(quantity: str, x: np.ndarray, y: np.ndarray) -> PolynomialFit
     worst = int(np.argmax(np.abs(residual)))
     reason = _reason_to_refuse(x[worst], abs(residual[worst]) / np.mean(np.abs(y)), r_squared)
     rms = float(np.sqrt((residual**2).mean()))
-    return PolynomialFit(quantity, tuple(coefficients), _range(x), float(r_squared), rms, float(abs(residual[worst])), reason)
+    return PolynomialFit(
+        quantity, tuple(coefficients), _range(x), float(r_squared), rms, float(abs(residual[worst])), reason
+    )
 
 
 def _range(x: np.ndarray) -> tuple[float, float]:

@@ -40,17 +40,25 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     density = parser.add_mutually_exclusive_group()
     density.add_argument("--j-amplitude", type=float, help="amplitude of the current density in the copper / A/mm2")
     density.add_argument("--j-rms", type=float, help="RMS current density in the copper / A/mm2")
-    parser.add_argument("--current-angle-deg", type=float, default=0.0, help="electrical, from the q axis; > 0 weakens the field")
+    parser.add_argument(
+        "--current-angle-deg", type=float, default=0.0, help="electrical, from the q axis; > 0 weakens the field"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the result as JSON; - for standard output")
     parser.add_argument("--vtu", metavar="FILE", help="write the field for ParaView or pyvista")
     parser.add_argument("--png", metavar="FILE", help="write a picture of the field")
-    parser.add_argument("--sweep-mesh", action="store_true", help="use the mesh of the sweep instead of twice its resolution")
+    parser.add_argument(
+        "--sweep-mesh", action="store_true", help="use the mesh of the sweep instead of twice its resolution"
+    )
     parser.set_defaults(run=_solve)
 
 
 def _add_overrides(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--set", action="append", default=[], metavar="SECTION.KEY=VALUE", help="replace a value of the study; repeatable"
+        "--set",
+        action="append",
+        default=[],
+        metavar="SECTION.KEY=VALUE",
+        help="replace a value of the study; repeatable",
     )
 
 
@@ -109,7 +117,9 @@ def _amplitude(options) -> float:
         amplitude = options.j_amplitude or 0.0
     for name in ("angle_deg", "current_angle_deg"):
         if not isfinite(getattr(options, name)):
-            raise StudyError(f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}.")
+            raise StudyError(
+                f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}."
+            )
     if not isfinite(amplitude) or amplitude < 0:
         raise StudyError(f"the current density must be a finite number, zero or more A/mm2, found {amplitude:g}.")
     return amplitude
@@ -153,9 +163,13 @@ def _print(result: dict, target: str | None) -> None:
     if target:
         _writable(target).write_text(text + "\n", encoding="utf-8")
     torque = result["torque_per_length_Nm_per_m"]
-    print(f"torque per length   {torque['arkkio']:.3f} Nm/m (ring average), {torque['maxwell']:.3f} Nm/m (mid-gap contour)")
+    print(
+        f"torque per length   {torque['arkkio']:.3f} Nm/m (ring average), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
+    )
     linkage = result["flux_linkage_Wb_per_turn_per_m"]
-    print("flux linkage        " + ", ".join(f"{k} {1e3 * v:.4f}" for k, v in linkage.items()) + " mWb per turn and metre")
+    print(
+        "flux linkage        " + ", ".join(f"{k} {1e3 * v:.4f}" for k, v in linkage.items()) + " mWb per turn and metre"
+    )
     worst = sorted(result["probes_T"].items(), key=lambda item: -item[1])[:3]
     print("highest probes      " + ", ".join(f"{name} {value:.3f} T" for name, value in worst))
     print(f"unknowns            {result['unknowns']}, Newton iterations {len(result['newton']['residuals'])}")

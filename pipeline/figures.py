@@ -35,7 +35,16 @@ def stage_of(study) -> Stage:
     from pipeline import fields, fits, limits, match, optima, sweep, winding
 
     folder = results_folder(study.study.id)
-    inputs = [sweep.OUTPUT, optima.OUTPUT, limits.OUTPUT, fits.OUTPUT, match.TABLE, match.OUTPUT, winding.TABLE, winding.OUTPUT]
+    inputs = [
+        sweep.OUTPUT,
+        optima.OUTPUT,
+        limits.OUTPUT,
+        fits.OUTPUT,
+        match.TABLE,
+        match.OUTPUT,
+        winding.TABLE,
+        winding.OUTPUT,
+    ]
     inputs += [*fields.ROTATIONS.values(), *fields.FIELDS.values()]
     values = {name: value for name, value in study.model_dump(mode="json").items() if name != "study"}
     code = ("figures", "geometry", "drivetrain", "electrical", "pipeline.match", "pipeline.winding", "pipeline.figures")
@@ -132,7 +141,10 @@ def _matches(study):
     low, best = chosen.ratio_bounds[0], chosen.transmission_ratio
     curves = matcher.curves(chosen.section, np.linspace(0.9 * low, 2.2 * best, 161))
     yield "match_curves", match_curves(curves, chosen, length_limit=study.match.length_max_mm * MILLIMETRE)
-    mark = {name: found[name] for name in ("slots", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm", "cost")}
+    mark = {
+        name: found[name]
+        for name in ("slots", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm", "cost")
+    }
     mark["overload"] = study.match.overload_torque
     table = pd.read_csv(results_folder(study.study.id) / TABLE)
     yield "match_over_radius", match_over_radius(table, best=pd.DataFrame([mark]))
@@ -160,7 +172,10 @@ def _windings(study):
         for name, w in shown.items()
     }
     title = f"{choice.chosen.turns} turns, {choice.chosen.strands} wires"
-    yield "torque_speed", torque_speed(envelopes, title, (RequiredPoint("peak force", required.base_speed, required.torque),))
+    yield (
+        "torque_speed",
+        torque_speed(envelopes, title, (RequiredPoint("peak force", required.base_speed, required.torque),)),
+    )
     drive = DriveLimits.from_dc_bus(choice.chosen.current_peak, limits.dc_voltage)
     speed, torque = np.meshgrid(speeds, np.linspace(0, choice.chosen.peak_torque, 121))
     plane = operating_map(choice.chosen.machine(machine.pole_pairs), drive, torque, speed)

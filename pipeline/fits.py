@@ -36,7 +36,9 @@ def fit_all(optima) -> dict[tuple[int, str], object]:
     from optimisation.polynomial_fits import fit_polynomial
 
     return {
-        (int(slots), quantity): fit_polynomial(f"{quantity} ({slots} slots)", rows.stator_outer_radius_mm, rows[quantity])
+        (int(slots), quantity): fit_polynomial(
+            f"{quantity} ({slots} slots)", rows.stator_outer_radius_mm, rows[quantity]
+        )
         for slots, rows in optima.groupby("slots")
         for quantity in QUANTITIES
     }

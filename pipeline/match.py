@@ -89,7 +89,9 @@ class Matcher:
         from study.convert import to_machine
 
         machine = to_machine(self.study.machine)
-        shared = "slots stator_outer_radius rotor_outer_radius back_iron_width tooth_width shoe_d1 shoe_d2 airgap".split()
+        shared = (
+            "slots stator_outer_radius rotor_outer_radius back_iron_width tooth_width shoe_d1 shoe_d2 airgap".split()
+        )
         return CrossSection(
             **{name: getattr(machine, name) for name in shared},
             coils_in_series=layout_of(self.study).coils_in_series,
@@ -105,7 +107,9 @@ class Matcher:
 
         choose = match.damping_enforced if self.study.match.enforce_damping else match.damping_reported
         requirements = convert.to_actuator_requirements(self.study.requirements)
-        return choose(section, requirements, convert.to_match_limits(self.study.match), convert.to_copper_loading(self.study))
+        return choose(
+            section, requirements, convert.to_match_limits(self.study.match), convert.to_copper_loading(self.study)
+        )
 
     def over_radius(self, slots: int, overload: str):
         """``RadiusMatches`` over the range of the fits."""
@@ -135,12 +139,18 @@ class Matcher:
 
     def all(self) -> dict:
         """``RadiusMatches`` by (slots, overload) for every slot count with usable fits."""
-        return {(slots, overload): self.over_radius(slots, overload) for slots in self.study.sweep.slots for overload in OVERLOADS}
+        return {
+            (slots, overload): self.over_radius(slots, overload)
+            for slots in self.study.sweep.slots
+            for overload in OVERLOADS
+        }
 
     def choose(self, results: dict) -> tuple[object, str]:
         """(match, reason): the study's choice of machine, or the least cost; with the overload torque the study names."""
         overload, wanted = self.study.match.overload_torque, self.study.match
-        best = min((results[slots, overload] for slots in self.study.sweep.slots), key=lambda result: result.best.cost.total)
+        best = min(
+            (results[slots, overload] for slots in self.study.sweep.slots), key=lambda result: result.best.cost.total
+        )
         if wanted.chosen_slots is None and wanted.chosen_stator_diameter_mm is None:
             return best.best, "least cost over all radii and slot counts"
         chosen = self._wanted(overload, best.best.section)
@@ -152,7 +162,9 @@ class Matcher:
         wanted = self.study.match
         slots = wanted.chosen_slots or least.slots
         if slots not in self.study.sweep.slots:
-            raise StageError(f"match.chosen_slots = {slots} is not among sweep.slots {list(self.study.sweep.slots)}; add it there.")
+            raise StageError(
+                f"match.chosen_slots = {slots} is not among sweep.slots {list(self.study.sweep.slots)}; add it there."
+            )
         diameter = wanted.chosen_stator_diameter_mm
         return self.match_at(slots, overload, diameter / 2 * MILLIMETRE if diameter else least.stator_outer_radius)
 
@@ -187,11 +199,15 @@ def reference_matches(matcher: Matcher) -> dict:
     study = matcher.study
     nominal, overload, area = _solved_reference(study)
     solved = matcher.match_section(matcher.reference_section(nominal, overload, area))
-    found = {"field": summary(solved, "the study's machine with its torques from the field solution, mean over a period")}
+    found = {
+        "field": summary(solved, "the study's machine with its torques from the field solution, mean over a period")
+    }
     printed = study.printed_machine
     if printed is not None:
         sweep = study.sweep
-        scaled = linear_overload(printed.torque_nominal_Nm_per_m, sweep.j_nominal_rms_A_per_mm2, sweep.j_overload_rms_A_per_mm2)
+        scaled = linear_overload(
+            printed.torque_nominal_Nm_per_m, sweep.j_nominal_rms_A_per_mm2, sweep.j_overload_rms_A_per_mm2
+        )
         area = printed.half_slot_area_mm2 * SQUARE_MILLIMETRE
         section = matcher.reference_section(printed.torque_nominal_Nm_per_m, scaled, area)
         reason = f"the study's machine with the torque stated by {printed.source}, scaled linearly to the overload"

@@ -30,7 +30,9 @@ class StudyFamily:
 
     section: MachineSection
 
-    def machine(self, slots: int, stator_outer_radius: float, back_iron_width: float, rotor_outer_radius: float) -> Machine:
+    def machine(
+        self, slots: int, stator_outer_radius: float, back_iron_width: float, rotor_outer_radius: float
+    ) -> Machine:
         """The study's machine with four numbers changed, lengths in m."""
         return to_machine(
             self.section,

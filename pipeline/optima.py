@@ -133,7 +133,9 @@ def main(name: str) -> None:
         without = [name for name, row in rows.items() if row is None]
         found = [row for row in rows.values() if row is not None]
         if without:
-            print(f"optima: no design holds {study.saturation.limit_T:g} T ({study.saturation.reading}) for {'; '.join(without)}")
+            print(
+                f"optima: no design holds {study.saturation.limit_T:g} T ({study.saturation.reading}) for {'; '.join(without)}"
+            )
         if not found:
             raise StageError(
                 f"no design of the sweep holds the limit of {study.saturation.limit_T:g} T read as "

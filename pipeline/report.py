@@ -18,9 +18,19 @@ def stage_of(study) -> Stage:
     from pipeline import figures, fits, limits, match, optima, winding
 
     folder = results_folder(study.study.id)
-    inputs = [optima.OUTPUT, limits.OUTPUT, fits.OUTPUT, match.OUTPUT, winding.TABLE, winding.OUTPUT, *figures.FILES.values()]
+    inputs = [
+        optima.OUTPUT,
+        limits.OUTPUT,
+        fits.OUTPUT,
+        match.OUTPUT,
+        winding.TABLE,
+        winding.OUTPUT,
+        *figures.FILES.values(),
+    ]
     code = ("figures.report", "pipeline.report")
-    return Stage("report", folder, study.model_dump(mode="json"), tuple(folder / name for name in inputs), code, (OUTPUT,))
+    return Stage(
+        "report", folder, study.model_dump(mode="json"), tuple(folder / name for name in inputs), code, (OUTPUT,)
+    )
 
 
 class _Page:
@@ -52,7 +62,12 @@ class _Page:
         table = pd.read_csv(self.folder / ROTATIONS[machine]).iloc[:-1]  # the last row repeats the first
         torque, idle = table.torque_arkkio_Nm_per_m, table.torque_no_current_Nm_per_m
         apart = (table.torque_maxwell_Nm_per_m / torque - 1).abs().max()
-        return {"mean": torque.mean(), "ripple": torque.max() - torque.min(), "cogging": idle.abs().max(), "apart": apart}
+        return {
+            "mean": torque.mean(),
+            "ripple": torque.max() - torque.min(),
+            "cogging": idle.abs().max(),
+            "apart": apart,
+        }
 
     # ---- sections, in reading order -------------------------------------------------------------------------------
 
@@ -62,15 +77,31 @@ class _Page:
 
         m, w = self.match, self.winding["chosen"]
         numbers = (
-            KeyNumber("stator diameter", 2 * m["stator_outer_radius_mm"], "mm", f"{m['slots']} slots, {self.study.machine.poles} poles"),
-            KeyNumber("rotor diameter", 2 * m["rotor_outer_radius_mm"], "mm", f"back iron {m['back_iron_width_mm']:.2f} mm"),
+            KeyNumber(
+                "stator diameter",
+                2 * m["stator_outer_radius_mm"],
+                "mm",
+                f"{m['slots']} slots, {self.study.machine.poles} poles",
+            ),
+            KeyNumber(
+                "rotor diameter", 2 * m["rotor_outer_radius_mm"], "mm", f"back iron {m['back_iron_width_mm']:.2f} mm"
+            ),
             KeyNumber("active length", m["active_length_mm"], "mm", f"bound by the {m['binding']}"),
-            KeyNumber("transmission ratio", m["transmission_ratio_mm_per_rad"], "mm/rad", "wheel travel per rotor angle"),
-            KeyNumber("winding", f"{w['turns']} × {w['strands']}", "turns × wires", f"{w['current_rms_A']:.1f} A RMS at overload"),
+            KeyNumber(
+                "transmission ratio", m["transmission_ratio_mm_per_rad"], "mm/rad", "wheel travel per rotor angle"
+            ),
+            KeyNumber(
+                "winding",
+                f"{w['turns']} × {w['strands']}",
+                "turns × wires",
+                f"{w['current_rms_A']:.1f} A RMS at overload",
+            ),
             KeyNumber("base speed", w["base_speed_rpm"], "rpm", f"{w['power_at_base_speed_W'] / 1e3:.2f} kW there"),
         )
         remarks = [Remark(note) for note in m["notes"]]
-        return Section("Outcome", (KeyNumbers(numbers), f"Machine: {m['reason']}.", f"Winding: {self.winding['reason']}", *remarks))
+        return Section(
+            "Outcome", (KeyNumbers(numbers), f"Machine: {m['reason']}.", f"Winding: {self.winding['reason']}", *remarks)
+        )
 
     def machine(self):
         """The study's own machine and its field."""
@@ -85,8 +116,12 @@ class _Page:
         return Section(
             "Reference machine and its field",
             (
-                self.picture("cross_section_reference", "Cross-section with winding, magnetisation and probe segments."),
-                self.picture("field_reference_nominal", "Flux density and flux lines in the null position, nominal current."),
+                self.picture(
+                    "cross_section_reference", "Cross-section with winding, magnetisation and probe segments."
+                ),
+                self.picture(
+                    "field_reference_nominal", "Flux density and flux lines in the null position, nominal current."
+                ),
                 text,
                 self.picture("rotation_reference", "Torque, cogging and probes over one electrical period."),
             ),
@@ -119,7 +154,10 @@ class _Page:
                 text,
                 self.picture("design_map", "Torque and probe flux densities over back-iron width and rotor radius."),
                 self.picture("design_maps", "The same for every stator diameter, as shares of the stator radius."),
-                Table(self.optima[shown.split()], "Refined optima. Torque per metre of active length; flux densities are means over the probes."),
+                Table(
+                    self.optima[shown.split()],
+                    "Refined optima. Torque per metre of active length; flux densities are means over the probes.",
+                ),
                 cost,
                 reading,
                 self.picture("limits", "Optimum against the flux-density limit, for each reading of it."),
@@ -136,7 +174,10 @@ class _Page:
         shown = self.fits[columns].assign(quantity=self.fits.quantity.map(heading))
         caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
         table = Table(shown, caption, headings={"r_squared": "R²"})
-        refused = [f"Refused: {row.quantity}, {row.slots} slots: {row.refused}" for row in self.fits.dropna(subset="refused").itertuples()]
+        refused = [
+            f"Refused: {row.quantity}, {row.slots} slots: {row.refused}"
+            for row in self.fits.dropna(subset="refused").itertuples()
+        ]
         picture = self.picture("fits", "Optima (points) and second-order polynomials (lines) over the stator radius.")
         return Section("Polynomials over the stator radius", (picture, table, *refused))
 
@@ -145,17 +186,28 @@ class _Page:
         import pandas as pd
         from figures.report import Remark, Section, Table
 
-        rows = {"chosen machine": self.match, "reference machine, field torque": self.match["reference_machine"]["field"]}
+        rows = {
+            "chosen machine": self.match,
+            "reference machine, field torque": self.match["reference_machine"]["field"],
+        }
         if "printed" in self.match["reference_machine"]:
-            rows[f"reference machine, torque stated by {self.study.printed_machine.source}"] = self.match["reference_machine"]["printed"]
+            rows[f"reference machine, torque stated by {self.study.printed_machine.source}"] = self.match[
+                "reference_machine"
+            ]["printed"]
         columns = "stator_outer_radius_mm torque_nominal_Nm_per_m torque_overload_Nm_per_m transmission_ratio_mm_per_rad active_length_mm cost mass_kg equivalent_mass_kg binding"
         frame = pd.DataFrame([{"machine": name, **{c: row[c] for c in columns.split()}} for name, row in rows.items()])
         notes = [Remark(f"{name}: {note}.") for name, row in rows.items() for note in row["notes"]]
         return Section(
             "Gearbox and motor matched",
             (
-                self.picture("match_curves", "Active length asked for by each constraint, and the cost, over the transmission ratio."),
-                self.picture("match_over_radius", "Best match over the stator radius; solid with solved, dashed with scaled overload torque."),
+                self.picture(
+                    "match_curves",
+                    "Active length asked for by each constraint, and the cost, over the transmission ratio.",
+                ),
+                self.picture(
+                    "match_over_radius",
+                    "Best match over the stator radius; solid with solved, dashed with scaled overload torque.",
+                ),
                 Table(frame, "The chosen machine beside the machine of the study file."),
                 *notes,
                 *self._assumption(),
@@ -179,14 +231,19 @@ class _Page:
         fullest = self.windings[self.windings.fullest].drop(columns=["fullest"])
         near = fullest[(fullest.turns - self.winding["chosen"]["turns"]).abs() <= 6].reset_index(drop=True)
         marked = tuple(near.index[near.chosen])
-        caption = "For each number of turns the most wires that fit; all pairs are in windings.csv. The chosen one is marked."
+        caption = (
+            "For each number of turns the most wires that fit; all pairs are in windings.csv. The chosen one is marked."
+        )
         return Section(
             "Winding",
             (
                 f"{self.winding['reason']}",
                 Table(near.drop(columns=["chosen"]), caption, marked=marked),
                 self.picture("torque_speed", "Largest torque and power of neighbouring windings over the speed."),
-                self.picture("force_velocity", "Peak phase voltage and current at the wheel, up to the largest speed of the study."),
+                self.picture(
+                    "force_velocity",
+                    "Peak phase voltage and current at the wheel, up to the largest speed of the study.",
+                ),
             ),
         )
 
@@ -212,7 +269,15 @@ class _Page:
 
     def sections(self) -> tuple:
         """All sections in reading order."""
-        return (self.outcome(), self.machine(), self.optimisation(), self.polynomials(), self.matching(), self.matched(), self.wound())
+        return (
+            self.outcome(),
+            self.machine(),
+            self.optimisation(),
+            self.polynomials(),
+            self.matching(),
+            self.matched(),
+            self.wound(),
+        )
 
 
 def main(name: str) -> None:
@@ -226,7 +291,9 @@ def main(name: str) -> None:
         sections = _Page(study).sections()
         provenance = {"study": study.path.name, "commit": git_commit() or "unknown", **package_versions()}
         title, subtitle = study.study.title, "Cross-section, gearbox match and winding"
-        run.write(OUTPUT, lambda path: write_report(path, sections, title=title, subtitle=subtitle, provenance=provenance))
+        run.write(
+            OUTPUT, lambda path: write_report(path, sections, title=title, subtitle=subtitle, provenance=provenance)
+        )
         print(f"report: {results_folder(study.study.id) / OUTPUT}")
 
     stage_of(study).run(work)

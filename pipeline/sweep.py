@@ -29,7 +29,9 @@ def stage_of(study) -> Stage:
 
     values = study.subset(*FIELD_SECTIONS)
     values["saturation"] = {"reading": study.saturation.reading}
-    return Stage("sweep", results_folder(study.study.id), values, steel_files(study), (*FIELD_CODE, "pipeline.sweep"), (OUTPUT,))
+    return Stage(
+        "sweep", results_folder(study.study.id), values, steel_files(study), (*FIELD_CODE, "pipeline.sweep"), (OUTPUT,)
+    )
 
 
 def steel_files(study) -> tuple[Path, ...]:
@@ -114,7 +116,10 @@ def dataset_of(study, columns: dict[str, list]):
     coordinates = {
         "slots": list(s.slots),
         "stator_diameter_mm": list(s.stator_diameters_mm),
-        "back_iron_fraction": ("back_iron", np.linspace(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps)),
+        "back_iron_fraction": (
+            "back_iron",
+            np.linspace(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps),
+        ),
         "rotor_radius_fraction": (
             "rotor_radius",
             np.linspace(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, s.rotor_radius_steps),

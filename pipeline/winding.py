@@ -33,7 +33,9 @@ def matched_machine(study):
     from units import MILLIMETRE
 
     found = read_match(study)
-    lengths = (found[f"{name}_mm"] * MILLIMETRE for name in ("stator_outer_radius", "back_iron_width", "rotor_outer_radius"))
+    lengths = (
+        found[f"{name}_mm"] * MILLIMETRE for name in ("stator_outer_radius", "back_iron_width", "rotor_outer_radius")
+    )
     return StudyFamily(study.machine).machine(found["slots"], *lengths)
 
 
@@ -44,7 +46,9 @@ def solve_per_turn(study, model) -> dict:
     from pipeline.models import nominal_amplitude, overload_amplitude
 
     first, packing = null_angle(model.section.machine, model.section.layout), study.winding.packing_factor
-    nominal, overload = (per_turn_values(model, f(study), packing, first) for f in (nominal_amplitude, overload_amplitude))
+    nominal, overload = (
+        per_turn_values(model, f(study), packing, first) for f in (nominal_amplitude, overload_amplitude)
+    )
     return {"nominal": nominal, "overload": overload}
 
 

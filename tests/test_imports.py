@@ -16,14 +16,26 @@ ALLOWED = {
     "drivetrain": {"electrical"},
     "study": {"geometry", "materials", "electrical", "drivetrain"},
     "figures": {"geometry", "magnetostatics"},
-    "pipeline": {"study", "figures", "optimisation", "magnetostatics", "geometry", "materials", "electrical", "drivetrain", "losses"},
+    "pipeline": {
+        "study",
+        "figures",
+        "optimisation",
+        "magnetostatics",
+        "geometry",
+        "materials",
+        "electrical",
+        "drivetrain",
+        "losses",
+    },
 }
 
 
 def modules():
     for name in ALLOWED:
         place = PROJECT / name
-        yield from ((name, path) for path in ([place.with_suffix(".py")] if not place.is_dir() else place.rglob("*.py")))
+        yield from (
+            (name, path) for path in ([place.with_suffix(".py")] if not place.is_dir() else place.rglob("*.py"))
+        )
 
 
 def imported(path):
@@ -54,5 +66,9 @@ def test_the_allowed_imports_have_no_cycle():
 
 
 def test_only_one_module_draws_with_gmsh():
-    users = [path.relative_to(PROJECT).as_posix() for _, path in modules() if "import gmsh" in path.read_text(encoding="utf-8")]
+    users = [
+        path.relative_to(PROJECT).as_posix()
+        for _, path in modules()
+        if "import gmsh" in path.read_text(encoding="utf-8")
+    ]
     assert users == ["geometry/plane_mesh.py"]

@@ -12,6 +12,7 @@ from geometry.machine import GeometryError, ParallelMagnetisation, RadialMagneti
 from geometry.winding import star_of_slots
 from tests.geometry.thesis_machine import MM, machine, section
 
+
 def areas(mesh):
     a, b, c = (mesh.p[:, mesh.t[i]] for i in range(3))
     u, v = b - a, c - a

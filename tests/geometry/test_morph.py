@@ -18,7 +18,13 @@ def test_moving_onto_the_same_machine_moves_nothing(base):
 
 
 @pytest.mark.parametrize(
-    "changes", ({"back_iron_width": 4.0 * MM}, {"rotor_outer_radius": 14.5 * MM}, {"airgap": 0.7 * MM}, {"slot_opening": 1.5 * MM})
+    "changes",
+    (
+        {"back_iron_width": 4.0 * MM},
+        {"rotor_outer_radius": 14.5 * MM},
+        {"airgap": 0.7 * MM},
+        {"slot_opening": 1.5 * MM},
+    ),
 )
 def test_moved_regions_have_the_areas_of_a_new_mesh(base, changes):
     moved, new = Morpher(base).to(machine(**changes)), section(**changes)

@@ -11,7 +11,10 @@ from study.read import read_study
 LIMIT = 1.2  # T
 # field-model.md of the design: (w_bi, R_ro) [mm] and torque [Nm/m] at 42.5 mm, 12 slots, interpolated on its own grid
 BRACKET = {"aligned_tooth": 55.6, "every_tooth": 46.4}
-STARTS = {"aligned_tooth": ((2.68e-3, 13.9e-3), (3.0e-3, 15.0e-3)), "every_tooth": ((4.0e-3, 15.9e-3), (3.7e-3, 15.0e-3))}
+STARTS = {
+    "aligned_tooth": ((2.68e-3, 13.9e-3), (3.0e-3, 15.0e-3)),
+    "every_tooth": ((4.0e-3, 15.9e-3), (3.7e-3, 15.0e-3)),
+}
 
 
 @pytest.fixture(scope="module")

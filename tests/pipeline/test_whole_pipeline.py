@@ -24,7 +24,9 @@ FOLDER = PROJECT / "results" / "small-test-study"
 
 
 def run(stage, study):
-    return subprocess.run([sys.executable, "-m", f"pipeline.{stage}", str(study)], cwd=PROJECT, capture_output=True, text=True)
+    return subprocess.run(
+        [sys.executable, "-m", f"pipeline.{stage}", str(study)], cwd=PROJECT, capture_output=True, text=True
+    )
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +49,14 @@ def test_results_are_labelled_and_have_their_provenance(study):
     with xr.open_dataset(FOLDER / "design_map.nc") as data:
         assert data.torque_Nm_per_m.dims == ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
         assert int(data.torque_Nm_per_m.notnull().sum()) > 40
-    for file in ("design_map.nc", "optima.csv", "winding.json", "reference_nominal.vtu", "figures/fits.png", "report.html"):
+    for file in (
+        "design_map.nc",
+        "optima.csv",
+        "winding.json",
+        "reference_nominal.vtu",
+        "figures/fits.png",
+        "report.html",
+    ):
         provenance = json.loads((FOLDER / f"{file}.provenance.json").read_text())
         assert provenance["inputs"] and provenance["packages"] and provenance["wall_time_s"] >= 0
 
@@ -74,7 +83,9 @@ def test_the_report_reads_from_outcome_to_winding(study):
 
 def test_a_stage_without_its_input_says_what_to_run(study, tmp_path):
     other = tmp_path / "other.toml"
-    other.write_text(study.read_text(encoding="utf-8").replace("small-test-study", "small-test-never-run"), encoding="utf-8")
+    other.write_text(
+        study.read_text(encoding="utf-8").replace("small-test-study", "small-test-never-run"), encoding="utf-8"
+    )
     done = run("fits", other)
     assert done.returncode == 1
     assert "which does not exist; run the stage that writes it" in done.stderr and "Traceback" not in done.stderr
