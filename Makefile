@@ -10,13 +10,14 @@ STAGES := sweep optima limits fits match winding fields figures report
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help pipeline $(STAGES) losses inspect check test benchmark clean
+.PHONY: help pipeline $(STAGES) losses flux_map inspect check test benchmark clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make pipeline   all stages, results in results/<study>/ (report.html first)"
 	@echo "make <stage>    one stage with those before it: $(STAGES)"
 	@echo "make losses     loss and efficiency map of the wound machine"
+	@echo "make flux_map   flux linkage over current of the wound machine, with export"
 	@echo "make inspect    the machine and its field in a window, or as PNG and HTML without a display"
 	@echo "make check      is the study file usable?"
 	@echo "make test       all tests"
@@ -40,8 +41,8 @@ report: figures
 $(STAGES):
 	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
 
-losses: winding
-	@$(PYTHON) -m pipeline.losses "$(STUDY)"
+losses flux_map: winding
+	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
 
 inspect: $(SET_UP)
 	@$(PYTHON) -m pipeline.inspect_fields "$(STUDY)"

@@ -153,7 +153,7 @@ def linear_limit(layers):
     model = model_of(reference_machine(), layers=layers, materials=weak, settings=SHARP)
     axis = model.section.layout.phase_axis
     first = (axis - np.pi / 2) / 5
-    angles = first + 12 * DEGREE * np.arange(8) / 8
+    angles = first + 12 * DEGREE * np.arange(4) / 4
     torque = [
         arkkio_torque(model.solve(OperatingPoint(angle, 1e6))) - arkkio_torque(model.solve(OperatingPoint(angle)))
         for angle in angles

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.physics
 
 RATED = 55.5  # Nm/m, at 6 A/mm^2 RMS
 PERIOD = 6.0  # degrees
-STEPS = 24  # in one period
+STEPS = 16  # in one period
 ROUTES = {"ring": arkkio_torque, "circle": maxwell_torque}
 MESHES = {"sweep": SWEEP, "fine": FINE}
 both_routes = pytest.mark.parametrize("route", ROUTES)
