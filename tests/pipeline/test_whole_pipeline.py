@@ -17,8 +17,8 @@ SMALL = {
     'id = "motorcycle"': 'id = "small-test-study"',
     "slots = [9, 12]": "slots = [12]",
     "[70, 75, 80, 85, 90, 95, 100, 105, 110, 115]": "[75, 80, 85, 90]",
-    "back_iron_steps = 8": "back_iron_steps = 4",
-    "rotor_radius_steps = 7": "rotor_radius_steps = 4",
+    "back_iron_steps = 7": "back_iron_steps = 4",
+    "rotor_radius_steps = 6": "rotor_radius_steps = 4",
 }
 FOLDER = PROJECT / "results" / "small-test-study"
 
