@@ -139,7 +139,8 @@ def test_radial_magnetisation_makes_less_torque_with_ten_poles():
 
 def test_torque_falls_with_the_magnet_arc():
     """Both routes, from full arc down to a half; a slit between the magnets is no different from none."""
-    fields = [model_of(reference_machine(magnet_arc_fraction=arc)).solve(POINT) for arc in (1.0, 0.9999, 0.95, 0.8, 0.5)]
+    machines = [reference_machine(magnet_arc_fraction=arc) for arc in (1.0, 0.9999, 0.95, 0.8, 0.5)]
+    fields = [model_of(machine).solve(POINT) for machine in machines]
     torques = np.array([(arkkio_torque(field), maxwell_torque(field)) for field in fields])
     assert_allclose(torques[1], torques[0], rtol=2e-3)
     assert_allclose(torques[:, 0], torques[:, 1], rtol=5e-3)
@@ -165,8 +166,9 @@ def linear_limit(layers):
 
 
 def test_single_layer_of_twelve_slots():
-    """12/10 with one layer: k_w 0.966 against 0.933. Half as many coils of twice the copper: torque goes as k_w at equal
-    current density, flux linkage per turn as k_w/2.
+    """12/10 with one layer: k_w 0.966 against 0.933, and half as many coils of twice the copper.
+
+    So at equal current density torque goes as k_w, flux linkage per turn as k_w/2.
     """
     layouts = [section_of(reference_machine(), layers=layers).layout for layers in (1, 2)]
     ratio = layouts[0].winding_factor() / layouts[1].winding_factor()

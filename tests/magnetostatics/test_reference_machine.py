@@ -1,6 +1,6 @@
 """The reference machine against values on which two other codes agree to 0.013 %, themselves good to 0.05 %.
 
-Torque to 0.25 %, probes to 1 % (the table prints three digits), at the mesh of the sweep; the main row on a finer mesh too.
+Torque to 0.25 %, probes to 1 % (the table prints three digits) at the mesh of the sweep; the main row on a finer too.
 """
 
 from __future__ import annotations
@@ -81,8 +81,11 @@ def period(amplitude, steps=12) -> Period:
         psi = park(phase_flux_linkage(solution), 5 * point.angle, model.section.layout.phase_axis)
         rows.append((arkkio_torque(solution), *psi))
         fields.append(reader.read(solution))
-    parts = [max(value for field in fields for name, value in field.items() if name.startswith(p)) for p in ("tooth", "back")]
-    return Period(*np.array(rows).T, *parts)
+    tooth, back_iron = (
+        max(value for field in fields for name, value in field.items() if name.startswith(part))
+        for part in ("tooth", "back_iron")
+    )
+    return Period(*np.array(rows).T, tooth, back_iron)
 
 
 @both_routes

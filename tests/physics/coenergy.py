@@ -20,7 +20,7 @@ from units import MU_0
 
 @dataclass(frozen=True)
 class PhaseCurrents:
-    """An operating point with any three currents: ampere-turns of one coil of phases A, B, C [A], at a rotor angle [rad]."""
+    """An operating point with any three currents: ampere-turns of a coil of each phase [A], at a rotor angle [rad]."""
 
     angle: float
     ampere_turns: tuple[float, float, float]

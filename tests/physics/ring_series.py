@@ -7,7 +7,8 @@ density J_k that do not depend on the radius,
     a = c_1 (r/r_o)^k + c_2 (r_i/r)^k + (T_k - j k R_k) r/(k^2 - 1) + mu J_k r^2/(k^2 - 4)
     B_r = j k a/r,   B_phi = -a',   H_phi = nu (B_phi - T_k)
 
-a and H_phi are continuous from layer to layer, but for a current sheet K_k by which H_phi rises on the way outwards; H_phi = 0 on the innermost circle, where the iron ends, and a = 0 on the outermost. Valid for k > 2.
+a and H_phi are continuous from layer to layer, but for a current sheet K_k by which H_phi rises on the way outwards;
+H_phi = 0 on the innermost circle, where the iron ends, and a = 0 on the outermost. Valid for k > 2.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A slotless machine as a hand-made structured mesh, so that the field solver meets a problem with an exact solution.
 
-30 "slots" without teeth: an annulus of copper cut into 60 half slots, between a smooth gap and a smooth stator yoke; the
-real winding layout and the real ``FieldModel`` work on it. One pole pitch is meshed.
+30 "slots" without teeth: an annulus of copper cut into 60 half slots, between a smooth gap and a smooth stator yoke.
+The real winding layout and the real ``FieldModel`` work on it. One pole pitch is meshed.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from skfem import MeshTri
 from geometry.cross_section import CrossSection
 from geometry.machine import Machine, ParallelMagnetisation
 from geometry.winding import star_of_slots
-from magnetostatics.elements import LINEAR, QUADRATIC, Elements, dof_locations
+from magnetostatics.elements import LINEAR, Elements
 from magnetostatics.model import FieldModel, MachineMaterials
 from magnetostatics.newton import NewtonSettings
 from materials.magnet import Magnet
 from materials.reluctivity import LinearReluctivity
 from tests.physics.ring_series import Layer, magnet_harmonic, solve_layers
-from units import MILLIMETRE, MU_0
+from units import MILLIMETRE
 
 SLOTS, POLE_PAIRS = 30, 5
 EXACT = NewtonSettings(tolerance=1e-9)
@@ -61,13 +61,13 @@ class Ring:
         return MachineMaterials(iron, iron, Magnet(self.remanence, self.recoil_permeability))
 
     def layers(self, order, angle=0.0, magnets=1.0, current=0.0, sheet=0.0):
-        """Layers of one order: magnets times their remanence, turned by angle [rad]; current density and current sheet."""
-        m, iron = self.machine, self.iron_permeability
+        """Layers of one order: magnets times their remanence, turned by angle [rad]; current density, current sheet."""
+        m, iron, recoil = self.machine, self.iron_permeability, self.recoil_permeability
         radial, tangential = magnet_harmonic(order, m.pole_pairs, self.remanence, m.magnet_arc_fraction, self.parallel)
         turned = magnets * np.exp(-1j * order * angle)
         return (
             Layer(m.shaft_radius, m.rotor_core_radius, iron),
-            Layer(m.rotor_core_radius, m.rotor_outer_radius, self.recoil_permeability, radial * turned, tangential * turned),
+            Layer(m.rotor_core_radius, m.rotor_outer_radius, recoil, radial * turned, tangential * turned),
             Layer(m.rotor_outer_radius, m.stator_inner_radius),
             Layer(m.stator_inner_radius, m.slot_bottom_radius, current=current, sheet=sheet),
             Layer(m.slot_bottom_radius, m.stator_outer_radius, iron),
@@ -91,9 +91,9 @@ def ring_section(machine: Machine, edges_per_half_slot: int, gap_layers: int = 1
     core = _radii(machine.shaft_radius, machine.rotor_core_radius, 2 * edge)
     magnet = _radii(machine.rotor_core_radius, machine.rotor_outer_radius, edge)
     below = np.linspace(machine.rotor_outer_radius, machine.mid_gap_radius, gap_layers + 1)
-    count = 6 * edges_per_half_slot  # a pole pitch is three slots
-    stator = _annulus(np.concatenate([gap, copper[1:], yoke[1:]]), -machine.slot_pitch / 2 + step * np.arange(count + 1))
-    rotor = _annulus(np.concatenate([core, magnet[1:], below[1:]]), -machine.pole_pitch / 2 + step * np.arange(count + 1))
+    angles = step * np.arange(6 * edges_per_half_slot + 1)  # a pole pitch is three slots
+    stator = _annulus(np.concatenate([gap, copper[1:], yoke[1:]]), angles - machine.slot_pitch / 2)
+    rotor = _annulus(np.concatenate([core, magnet[1:], below[1:]]), angles - machine.pole_pitch / 2)
     return _section(machine, stator, rotor)
 
 
@@ -114,7 +114,8 @@ def _annulus(radii, angles):
 
 def _section(machine, stator, rotor) -> CrossSection:
     offset = stator[0].shape[1]
-    mesh = MeshTri(np.hstack([stator[0], rotor[0]]), np.hstack([stator[1], rotor[1] + offset]), sort_t=False, validate=False)
+    points, triangles = np.hstack([stator[0], rotor[0]]), np.hstack([stator[1], rotor[1] + offset])
+    mesh = MeshTri(points, triangles, sort_t=False, validate=False)
     mesh = mesh.with_subdomains(_regions(machine, mesh))
     mesh = mesh.with_boundaries(_boundaries(machine, mesh, offset))
     layout = star_of_slots(machine.slots, machine.pole_pairs)
@@ -208,7 +209,7 @@ def winding_harmonic(layout, densities, order: int) -> complex:
 
 
 def exact_flux_linkage(ring: Ring, layout, fields) -> np.ndarray:
-    """Flux linkage of phases A, B, C [Wb/m per turn] from fields of several orders: sum of sign * mean of A per coil side.
+    """Flux linkage of phases A, B, C [Wb/m per turn] from fields of several orders: sum over coil sides of +-mean A.
 
     A mean over the copper of A_k exp(j k phi) is the conjugate of the winding harmonic of a unit current, times area.
     """

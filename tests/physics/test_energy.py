@@ -52,8 +52,11 @@ def test_flux_linkage_is_the_derivative_of_coenergy(layers):
 def test_incremental_inductances_are_reciprocal(layers):
     """dpsi_a/di_b = dpsi_b/di_a, all nine by central differences; the matrix is positive definite."""
     step = 2.0
-    ends = [[phase_flux_linkage(with_more_current(layers, phase, sign * step)) for sign in (1, -1)] for phase in range(3)]
-    inductance = np.array([(more - less) / (2 * step) for more, less in ends])
+    more, less = (
+        np.array([phase_flux_linkage(with_more_current(layers, phase, change)) for phase in range(3)])
+        for change in (step, -step)
+    )
+    inductance = (more - less) / (2 * step)
     largest = np.abs(inductance).max()
     assert_allclose(inductance, inductance.T, atol=1e-5 * largest)
     assert np.linalg.eigvalsh(inductance).min() > 0

@@ -1,4 +1,4 @@
-"""The field solver against exact series: a slotless surface-magnet ring (Zhu and Howe 1993 and own separation of variables)."""
+"""The field solver against exact series of a slotless surface-magnet ring (Zhu and Howe 1993, own derivation)."""
 
 from __future__ import annotations
 
