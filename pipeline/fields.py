@@ -14,7 +14,7 @@ from study.read import read_study
 
 MACHINES = ("reference", "matched")
 STATES = ("no_current", "nominal", "overload")
-_STEPS = 144  # over one electrical period
+_STEPS = 72  # over one electrical period
 ROTATIONS = {machine: f"rotation_{machine}.csv" for machine in MACHINES}
 FIELDS = {(machine, state): f"{machine}_{state}.vtu" for machine in MACHINES for state in STATES}
 
