@@ -19,12 +19,11 @@ from magnetostatics.cholesky import SymmetricSystem
 class Entries:
     """Addresses of the local entries (K, E) of a set of elements in the reduced matrix.
 
-    keys (k,): sorted distinct keys; position (K E,): where each local entry goes; sign (K E,): 0 on fixed unknowns
+    keys (k,): sorted distinct keys; adder (k, K E): sparse, +-1 where a local entry belongs to a key
     """
 
     keys: np.ndarray
-    position: np.ndarray
-    sign: np.ndarray
+    adder: sp.csr_matrix
 
     @classmethod
     def of(cls, pairs, dofs: np.ndarray, column: np.ndarray, dof_sign: np.ndarray, size: int) -> Entries:
@@ -33,31 +32,57 @@ class Entries:
         pairs: local (row, column) of the K entries
         """
         i, j = pairs
-        a, b = column[dofs][i], column[dofs][j]
-        local_sign = dof_sign[dofs]
-        sign = (local_sign[i] * local_sign[j]).ravel()
-        keys = (np.minimum(a, b) * np.int64(size) + np.maximum(a, b)).ravel()
-        keys[sign == 0] = 0  # fixed unknowns must not fill the pattern; nothing is added there
-        distinct, position = np.unique(keys, return_inverse=True)
-        return cls(distinct, position, sign)
+        a, b = column[dofs][i].ravel(), column[dofs][j].ravel()
+        sign = (dof_sign[dofs][i] * dof_sign[dofs][j]).ravel()
+        rows, columns = np.maximum(a, b), np.minimum(a, b)
+        order = _counting_sort(rows, size)
+        order = order[sign[order] != 0]  # fixed unknowns must not fill the pattern
+        order = order[_counting_sort(columns[order], size)]
+        keys = columns[order] * np.int64(size) + rows[order]
+        starts = np.flatnonzero(np.append(True, keys[1:] != keys[:-1]))
+        adder = sp.csr_matrix((sign[order], order, np.append(starts, len(keys))), shape=(len(starts), len(sign)))
+        return cls(keys[starts], adder)
 
     def sum(self, local: np.ndarray) -> np.ndarray:
         """Add local entries (K, E) up, one value per key."""
-        return np.bincount(self.position, weights=local.ravel() * self.sign, minlength=len(self.keys))
+        return self.adder @ local.ravel()
+
+
+def _counting_sort(values: np.ndarray, size: int) -> np.ndarray:
+    """Stable order of integers from 0 to size - 1, in linear time: the transposition of a sparse matrix is one."""
+    one_a_row = sp.csr_matrix((np.ones(len(values), bool), values, np.arange(len(values) + 1)), (len(values), size))
+    return one_a_row.tocsc().indices
+
+
+@dataclass(frozen=True, eq=False)
+class FixedPattern:
+    """What of the pattern does not depend on the rotor's turn.
+
+    keys: sorted; iron, linear: positions of the keys of ``iron_entries`` and of ``linear_entries`` in them
+    """
+
+    iron_entries: Entries
+    linear_entries: Entries
+    size: int
+
+    def __post_init__(self):
+        keys, linear, iron = _merge(self.linear_entries.keys, self.iron_entries.keys)
+        for name, value in {"keys": keys, "linear": linear, "iron": iron}.items():
+            object.__setattr__(self, name, value)
 
 
 class JoinedPattern:
     """Pattern of the matrix with stator and rotor joined at one number of edges, and its symbolic factorisation.
 
-    iron: addresses of the iron entries; others: sorted keys of the linear entries, with and without the rotor's turn
+    fixed_position, band_position: of the keys of the fixed pattern and of the rotor side of the gap
     """
 
-    def __init__(self, iron: Entries, others: tuple[np.ndarray, ...], size: int):
-        keys = _merge(iron.keys, *others)
-        self.size, self.iron = size, iron
-        self.iron_position, *self.other_positions = (np.searchsorted(keys, part) for part in (iron.keys, *others))
-        self.rows, self.columns = keys % size, keys // size
-        self.column_starts = np.searchsorted(self.columns, np.arange(size + 1))
+    def __init__(self, fixed: FixedPattern, band: Entries):
+        keys, self.fixed_position, self.band_position = _merge(fixed.keys, band.keys)
+        self.fixed, self.band, self.size = fixed, band, fixed.size
+        self.columns, self.rows = np.divmod(keys, self.size)
+        self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))
+        self.iron_position = self.fixed_position[fixed.iron]
 
     @cached_property
     def system(self) -> SymmetricSystem:
@@ -68,14 +93,14 @@ class JoinedPattern:
 class JoinedSystem:
     """The matrix of one model at one rotor angle: linear part as a product, whole matrix as a factorisation.
 
-    values: of the linear entries, one array for each of the pattern's ``others``
+    linear, band: values of the linear entries and of those of the rotor side of the gap, in the order of their keys
     """
 
-    def __init__(self, pattern: JoinedPattern, values: tuple[np.ndarray, ...]):
+    def __init__(self, pattern: JoinedPattern, linear: np.ndarray, band: np.ndarray):
         self.pattern = pattern
         self._linear = np.zeros(len(pattern.rows))
-        for position, part in zip(pattern.other_positions, values, strict=True):
-            self._linear[position] += part
+        self._linear[pattern.fixed_position[pattern.fixed.linear]] = linear
+        self._linear[pattern.band_position] += band
 
     @cached_property
     def linear_matrix(self) -> sp.csc_matrix:
@@ -94,12 +119,15 @@ class JoinedSystem:
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
         """Factorise linear part plus the local iron entries (K, E). Good until the next call for the same pattern."""
         values = self._linear.copy()
-        values[self.pattern.iron_position] += self.pattern.iron.sum(iron_tangent)
+        values[self.pattern.iron_position] += self.pattern.fixed.iron_entries.sum(iron_tangent)
         self.pattern.system.factorise(values)
         return self.pattern.system
 
 
-def _merge(*sorted_keys: np.ndarray) -> np.ndarray:
-    """Sorted distinct keys of several sorted lists."""
-    keys = np.sort(np.concatenate(sorted_keys), kind="stable")  # merges sorted runs
-    return keys[np.append(True, keys[1:] != keys[:-1])]
+def _merge(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sorted distinct keys of two sorted lists of distinct keys, and the positions in them of either list."""
+    place = np.searchsorted(first, second)
+    is_new = np.append(first, -1)[place] != second
+    keys = np.insert(first, place[is_new], second[is_new])
+    inserted = np.cumsum(np.bincount(place[is_new], minlength=len(first)))
+    return keys, np.arange(len(first)) + inserted[: len(first)], place + np.cumsum(is_new) - is_new

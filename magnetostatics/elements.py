@@ -2,7 +2,10 @@
 
 Weak form for the vector potential A (per metre of length), B = (dA/dy, -dA/dx):
     integral nu(|B|^2) grad A . grad v = integral J v + integral nu (B_rx dv/dy - B_ry dv/dx)
-scikit-fem supplies the reference functions, the quadrature and the numbering; the gradients are mapped once per mesh.
+scikit-fem supplies the reference functions, the quadrature and the numbering. In reference coordinates (xi, eta) the
+functions are the same in every triangle: what differs is three numbers, the metric M, and so a vector or a matrix of all
+elements is one small constant matrix times a few numbers per element,
+    grad A . grad v = (dA/dxi, dA/deta) M (dv/dxi, dv/deta) / |D|,   M = |D| J^-1 J^-T,   D = det J
 The element index comes last in every array, so that each operation is one pass over contiguous memory.
 """
 
@@ -39,11 +42,36 @@ class TriangleOrder:
         return cls(element, np.stack(values), _same_shape(gradients), points, weights, np.tril_indices(functions))
 
     @cached_property
-    def stiffness(self) -> np.ndarray:
-        """integral of (d_u d_u, d_u d_v + d_v d_u, d_v d_v) of every pair over the reference triangle (K, 3)."""
+    def slopes(self) -> np.ndarray:
+        """Derivatives along xi at all points, then along eta (2 Q, F)."""
+        return np.ascontiguousarray(self.gradients.transpose(1, 2, 0).reshape(-1, len(self.values)))
+
+    @cached_property
+    def weighted_slopes(self) -> np.ndarray:
+        """The slopes times the weights of their points (F, 2 Q): sums a field at the points up to local vectors."""
+        return np.ascontiguousarray((self.gradients * self.weights).reshape(len(self.values), -1))
+
+    @cached_property
+    def products(self) -> np.ndarray:
+        """Weighted (d_xi u d_xi v, d_xi u d_eta v + d_eta u d_xi v, d_eta u d_eta v) of every pair and point (K, 3 Q)."""
         i, j = self.pairs
         u, v = self.gradients[:, 0], self.gradients[:, 1]
-        return np.stack([(u[i] * u[j]), (u[i] * v[j] + v[i] * u[j]), (v[i] * v[j])], axis=1) @ self.weights
+        parts = np.stack([u[i] * u[j], u[i] * v[j] + v[i] * u[j], v[i] * v[j]], axis=1) * self.weights
+        return np.ascontiguousarray(parts.reshape(len(i), -1))
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """The products summed over the points (K, 3): what the metric is multiplied with."""
+        return self.products.reshape(len(self.products), 3, -1).sum(axis=2)
+
+    @cached_property
+    def of_distinct_gradients(self) -> TriangleOrder:
+        """One point instead of all where the gradients are constant: enough for whatever depends on B alone."""
+        if np.ptp(self.gradients, axis=2).max() > 0:
+            return self
+        middle, whole = self.points.mean(axis=1, keepdims=True), self.weights.sum(keepdims=True)
+        values = self.values.mean(axis=1, keepdims=True)
+        return TriangleOrder(self.element, values, self.gradients[:, :, :1], middle, whole, self.pairs)
 
     def gradients_at(self, local: np.ndarray) -> np.ndarray:
         """Reference gradients (F, 2, n) at local coordinates (2, n)."""
@@ -81,70 +109,76 @@ def refine_order(facets: np.ndarray, a: np.ndarray) -> np.ndarray:
 class Elements:
     """A set of straight triangles with F functions each (3 linear, 6 quadratic).
 
-    dofs (F, E); gradients of the functions (F, Q, E) [1/m]; weights (Q, E) [m^2]; points (2, Q, E) [m]
-    edges: from the first corner to the second and third (2, 2, E) [m]
+    dofs (F, E); first: the first corners (2, E) [m]; edges: from them to the second and third corners (2, 2, E) [m]
     """
 
     order: TriangleOrder
     dofs: np.ndarray
-    gradient_x: np.ndarray
-    gradient_y: np.ndarray
-    weights: np.ndarray
-    points: np.ndarray
+    first: np.ndarray
     edges: np.ndarray
 
     @classmethod
     def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
         """Elements with corners (2, 3, E) [m] and degrees of freedom (F, E)."""
         a, b, c = corners.transpose(1, 0, 2)
-        u, v = b - a, c - a
-        determinant = u[0] * v[1] - u[1] * v[0]
-        along_u, along_v = order.gradients[:, 0, :, None], order.gradients[:, 1, :, None]
-        gradient_x = (along_u * v[1] - along_v * u[1]) / determinant
-        gradient_y = (along_v * u[0] - along_u * v[0]) / determinant
-        points = a[:, None] + u[:, None] * order.points[0][:, None] + v[:, None] * order.points[1][:, None]
-        return cls(
-            order, dofs, gradient_x, gradient_y, order.weights[:, None] * np.abs(determinant), points, np.stack([u, v])
-        )
+        return cls(order, dofs, a, np.stack([b - a, c - a]))
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices."""
-        return Elements(
-            self.order,
-            self.dofs[:, which],
-            self.gradient_x[:, :, which],
-            self.gradient_y[:, :, which],
-            self.weights[:, which],
-            self.points[:, :, which],
-            self.edges[:, :, which],
-        )
+        return Elements(self.order, *(np.take(part, which, axis=-1) for part in (self.dofs, self.first, self.edges)))
 
     @cached_property
-    def stiffness_basis(self) -> np.ndarray:
-        """weights * grad phi_i . grad phi_j for the pairs of functions (K, Q, E): times nu it is the element matrix."""
-        i, j = self.order.pairs
-        return (self.gradient_x[i] * self.gradient_x[j] + self.gradient_y[i] * self.gradient_y[j]) * self.weights
+    def determinant(self) -> np.ndarray:
+        """Of the map from the reference triangle (E,) [m^2]: twice the signed area."""
+        u, v = self.edges
+        return u[0] * v[1] - u[1] * v[0]
 
     @cached_property
     def metric(self) -> np.ndarray:
-        """What a constant reluctivity multiplies in the element matrix (3, E): grad . grad in reference coordinates."""
+        """M_11, M_12, M_22 (3, E): grad . grad times |D| in reference coordinates."""
         u, v = self.edges
-        determinant = np.abs(u[0] * v[1] - u[1] * v[0])
-        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / determinant
+        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / np.abs(self.determinant)
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Area that belongs to every quadrature point (Q, E) [m^2]."""
+        return self.order.weights[:, None] * np.abs(self.determinant)
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Quadrature points (2, Q, E) [m]."""
+        (u, v), (along_u, along_v) = self.edges, self.order.points[:, :, None]
+        return self.first[:, None] + u[:, None] * along_u + v[:, None] * along_v
+
+    @cached_property
+    def gradient_x(self) -> np.ndarray:
+        """d/dx of the functions at the quadrature points (F, Q, E) [1/m]."""
+        (u, v), (along_u, along_v) = self.edges, self.order.gradients[..., None].swapaxes(0, 1)
+        return (along_u * v[1] - along_v * u[1]) / self.determinant
+
+    @cached_property
+    def gradient_y(self) -> np.ndarray:
+        """d/dy of the functions at the quadrature points (F, Q, E) [1/m]."""
+        (u, v), (along_u, along_v) = self.edges, self.order.gradients[..., None].swapaxes(0, 1)
+        return (along_v * u[0] - along_u * v[0]) / self.determinant
 
     def stiffness(self, reluctivity: np.ndarray | float) -> np.ndarray:
         """Element matrices (K, E) for a reluctivity that is constant in each element (E,) [m/H]."""
         return self.order.stiffness @ (self.metric * reluctivity)
 
+    def slopes(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(dA/dxi, dA/deta) at the quadrature points, each (Q, E), of local values (F, E)."""
+        return tuple((self.order.slopes @ local).reshape(2, -1, local.shape[1]))
+
     def gradient(self, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(dA/dx, dA/dy) at the quadrature points, each (Q, E) [T]."""
-        local = a[self.dofs]
-        return np.einsum("iqe,ie->qe", self.gradient_x, local), np.einsum("iqe,ie->qe", self.gradient_y, local)
+        (u, v), (along_u, along_v) = self.edges / self.determinant, self.slopes(a[self.dofs])
+        return along_u * v[1] - along_v * u[1], along_v * u[0] - along_u * v[0]
 
     def forces(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Local vectors integral (x dv/dx + y dv/dy) (F, E) of a vector field given at the quadrature points (Q, E)."""
-        x, y = x * self.weights, y * self.weights
-        return np.einsum("iqe,qe->ie", self.gradient_x, x) + np.einsum("iqe,qe->ie", self.gradient_y, y)
+        u, v = self.edges * np.sign(self.determinant)
+        return self.order.weighted_slopes @ np.concatenate([x * v[1] - y * v[0], y * u[0] - x * u[1]])
 
     def means(self) -> np.ndarray:
         """Local vectors integral v / total area (F, E)."""

@@ -185,7 +185,9 @@ def _blend(solutions: list[FieldSolution], weights: np.ndarray) -> FieldSolution
     """A start between solutions; None (a start from linear elements) where fewer than two are known."""
     if len(solutions) < 2:
         return None
-    return replace(solutions[0], a=weights @ np.stack([solution.a for solution in solutions]))
+    a = weights @ np.stack([solution.a for solution in solutions])
+    coarse = None if solutions[0].coarse is None else _blend([solution.coarse for solution in solutions], weights)
+    return replace(solutions[0], a=a, coarse=coarse)
 
 
 def _order(i_d: np.ndarray, i_q: np.ndarray) -> Iterator[tuple[tuple[int, int], list[tuple[int, int]], np.ndarray]]:

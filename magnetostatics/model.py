@@ -13,6 +13,7 @@ from geometry.cross_section import CrossSection
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
 from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, refine_order
+from magnetostatics.iron import Iron, IronState
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.topology import IRON, Topology
 from magnetostatics.unknowns import Turn, Unknowns
@@ -21,7 +22,7 @@ from materials.reluctivity import Reluctivity
 from units import MU_0
 
 
-_COARSE = NewtonSettings(tolerance=1e-3)  # of the linear elements that quadratic ones start from
+_COARSE = NewtonSettings(tolerance=1e-3, always_step=False)  # of the linear elements that quadratic ones start from
 
 
 @dataclass(frozen=True)
@@ -56,13 +57,17 @@ class OperatingPoint:
 
 @dataclass(frozen=True, eq=False)
 class FieldSolution:
-    """Vector potential a (n,) [Wb/m] of one operating point and how it was found."""
+    """Vector potential a (n,) [Wb/m] of one operating point and how it was found.
+
+    coarse: the solution with linear elements that one with quadratic elements started from
+    """
 
     model: FieldModel
     point: OperatingPoint
     a: np.ndarray
     newton: NewtonRecord
     cpu_seconds: float
+    coarse: FieldSolution | None = None
 
 
 class FieldModel:
@@ -84,7 +89,7 @@ class FieldModel:
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
         self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
-        self._laws = tuple(zip(map(self._region, IRON), (materials.stator_steel, materials.rotor_steel)))
+        self.iron = Iron(list(zip(map(self._region, IRON), (materials.stator_steel, materials.rotor_steel))))
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @property
@@ -163,7 +168,7 @@ class FieldModel:
         """Entries of the linear part without the rotor side of the gap."""
         which = self.topology.linear
         elements = self.elements.take(which)
-        return self.topology.linear_entries.sum(elements.stiffness(self._reluctivity[which]))
+        return self.topology.fixed_pattern.linear_entries.sum(elements.stiffness(self._reluctivity[which]))
 
     @cached_property
     def _reluctivity(self) -> np.ndarray:
@@ -175,9 +180,9 @@ class FieldModel:
 
     def _join(self, turn: Turn) -> JoinedSystem:
         if self._joined is None or self._joined[0] != turn:
-            pattern, entries = self.topology.pattern(turn.edges)
-            band = entries.sum(self.band_elements(turn.rest).stiffness(1 / MU_0))
-            self._joined = turn, JoinedSystem(pattern, (self._linear_values, band))
+            pattern = self.topology.pattern(turn.edges)
+            band = pattern.band.sum(self.band_elements(turn.rest).stiffness(1 / MU_0))
+            self._joined = turn, JoinedSystem(pattern, self._linear_values, band)
         return self._joined[1]
 
     # ---- Newton -----------------------------------------------------------------------------------------------
@@ -185,16 +190,36 @@ class FieldModel:
     def solve(self, point: OperatingPoint, start: FieldSolution | None = None) -> FieldSolution:
         """Field of an operating point by Newton's method.
 
-        start: a solution of this model to start from (a neighbouring current or angle); without one, quadratic elements
-            start from the solution of linear ones on the same mesh, which costs a tenth of a quadratic iteration each
+        start: a solution to start from, of this model or of one that shares its topology (a neighbouring current,
+            angle or design). Quadratic elements begin with the field of linear ones, which costs a tenth of a
+            quadratic iteration each, and with a start take only its change: then one quadratic iteration is mostly enough.
         Raises FieldSolutionError when the iteration does not converge.
         """
         began = process_time()
-        problem = _Problem(self, point)
-        first = problem.free_values(self._coarse_potential(point) if start is None else start.a)
         with one_thread():
-            u, record = newton(first, np.linalg.norm(problem.load), problem.residual, problem.direction, self.settings)
-        return FieldSolution(self, point, problem.expand(u), record, process_time() - began)
+            coarse = self._coarse_solution(point, start)
+            problem = _Problem(self, point)
+            u, record = newton(
+                problem.free_values(self._first_guess(coarse, start)),
+                np.linalg.norm(problem.load),
+                problem.residual,
+                problem.direction,
+                self.settings,
+                problem.direction_again,
+            )
+        return FieldSolution(self, point, problem.expand(u), record, process_time() - began, coarse)
+
+    def _coarse_solution(self, point: OperatingPoint, start: FieldSolution | None) -> FieldSolution | None:
+        """The same problem with linear elements, None where they are the elements of this model."""
+        return None if self.order is LINEAR else self._coarse_model.solve(point, start and start.coarse)
+
+    def _first_guess(self, coarse: FieldSolution | None, start: FieldSolution | None) -> np.ndarray:
+        """Potential to start from (n,): that of linear elements, or the start and what they changed since."""
+        if coarse is None:
+            return np.zeros(self.size) if start is None else start.a
+        change = coarse.a if start is None else coarse.a - start.coarse.a
+        refined = refine_order(self.topology.facets, change)
+        return refined if start is None else start.a + refined
 
     def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:
         """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
@@ -204,13 +229,7 @@ class FieldModel:
     def tangent(self, solution: FieldSolution) -> TangentSystem:
         """The tangent matrix at a solution of this model, factorised."""
         problem = _Problem(self, solution.point)
-        return TangentSystem(problem, problem.system.factorise(self._iron_tangent(solution.a)))
-
-    def _coarse_potential(self, point: OperatingPoint) -> np.ndarray:
-        """Potential to start from: zero for linear elements, their solution for quadratic ones (n,)."""
-        if self.order is LINEAR:
-            return np.zeros(self.size)
-        return refine_order(self.topology.facets, self._coarse_model.solve(point).a)
+        return TangentSystem(problem, problem.factorise(problem.free_values(solution.a)))
 
     @cached_property
     def _coarse_model(self) -> FieldModel:
@@ -219,19 +238,6 @@ class FieldModel:
     @cached_property
     def _coarse_topology(self) -> Topology:
         return Topology(self.section, LINEAR)
-
-    def _iron_force(self, a: np.ndarray) -> np.ndarray:
-        """integral nu(|B|^2) grad A . grad v over the iron (n,)."""
-        total = np.zeros(self.size)
-        for elements, law in self._laws:
-            x, y = elements.gradient(a)
-            nu = law.nu(x * x + y * y)
-            total += elements.scatter(elements.forces(nu * x, nu * y), self.size)
-        return total
-
-    def _iron_tangent(self, a: np.ndarray) -> np.ndarray:
-        """Local tangent matrices of the iron (K, E)."""
-        return np.concatenate([_tangent(elements, law, a) for elements, law in self._laws], axis=1)
 
 
 class _Problem:
@@ -242,6 +248,7 @@ class _Problem:
         self.model, self.system = model, model._join(turn)
         self.column, self.sign = model.unknowns.turned(turn.edges)
         self.load = self.reduce(model.load(point))
+        self._iron: tuple[np.ndarray, IronState] | None = None  # of the last field looked at
 
     def expand(self, u: np.ndarray) -> np.ndarray:
         """All degrees of freedom (n,) from the free unknowns."""
@@ -257,11 +264,27 @@ class _Problem:
 
     def residual(self, u: np.ndarray) -> np.ndarray:
         """Load minus field forces (m,) [A]."""
-        return self.load - self.system.linear_product(u) - self.reduce(self.model._iron_force(self.expand(u)))
+        iron = self.model.topology.iron_adder @ self._iron_at(u).forces.ravel()
+        return self.load - self.system.linear_product(u) - iron
 
     def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Newton step (m,)."""
-        return self.system.factorise(self.model._iron_tangent(self.expand(u))).solve(residual)
+        return self.factorise(u).solve(residual)
+
+    def direction_again(self, residual: np.ndarray) -> np.ndarray:
+        """Step (m,) with the tangent of the last Newton step."""
+        return self.system.pattern.system.solve(residual)
+
+    def factorise(self, u: np.ndarray) -> SymmetricSystem:
+        """The tangent at a field, factorised."""
+        return self.system.factorise(self._iron_at(u).tangent)
+
+    def _iron_at(self, u: np.ndarray) -> IronState:
+        """The iron at a field; residual and tangent of one field share it."""
+        if self._iron is None or self._iron[0] is not u:
+            column, sign = self.model.topology.iron_unknowns
+            self._iron = u, self.model.iron.at(u[column] * sign)
+        return self._iron[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,16 +301,6 @@ class TangentSystem:
         """Change of the potential (n,) for a change of the load: (n,) on all, or (m,) on the free unknowns [A]."""
         reduced = load if len(load) == self.problem.model.unknowns.count else self.problem.reduce(load)
         return self.problem.expand(self.system.solve(reduced))
-
-
-def _tangent(elements: Elements, law: Reluctivity, a: np.ndarray) -> np.ndarray:
-    """nu grad phi_i . grad phi_j + 2 nu' (grad A . grad phi_i)(grad A . grad phi_j), integrated (K, E)."""
-    x, y = elements.gradient(a)
-    nu, slope = law.nu_and_derivative(x * x + y * y)
-    along = elements.gradient_x * x + elements.gradient_y * y
-    weighted = along * (2 * slope * elements.weights)
-    i, j = elements.order.pairs
-    return np.einsum("kqe,qe->ke", elements.stiffness_basis, nu) + np.einsum("kqe,kqe->ke", along[i], weighted[j])
 
 
 def _shear(corners: np.ndarray, rest: float, machine) -> np.ndarray:

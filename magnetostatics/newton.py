@@ -8,6 +8,9 @@ from typing import Callable
 import numpy as np
 
 
+_CLOSE = 5.0  # times the tolerance: from there an old tangent is worth a try
+
+
 class FieldSolutionError(RuntimeError):
     """Newton's method did not converge; the message carries its record."""
 
@@ -19,11 +22,13 @@ class NewtonSettings:
     tolerance: residual relative to the load
     most_iterations: more than this and the solve is given up
     smallest_step: shortest fraction of a step that backtracking may take
+    always_step: take one step even from a start that is good enough
     """
 
-    tolerance: float = 1e-4
+    tolerance: float = 2e-4
     most_iterations: int = 40
     smallest_step: float = 1.0 / 1024
+    always_step: bool = True
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,10 @@ class NewtonRecord:
     def iterations(self) -> int:
         return len(self.residuals)
 
+    def and_then(self, residual: np.ndarray, scale: float, step: float) -> NewtonRecord:
+        """The record with one more iteration."""
+        return NewtonRecord((*self.residuals, float(np.linalg.norm(residual) / scale)), (*self.steps, step))
+
 
 def newton(
     start: np.ndarray,
@@ -44,34 +53,54 @@ def newton(
     residual: Callable[[np.ndarray], np.ndarray],
     direction: Callable[[np.ndarray, np.ndarray], np.ndarray],
     settings: NewtonSettings = NewtonSettings(),
+    again: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> tuple[np.ndarray, NewtonRecord]:
     """Solve residual(u) = 0.
 
     start: first guess (n,);  scale: size of the load that the residual is compared with
     residual(u) -> (n,);  direction(u, residual) -> Newton step (n,)
+    again(residual) -> step (n,) with the tangent of the last Newton step, where that is much cheaper than a new one
     The first step is taken whole whatever the residual does (from zero field it always grows in saturated iron); later
-    ones are halved until the residual falls.
+    ones are halved until the residual falls. Close to the end steps with the old tangent are tried first, and taken as
+    long as each halves the residual.
     Raises FieldSolutionError with the record when the tolerance is not reached.
     """
     if scale == 0.0:  # neither magnets nor currents
         return np.zeros_like(start), NewtonRecord((), ())
-    u, r, residuals, steps = start, residual(start), [], []
-    while not residuals or residuals[-1] > settings.tolerance:
-        if len(residuals) == settings.most_iterations:
-            raise FieldSolutionError(_complaint(residuals, settings))
-        u, r, step = _step(u, r, residual, direction(u, r), bool(residuals), settings)
-        residuals.append(float(np.linalg.norm(r) / scale))
-        steps.append(step)
-    return u, NewtonRecord(tuple(residuals), tuple(steps))
+    u, r, record = start, residual(start), NewtonRecord((), ())
+    goal, must_step = settings.tolerance * scale, settings.always_step
+    while must_step or np.linalg.norm(r) > goal:
+        if record.iterations >= settings.most_iterations:
+            raise FieldSolutionError(_complaint(record.residuals, settings))
+        u, r, length = _step(u, r, residual, direction(u, r), record.iterations > 0, settings)
+        record, must_step = record.and_then(r, scale, length), False
+        if again is None or np.linalg.norm(r) > _CLOSE * goal:
+            continue
+        for u, r in _steps_of_old_tangent(u, r, residual, again, goal):
+            record = record.and_then(r, scale, 1.0)
+    return u, record
+
+
+def _steps_of_old_tangent(u, r, residual, again, goal: float):
+    """Fields and residuals on the way to the goal, while every step halves the residual."""
+    while np.linalg.norm(r) > goal:
+        there = u + again(r)
+        trial = residual(there)
+        if np.linalg.norm(trial) > 0.5 * np.linalg.norm(r):
+            return
+        u, r = there, trial
+        yield u, r
 
 
 def _step(u, r, residual, direction, must_fall: bool, settings: NewtonSettings):
     before, length = np.linalg.norm(r), 1.0
-    trial = residual(u + direction)
+    there = u + direction
+    trial = residual(there)
     while must_fall and np.linalg.norm(trial) >= before and length > settings.smallest_step:
         length /= 2
-        trial = residual(u + length * direction)
-    return u + length * direction, trial, length
+        there = u + length * direction
+        trial = residual(there)
+    return there, trial, length
 
 
 def _complaint(residuals: list[float], settings: NewtonSettings) -> str:

@@ -9,9 +9,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 
 from geometry.cross_section import CrossSection
-from magnetostatics.assembly import Entries, JoinedPattern
+from magnetostatics.assembly import Entries, FixedPattern, JoinedPattern
 from magnetostatics.elements import TriangleOrder, element_dofs
 from magnetostatics.unknowns import number_unknowns
 
@@ -29,7 +30,7 @@ class Topology:
         self.facets = section.mesh.facets
         self.regions = section.mesh.subdomains
         self.rotor_band = _rotor_band(section)
-        self._patterns: dict[int, tuple[JoinedPattern, Entries]] = {}
+        self._patterns: dict[int, JoinedPattern] = {}
 
     @cached_property
     def linear(self) -> np.ndarray:
@@ -41,31 +42,43 @@ class Topology:
         return np.flatnonzero(is_linear)
 
     @cached_property
-    def iron_entries(self) -> Entries:
-        """Addresses of the iron: stator, then rotor."""
-        return self._entries(np.concatenate([self.regions[name] for name in IRON]))
+    def iron(self) -> np.ndarray:
+        """Elements of the iron: stator, then rotor."""
+        return np.concatenate([self.regions[name] for name in IRON])
 
     @cached_property
-    def linear_entries(self) -> Entries:
-        """Addresses of the ``linear`` elements."""
-        return self._entries(self.linear)
+    def iron_unknowns(self) -> tuple[np.ndarray, np.ndarray]:
+        """Free unknown and sign of every degree of freedom of the iron, each (F, E); the same at every angle."""
+        dofs = self.dofs[:, self.iron]
+        return self.unknowns.column[dofs], self.unknowns.sign[dofs]
+
+    @cached_property
+    def iron_adder(self) -> sp.csr_matrix:
+        """Adds local vectors of the iron, raveled (F E,), up to forces on the free unknowns (m,)."""
+        columns, signs = (part.ravel() for part in self.iron_unknowns)
+        return sp.csr_matrix((signs, (columns, np.arange(len(columns)))), shape=(self.unknowns.count, len(columns)))
+
+    @cached_property
+    def fixed_pattern(self) -> FixedPattern:
+        """The pattern without the rotor side of the gap."""
+        return FixedPattern(self._entries(self.iron), self._entries(self.linear), self.unknowns.count)
 
     def _entries(self, which: np.ndarray) -> Entries:
         u = self.unknowns
         return Entries.of(self.order.pairs, self.dofs[:, which], u.column, u.sign, u.count)
 
-    def pattern(self, edges: int) -> tuple[JoinedPattern, Entries]:
-        """Pattern with the rotor turned by whole edges, and the addresses of the rotor side of the gap in it."""
+    def pattern(self, edges: int) -> JoinedPattern:
+        """Pattern with the rotor turned by whole edges."""
         if edges not in self._patterns:
             if len(self._patterns) == _MOST_PATTERNS:
                 self._patterns.pop(next(iter(self._patterns)))
             self._patterns[edges] = self._build_pattern(edges)
         return self._patterns[edges]
 
-    def _build_pattern(self, edges: int) -> tuple[JoinedPattern, Entries]:
+    def _build_pattern(self, edges: int) -> JoinedPattern:
         column, sign = self.unknowns.turned(edges)
         band = Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
-        return JoinedPattern(self.iron_entries, (self.linear_entries.keys, band.keys), self.unknowns.count), band
+        return JoinedPattern(self.fixed_pattern, band)
 
 
 def _rotor_band(section: CrossSection) -> np.ndarray:
