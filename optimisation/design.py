@@ -76,24 +76,24 @@ _TINY = 1e-9  # step along the slopes of the flux densities, per unit of a chang
 
 
 class DesignSolver:
-    """Solves designs one after another. A design close to the last mesh moves that mesh and starts from its field."""
+    """Solves designs one after another. A design close to the last mesh moves that mesh and starts from the fields of
+    the most similar design on it."""
 
     def __init__(self, judge: Judge):
         self.judge = judge
         self._morpher: Morpher | None = None
-        self._solutions: list[FieldSolution] = []
+        self._solved: list[tuple[Machine, list[FieldSolution]]] = []  # designs on the mesh of the morpher
 
     def design(self, machine: Machine) -> Design:
         """The judged machine. Raises as ``Judge.judge``."""
         check_machine(machine)
         model = self._moved(machine) or self._meshed(machine)
-        starts = self._solutions or [None] * len(self.judge.states(machine))
-        probes, seen, solutions = probe_reader(model), [], []
-        for state, start in zip(self.judge.states(machine), starts, strict=True):
+        states, probes, seen, solutions = self.judge.states(machine), probe_reader(model), [], []
+        for state, start in zip(states, self._starts(machine) or [None] * len(states), strict=True):
             solution = model.solve(state, start=start or (solutions[-1] if solutions else None))
             solutions.append(solution)
             seen.append(_look(solution, probes.read(solution)))
-        self._solutions = solutions
+        self._solved.append((machine, solutions))
         section = model.section
         return _summary(machine, section.half_slot_area * section.half_slots_per_coil_side, self.judge.reading, seen)
 
@@ -106,10 +106,11 @@ class DesignSolver:
             number: Dimension(self._morpher, partial(_one_change, machine_of, number, len(steps)), step)
             for number, step in enumerate(steps)
         }
-        reader = probe_reader(self._solutions[0].model)
-        found = [sensitivities(s, variations, partial(_results, reader)) for s in self._solutions]
+        solutions = self._solved[-1][1]
+        reader = probe_reader(solutions[0].model)
+        found = [sensitivities(s, variations, partial(_results, reader)) for s in solutions]
         slopes = np.array([[state[number] for number in variations] for state in found])  # (states, k, results)
-        values = np.array([_results(reader, solution) for solution in self._solutions])
+        values = np.array([_results(reader, solution) for solution in solutions])
         return slopes[:, :, 0].mean(axis=0), self._limited_slope(values[:, 1:], slopes[:, :, 1:])
 
     def _limited_slope(self, values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
@@ -124,7 +125,11 @@ class DesignSolver:
 
     def mesh_anew(self) -> None:
         """Forget the mesh: the next design gets its own."""
-        self._morpher, self._solutions = None, []
+        self._morpher, self._solved = None, []
+
+    def _starts(self, machine: Machine) -> list[FieldSolution] | None:
+        """The fields of the most similar design on this mesh."""
+        return min(self._solved, key=lambda known: _distance(machine, known[0]), default=(None, None))[1]
 
     def _meshed(self, machine: Machine) -> FieldModel:
         self.mesh_anew()
@@ -139,7 +144,7 @@ class DesignSolver:
             section = self._morpher.to(machine)
         except GeometryError:  # the machine is sound, its distance from the mesh is not
             return None
-        return self._solutions[0].model.like(section)
+        return self._solved[0][1][0].model.like(section)
 
 
 def _one_change(machine_of, number: int, count: int, change: float) -> Machine:
@@ -155,10 +160,12 @@ def _results(reader: ProbeReader, solution: FieldSolution) -> np.ndarray:
 
 
 def _is_near(machine: Machine, base: Machine) -> bool:
-    same = (machine.slots, machine.poles) == (base.slots, base.poles)
-    return same and all(
-        abs(getattr(machine, name) / getattr(base, name) - 1) <= share for name, share in _FARTHEST.items()
-    )
+    return (machine.slots, machine.poles) == (base.slots, base.poles) and _distance(machine, base) <= 1
+
+
+def _distance(machine: Machine, base: Machine) -> float:
+    """Largest relative difference of a dimension, as a share of what a mesh may be moved."""
+    return max(abs(getattr(machine, name) / getattr(base, name) - 1) / share for name, share in _FARTHEST.items())
 
 
 @dataclass(frozen=True)
