@@ -115,26 +115,26 @@ def half_cells(machine: Machine, density: MeshDensity) -> tuple[StatorHalfCell, 
 def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     fine = density.gap_edge_length(m)
     in_tooth = min(m.tooth_width, m.back_iron_width * 2) / density.across_iron
-    in_shoe = min(3 * fine, in_tooth)
+    in_shoe = min(4 * fine, in_tooth)
     axis, half = m.slot_pitch / 2, m.opening_width / 2
     r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
     r_open = r_si + m.shoe_d1
-    in_copper = min(2 * in_tooth, (r_sb - r_shoe) / 2)
+    in_copper = min(4 * in_tooth, (r_sb - r_shoe) / 2)
     d = Drawing()
-    d.point("bore", r_si, 0, fine)
+    d.point("bore", r_si, 0, 2 * fine)  # the edges on the bore are set below
     d.point("tip", r_si, axis - asin(half / r_si), fine)
-    d.point("bore_slot", r_si, axis, fine)
-    d.point("tip_top", r_open, axis - asin(half / r_open), min(2 * fine, m.shoe_d1))
-    d.point("open_slot", r_open, axis, 2 * fine)
+    d.point("bore_slot", r_si, axis, 2 * fine)
+    d.point("tip_top", r_open, axis - asin(half / r_open), min(3 * fine, m.shoe_d1))
+    d.point("open_slot", r_open, axis, 3 * fine)
     d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
-    d.point("shoe_axis", r_shoe, 0, in_tooth)
-    d.point("shoe_slot", r_shoe, axis, in_tooth)
-    d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), in_tooth / 2)
+    d.point("shoe_axis", r_shoe, 0, 1.5 * in_tooth)
+    d.point("shoe_slot", r_shoe, axis, 2 * in_tooth)
+    d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), 0.8 * in_tooth)
     d.point("bottom", r_sb, axis, in_tooth)
-    d.point("outer_slot", r_so, axis, in_tooth)
-    d.point("outer", r_so, 0, in_tooth)
+    d.point("outer_slot", r_so, axis, 1.5 * in_tooth)
+    d.point("outer", r_so, 0, 1.5 * in_tooth)
     middle = (r_shoe + r_sb) / 2
-    d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), in_tooth)
+    d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), 1.5 * in_tooth)
     d.point("slot_middle", middle, axis, in_copper)
     opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
     d.arc("bore", "tip", edges - opening)
@@ -155,8 +155,8 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
 def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     fine = density.gap_edge_length(m)
     half_pole = m.pole_pitch / 2
-    coarse = m.rotor_core_radius * half_pole / 2
-    under_magnet = min(2.5 * fine, m.magnet_length)
+    coarse = m.rotor_core_radius * half_pole
+    under_magnet = min(4 * fine, m.magnet_length)
     half_magnet = m.magnet_arc_fraction * half_pole
     covers_pole = m.magnet_arc_fraction >= 1
     magnet_edges = edges if covers_pole else min(max(1, round(edges * m.magnet_arc_fraction)), edges - 1)
@@ -165,14 +165,14 @@ def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     for name, radius, size in (("shaft", m.shaft_radius, coarse), ("core", m.rotor_core_radius, under_magnet)):
         d.point(name, radius, 0, size)
         d.point(f"{name}_pole", radius, half_pole, size)
-    d.point("top", m.rotor_outer_radius, 0, fine)
-    d.point("top_edge", m.rotor_outer_radius, half_magnet, fine)
+    d.point("top", m.rotor_outer_radius, 0, 3 * fine)  # the edges around the rotor are set below
+    d.point("top_edge", m.rotor_outer_radius, half_magnet, 3 * fine)
     d.line("centre", "shaft")
     d.line("centre", "shaft_pole")
     d.arc("shaft", "shaft_pole")
     d.line("shaft", "core")
     d.line("shaft_pole", "core_pole")
-    d.line("core", "top")
+    d.line("core", "top", max(1, round(m.magnet_length / (6 * fine))))
     d.arc("top", "top_edge", magnet_edges)
     d.region("shaft", "centre", "shaft", "shaft_pole")
     if covers_pole:
@@ -182,7 +182,7 @@ def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
         d.region("magnet", "core", "top", "top_edge", "core_pole")
         return d
     d.point("core_edge", m.rotor_core_radius, half_magnet, under_magnet)
-    d.point("top_pole", m.rotor_outer_radius, half_pole, fine)
+    d.point("top_pole", m.rotor_outer_radius, half_pole, 3 * fine)
     d.arc("core", "core_edge")
     d.arc("core_edge", "core_pole")
     d.line("core_edge", "top_edge")

@@ -55,6 +55,6 @@ def test_nodes_move_smoothly_with_a_dimension(base):
 
 def test_too_far_is_refused(base):
     with pytest.raises(GeometryError, match="mesh"):
-        Morpher(base).to(machine(stator_outer_radius=25 * MM, back_iron_width=2 * MM, rotor_outer_radius=18 * MM))
+        Morpher(base).to(machine(stator_outer_radius=22 * MM, back_iron_width=1.5 * MM, rotor_outer_radius=18 * MM))
     with pytest.raises(GeometryError, match="same slots and poles"):
         Morpher(base).to(machine(slots=9))
