@@ -7,7 +7,7 @@ the middle of the air gap: whoever solves on it joins them at the angle he wants
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from skfem import MeshTri
@@ -16,6 +16,7 @@ from geometry.checks import check_machine
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import Machine
 from geometry.plane_mesh import PlaneMesh
+from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
 
 _BESIDE_THE_LINE = 1e-6  # rad, small against any element
@@ -214,7 +215,7 @@ def _join(stator: Piece, rotor: Piece, machine: Machine, sectors: int) -> MeshTr
     points = [piece.place(piece.mesh.points) for piece in (stator, rotor)]
     offset, first_rotor_triangle = points[0].shape[1], stator.triangles.shape[1]
     triangles = np.ascontiguousarray(np.hstack([stator.triangles, rotor.triangles + offset]))
-    mesh = MeshTri(np.hstack(points), triangles, sort_t=False, validate=False)
+    mesh = TriangleMesh(np.hstack(points), triangles, sort_t=False, validate=False)
     names = _stator_names(stator, machine.slots)
     for name, where in _rotor_names(rotor).items():
         where = where + first_rotor_triangle
@@ -261,7 +262,7 @@ def _boundaries(mesh: MeshTri, stator: Piece, rotor: Piece, machine: Machine, se
         rays = {"stator_start": stator.start, "stator_end": stator.end}
         rays |= {"rotor_start": offset + rotor.start, "rotor_end": offset + rotor.end}
         sets |= {name: np.isin(np.arange(mesh.p.shape[1]), nodes) for name, nodes in rays.items()}
-    facets = mesh.boundary_facets()
+    facets = np.flatnonzero(np.bincount(mesh.t2f.ravel()) == 1)
     a, b = mesh.facets[:, facets]
     return {name: facets[inside[a] & inside[b]] for name, inside in sets.items()}
 
@@ -277,8 +278,13 @@ def _turn(points: np.ndarray, angle: float) -> np.ndarray:
     return np.array([[c, -s], [s, c]]) @ points
 
 
+@lru_cache
+def _gauss_points(count: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(count)
+
+
 def _segment(start: tuple[float, float], end: tuple[float, float], points: int = 12) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points (2, n) and weights (n,) of the average over a straight segment."""
-    nodes, weights = np.polynomial.legendre.leggauss(points)
+    nodes, weights = _gauss_points(points)
     start, end = np.array(start)[:, None], np.array(end)[:, None]
     return start + (end - start) * (nodes + 1) / 2, weights / 2

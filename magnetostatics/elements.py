@@ -105,6 +105,13 @@ def refine_order(facets: np.ndarray, a: np.ndarray) -> np.ndarray:
     return np.concatenate([a, a[facets].mean(axis=0)])
 
 
+def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Load on the linear functions (nodes,) from that on the quadratic ones (n,); the transpose of ``refine_order``."""
+    nodes = len(load) - facets.shape[1]
+    halves = np.tile(load[nodes:] / 2, 2)
+    return load[:nodes] + np.bincount(facets.ravel(), weights=halves, minlength=nodes)
+
+
 @dataclass(frozen=True, eq=False)
 class Elements:
     """A set of straight triangles with F functions each (3 linear, 6 quadratic).
@@ -180,9 +187,9 @@ class Elements:
         u, v = self.edges * np.sign(self.determinant)
         return self.order.weighted_slopes @ np.concatenate([x * v[1] - y * v[0], y * u[0] - x * u[1]])
 
-    def means(self) -> np.ndarray:
-        """Local vectors integral v / total area (F, E)."""
-        return self.order.values @ self.weights / self.weights.sum()
+    def integrals(self) -> np.ndarray:
+        """Local vectors integral v (F, E) [m^2]."""
+        return self.order.values @ self.weights
 
     def scatter(self, local: np.ndarray, size: int) -> np.ndarray:
         """Sum local vectors (F, E) into a global vector (size,)."""

@@ -7,7 +7,7 @@ In reference coordinates, with g the slopes of A, h = M g and b2 = g . h / |D| (
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 import numpy as np
@@ -17,21 +17,17 @@ from materials.reluctivity import Reluctivity
 
 
 class Iron:
-    """Elements of constant law, one after the other.
+    """The elements of all steels, one steel after the other.
 
-    parts: elements and law of every region
+    counts: how many elements of each; laws: of each
     """
 
-    def __init__(self, parts: Sequence[tuple[Elements, Reluctivity]]):
-        order = parts[0][0].order.of_distinct_gradients
-        self.elements = Elements(
-            order,
-            *(np.concatenate([getattr(e, name) for e, _ in parts], axis=-1) for name in ("dofs", "first", "edges")),
-        )
-        ends = np.cumsum([len(elements.determinant) for elements, _ in parts])
-        self._laws = [(slice(end - len(e.determinant), end), law) for end, (e, law) in zip(ends, parts)]
-        if all(law is parts[0][1] for _, law in parts):
-            self._laws = [(slice(None), parts[0][1])]
+    def __init__(self, elements: Elements, counts: Sequence[int], laws: Sequence[Reluctivity]):
+        self.elements = replace(elements, order=elements.order.of_distinct_gradients)
+        ends = np.cumsum(counts)
+        parts = [slice(end - count, end) for end, count in zip(ends, counts)]
+        one_law = all(law is laws[0] for law in laws)
+        self._laws = [(slice(None), laws[0])] if one_law else list(zip(parts, laws, strict=True))
 
     def at(self, local: np.ndarray) -> IronState:
         """The iron in the field of local values (F, E)."""

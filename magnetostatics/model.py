@@ -12,7 +12,7 @@ import numpy as np
 from geometry.cross_section import CrossSection
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
-from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, refine_order
+from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, lower_order, refine_order
 from magnetostatics.iron import Iron, IronState
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.topology import IRON, Topology
@@ -89,7 +89,10 @@ class FieldModel:
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
         self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
-        self.iron = Iron(list(zip(map(self._region, IRON), (materials.stator_steel, materials.rotor_steel))))
+        counts = [len(self.topology.regions[name]) for name in IRON]
+        self.iron = Iron(
+            self.elements.take(self.topology.iron), counts, (materials.stator_steel, materials.rotor_steel)
+        )
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @property
@@ -135,17 +138,20 @@ class FieldModel:
         return elements.scatter(elements.forces(-strength * np.sin(direction), strength * np.cos(direction)), self.size)
 
     @cached_property
-    def coil_side_loads(self) -> np.ndarray:
-        """Mean over each half slot, as a load: 1 A in each coil side (2 * teeth, n)."""
-        regions = [self._region(f"slot_{slot}_{side}") for slot, side in self.section.coil_sides]
-        return np.stack([elements.scatter(elements.means(), self.size) for elements in regions])
-
-    @cached_property
     def phase_loads(self) -> np.ndarray:
-        """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage."""
-        sides = [self.section.layout.coil_side(*side) for side in self.section.coil_sides]
-        signs = np.array([[sign if phase == i else 0.0 for phase, sign in sides] for i in range(3)])
-        return signs @ self.coil_side_loads / self.section.half_slots_per_coil_side
+        """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage.
+
+        1 A is spread evenly over each coil side, so that the product with a is its mean.
+        """
+        section = self.section
+        regions = [self.topology.regions[f"slot_{slot}_{side}"] for slot, side in section.coil_sides]
+        side = np.repeat(np.arange(len(regions)), [len(region) for region in regions])
+        phase, sign = np.array([section.layout.coil_side(*place) for place in section.coil_sides])[side].T
+        elements = self.elements.take(np.concatenate(regions))
+        area = np.bincount(side, weights=elements.weights.sum(0))
+        local = elements.integrals() * (sign / (area[side] * section.half_slots_per_coil_side))
+        place = phase * self.size + elements.dofs
+        return np.bincount(place.ravel(), weights=local.ravel(), minlength=3 * self.size).reshape(3, -1)
 
     def load(self, point: OperatingPoint) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
@@ -195,23 +201,28 @@ class FieldModel:
             quadratic iteration each, and with a start take only its change: then one quadratic iteration is mostly enough.
         Raises FieldSolutionError when the iteration does not converge.
         """
-        began = process_time()
         with one_thread():
-            coarse = self._coarse_solution(point, start)
-            problem = _Problem(self, point)
-            u, record = newton(
-                problem.free_values(self._first_guess(coarse, start)),
-                np.linalg.norm(problem.load),
-                problem.residual,
-                problem.direction,
-                self.settings,
-                problem.direction_again,
-            )
+            return self._solve(point, self.load(point), start)
+
+    def _solve(self, point: OperatingPoint, load: np.ndarray, start: FieldSolution | None) -> FieldSolution:
+        began = process_time()
+        coarse = self._coarse_solution(point, load, start)
+        problem = _Problem(self, point, load)
+        u, record = newton(
+            problem.free_values(self._first_guess(coarse, start)),
+            np.linalg.norm(problem.load),
+            problem.residual,
+            problem.direction,
+            self.settings,
+            problem.direction_again,
+        )
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began, coarse)
 
-    def _coarse_solution(self, point: OperatingPoint, start: FieldSolution | None) -> FieldSolution | None:
+    def _coarse_solution(self, point: OperatingPoint, load: np.ndarray, start: FieldSolution | None):
         """The same problem with linear elements, None where they are the elements of this model."""
-        return None if self.order is LINEAR else self._coarse_model.solve(point, start and start.coarse)
+        if self.order is LINEAR:
+            return None
+        return self._coarse_model._solve(point, lower_order(self.topology.facets, load), start and start.coarse)
 
     def _first_guess(self, coarse: FieldSolution | None, start: FieldSolution | None) -> np.ndarray:
         """Potential to start from (n,): that of linear elements, or the start and what they changed since."""
@@ -223,12 +234,12 @@ class FieldModel:
 
     def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:
         """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
-        problem = _Problem(self, point)
+        problem = _Problem(self, point, self.load(point))
         return problem.residual(problem.free_values(a))
 
     def tangent(self, solution: FieldSolution) -> TangentSystem:
         """The tangent matrix at a solution of this model, factorised."""
-        problem = _Problem(self, solution.point)
+        problem = _Problem(self, solution.point, self.load(solution.point))
         return TangentSystem(problem, problem.factorise(problem.free_values(solution.a)))
 
     @cached_property
@@ -243,11 +254,11 @@ class FieldModel:
 class _Problem:
     """One operating point of a model in terms of its free unknowns u (m,)."""
 
-    def __init__(self, model: FieldModel, point: OperatingPoint):
+    def __init__(self, model: FieldModel, point: OperatingPoint, load: np.ndarray):
         turn = model.unknowns.turn(point.angle)
         self.model, self.system = model, model._join(turn)
         self.column, self.sign = model.unknowns.turned(turn.edges)
-        self.load = self.reduce(model.load(point))
+        self.load = self.reduce(load)
         self._iron: tuple[np.ndarray, IronState] | None = None  # of the last field looked at
 
     def expand(self, u: np.ndarray) -> np.ndarray:
