@@ -17,6 +17,7 @@ from geometry.machine import GeometryError, Machine
 from geometry.morph import Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingPoint
+from magnetostatics.newton import NewtonSettings
 from magnetostatics.probes import ProbeReader, probe_reader
 from magnetostatics.sensitivity import sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
@@ -46,6 +47,7 @@ class Judge:
     layers: int = 2
     coil_pitch: int | None = None
     density: MeshDensity = MeshDensity()
+    settings: NewtonSettings = NewtonSettings()
 
     def layout(self, machine: Machine) -> WindingLayout:
         """The winding of a machine of this study."""
@@ -135,7 +137,7 @@ class DesignSolver:
         self.mesh_anew()
         section = mesh_cross_section(machine, self.judge.layout(machine), self.judge.density)
         self._morpher = Morpher(section)
-        return FieldModel(section, self.judge.materials)
+        return FieldModel(section, self.judge.materials, self.judge.settings)
 
     def _moved(self, machine: Machine) -> FieldModel | None:
         if self._morpher is None or not _is_near(machine, self._morpher.section.machine):

@@ -10,6 +10,7 @@ from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.model import FieldModel, MachineMaterials
+from magnetostatics.newton import NewtonSettings
 from materials.library import load_steel
 from optimisation.design import Judge
 from optimisation.states import READINGS, SaturationReading
@@ -75,7 +76,9 @@ def overload_amplitude(study: Study) -> float:
     return sqrt(2) * study.sweep.j_overload_rms_A_per_mm2 * AMPERE_PER_SQUARE_MILLIMETRE
 
 
-def judge_of(study: Study, reading: SaturationReading | None = None) -> Judge:
+def judge_of(
+    study: Study, reading: SaturationReading | None = None, settings: NewtonSettings = NewtonSettings()
+) -> Judge:
     """Judge of designs at the study's nominal current density, with its reading of the saturation limit or another."""
     return Judge(
         materials=materials_of(study),
@@ -85,4 +88,5 @@ def judge_of(study: Study, reading: SaturationReading | None = None) -> Judge:
         layers=study.winding.layers,
         coil_pitch=study.winding.coil_pitch,
         density=to_mesh_density(study.mesh),
+        settings=settings,
     )

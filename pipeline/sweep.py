@@ -13,6 +13,7 @@ from pipeline.stage import Stage, command, results_folder
 from study.read import read_study
 
 OUTPUT = "design_map.nc"
+_TOLERANCE = 1e-3  # of Newton's method: torque is within 0.03 % of the converged one
 VARIABLES = {
     "torque_Nm_per_m": "torque",
     "torque_maxwell_Nm_per_m": "torque_maxwell",
@@ -67,10 +68,11 @@ def solve_column(task: dict) -> list[list[float]]:
 
 @lru_cache(maxsize=1)
 def _tools(path: str):
+    from magnetostatics.newton import NewtonSettings
     from pipeline.models import StudyFamily, judge_of
 
     study = read_study(path)
-    return judge_of(study), StudyFamily(study.machine)
+    return judge_of(study, settings=NewtonSettings(_TOLERANCE)), StudyFamily(study.machine)
 
 
 def grid(study, diameter: float):
