@@ -187,8 +187,8 @@ class FieldModel:
     def _join(self, turn: Turn) -> JoinedSystem:
         if self._joined is None or self._joined[0] != turn:
             pattern = self.topology.pattern(turn.edges)
-            band = pattern.band.sum(self.band_elements(turn.rest).stiffness(1 / MU_0))
-            self._joined = turn, JoinedSystem(pattern, self._linear_values, band)
+            band = self.band_elements(turn.rest).stiffness(1 / MU_0)
+            self._joined = turn, JoinedSystem(pattern, turn.edges, self._linear_values, band)
         return self._joined[1]
 
     # ---- Newton -----------------------------------------------------------------------------------------------
@@ -302,7 +302,7 @@ class _Problem:
 class TangentSystem:
     """Answers how the field changes: small load in, small change of the potential out.
 
-    It is good until the model, or another one that shares its topology, is solved at the same turn of the rotor.
+    It is good until the model, or another one that shares its topology, is solved at about the same turn of the rotor.
     """
 
     problem: _Problem

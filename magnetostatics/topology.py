@@ -17,7 +17,8 @@ from magnetostatics.elements import TriangleOrder, element_dofs
 from magnetostatics.unknowns import number_unknowns
 
 IRON = ("stator_iron", "rotor_iron")
-_MOST_PATTERNS = 80  # rotor positions whose pattern is kept; one takes about a megabyte
+_TURNS = 4  # neighbouring numbers of edges that share a pattern
+_MOST_PATTERNS = 20  # that are kept; one takes about two megabytes
 
 
 class Topology:
@@ -69,16 +70,17 @@ class Topology:
 
     def pattern(self, edges: int) -> JoinedPattern:
         """Pattern with the rotor turned by whole edges."""
-        if edges not in self._patterns:
+        group = edges // _TURNS
+        if group not in self._patterns:
             if len(self._patterns) == _MOST_PATTERNS:
                 self._patterns.pop(next(iter(self._patterns)))
-            self._patterns[edges] = self._build_pattern(edges)
-        return self._patterns[edges]
+            turns = range(group * _TURNS, (group + 1) * _TURNS)
+            self._patterns[group] = JoinedPattern(self.fixed_pattern, {turn: self._band_entries(turn) for turn in turns})
+        return self._patterns[group]
 
-    def _build_pattern(self, edges: int) -> JoinedPattern:
+    def _band_entries(self, edges: int) -> Entries:
         column, sign = self.unknowns.turned(edges)
-        band = Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
-        return JoinedPattern(self.fixed_pattern, band)
+        return Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
 
 
 def _rotor_band(section: CrossSection) -> np.ndarray:
