@@ -22,7 +22,7 @@ from materials.reluctivity import Reluctivity
 from units import MU_0
 
 
-_COARSE = NewtonSettings(tolerance=1e-3, always_step=False)  # of the linear elements that quadratic ones start from
+_COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
 
 
 @dataclass(frozen=True)
