@@ -119,7 +119,7 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     axis, half = m.slot_pitch / 2, m.opening_width / 2
     r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
     r_open = r_si + m.shoe_d1
-    in_copper = min(4 * in_tooth, (r_sb - r_shoe) / 2)
+    in_copper = min(2 * in_tooth, (r_sb - r_shoe) / 2)
     d = Drawing()
     d.point("bore", r_si, 0, 2 * fine)  # the edges on the bore are set below
     d.point("tip", r_si, axis - asin(half / r_si), fine)
@@ -128,13 +128,13 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     d.point("open_slot", r_open, axis, 3 * fine)
     d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
     d.point("shoe_axis", r_shoe, 0, 1.5 * in_tooth)
-    d.point("shoe_slot", r_shoe, axis, 2 * in_tooth)
+    d.point("shoe_slot", r_shoe, axis, in_tooth)
     d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), 0.8 * in_tooth)
     d.point("bottom", r_sb, axis, in_tooth)
-    d.point("outer_slot", r_so, axis, 1.5 * in_tooth)
-    d.point("outer", r_so, 0, 1.5 * in_tooth)
+    d.point("outer_slot", r_so, axis, in_tooth)
+    d.point("outer", r_so, 0, in_tooth)
     middle = (r_shoe + r_sb) / 2
-    d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), 1.5 * in_tooth)
+    d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), in_tooth)
     d.point("slot_middle", middle, axis, in_copper)
     opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
     d.arc("bore", "tip", edges - opening)
@@ -156,7 +156,7 @@ def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     fine = density.gap_edge_length(m)
     half_pole = m.pole_pitch / 2
     coarse = m.rotor_core_radius * half_pole
-    under_magnet = min(4 * fine, m.magnet_length)
+    under_magnet = min(3 * fine, m.magnet_length)
     half_magnet = m.magnet_arc_fraction * half_pole
     covers_pole = m.magnet_arc_fraction >= 1
     magnet_edges = edges if covers_pole else min(max(1, round(edges * m.magnet_arc_fraction)), edges - 1)
