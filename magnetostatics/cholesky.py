@@ -34,6 +34,12 @@ class SymmetricSystem:
         self._matrix.V = cvxopt.matrix(values)
         cvxopt.cholmod.numeric(self._matrix, self._factor)
 
+    def column_counts(self) -> np.ndarray:
+        """Entries in every column of the factor (n,); their squares sum up to the operations of a factorisation."""
+        factor = cvxopt.cholmod.symbolic(self._matrix)
+        cvxopt.cholmod.numeric(self._matrix, factor)
+        return np.diff(np.array(cvxopt.cholmod.getfactor(factor).CCS[0]).ravel())
+
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
         """Solution for one right-hand side (n,) or several (n, k)."""
         solution = cvxopt.matrix(right_hand_side)

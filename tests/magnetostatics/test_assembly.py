@@ -1,0 +1,100 @@
+"""The fast assembly against plain formulas on the machine: every element integral, sum and tangent by another route."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from numpy.testing import assert_allclose
+
+from magnetostatics.assembly import Entries
+from magnetostatics.elements import LINEAR, QUADRATIC, lower_order, refine_order
+from magnetostatics.model import OperatingPoint, _Problem
+from tests.magnetostatics.reference_machine import STEEL, model_of, reference_machine
+from units import DEGREE
+
+POINT = OperatingPoint(-20.3 * DEGREE, 12e6)
+orders = pytest.mark.parametrize("order", (LINEAR, QUADRATIC), ids=("linear", "quadratic"))
+
+
+def state(order):
+    model = model_of(reference_machine(), order=order)
+    solution = model.solve(POINT)
+    column, sign = model.topology.iron_unknowns
+    problem = _Problem(model, POINT, model.load(POINT))
+    return model, problem, problem.free_values(solution.a), column, sign
+
+
+@orders
+def test_forces_of_the_iron(order):
+    """Against the quadrature of nu grad A . grad v with gradients in metres."""
+    model, _, u, column, sign = state(order)
+    elements = model.elements.take(model.topology.iron)
+    local = u[column] * sign
+    x, y = (np.einsum("iqe,ie->qe", part, local) for part in (elements.gradient_x, elements.gradient_y))
+    nu = STEEL.nu(x * x + y * y) * elements.weights
+    wanted = np.einsum("iqe,qe->ie", elements.gradient_x, nu * x) + np.einsum("iqe,qe->ie", elements.gradient_y, nu * y)
+    assert_allclose(model.iron.at(local).forces, wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())
+
+
+@orders
+def test_tangent_is_the_derivative_of_the_forces(order):
+    """Local matrices times a direction against the central difference of the local forces."""
+    model, _, u, column, sign = state(order)
+    local = u[column] * sign
+    direction = np.random.default_rng(2).standard_normal(local.shape) * np.abs(local).max()
+    i, j = order.pairs
+    entries = model.iron.at(local).tangent
+    product = np.zeros_like(local)
+    for k, (row, col) in enumerate(zip(i, j)):
+        product[row] += entries[k] * direction[col]
+        if row != col:
+            product[col] += entries[k] * direction[row]
+    step = 1e-6
+    ends = [model.iron.at(local + sign * step * direction).forces for sign in (1, -1)]
+    assert_allclose(product, (ends[0] - ends[1]) / (2 * step), rtol=1e-4, atol=1e-5 * np.abs(product).max())
+
+
+@orders
+def test_solution_of_the_factorised_tangent(order):
+    """K times the answer gives the load back, K by differences of the residual."""
+    _, problem, u, _, _ = state(order)
+    load = np.random.default_rng(3).standard_normal(len(u))
+    answer = problem.factorise(u).solve(load)
+    step = 1e-5 * np.abs(u).max() / np.abs(answer).max()
+    slope = (problem.residual(u - step * answer) - problem.residual(u + step * answer)) / (2 * step)
+    assert_allclose(slope, load, atol=2e-3 * np.abs(load).max())
+
+
+def test_entries_are_those_of_scipy():
+    """Random triangles, signs and fixed unknowns: the sums are the lower triangle of scipy's assembly."""
+    random = np.random.default_rng(4)
+    dofs, column = random.integers(0, 40, (3, 60)), random.integers(0, 30, 40)
+    sign = random.choice([-1.0, 0.0, 1.0], 40)
+    pairs, local = np.tril_indices(3), random.standard_normal((6, 60))
+    entries = Entries.of(pairs, dofs, column, sign, 30)
+    rows, columns = np.maximum(*column[dofs][list(pairs)]), np.minimum(*column[dofs][list(pairs)])
+    values = local * sign[dofs][pairs[0]] * sign[dofs][pairs[1]]
+    wanted = sp.coo_matrix((values.ravel(), (rows.ravel(), columns.ravel())), (30, 30)).toarray()
+    found = np.zeros((30, 30))
+    found[entries.keys % 30, entries.keys // 30] = entries.sum(local)
+    assert_allclose(found, wanted, atol=1e-13)
+    assert (np.diff(entries.keys) > 0).all()
+
+
+def test_lower_order_is_the_transpose_of_refine_order():
+    """The work of a load on a linear field is the same in both descriptions."""
+    facets = model_of(reference_machine()).topology.facets
+    random = np.random.default_rng(5)
+    linear = random.standard_normal(facets.max() + 1)
+    load = random.standard_normal(len(linear) + facets.shape[1])
+    assert_allclose(lower_order(facets, load) @ linear, load @ refine_order(facets, linear), rtol=1e-10)
+
+
+def test_a_pattern_serves_its_neighbours():
+    """Four neighbouring turns share one pattern, and each has its own entries in it."""
+    topology = model_of(reference_machine()).topology
+    pattern = topology.pattern(8)
+    assert all(topology.pattern(turn) is pattern for turn in (9, 10, 11)) and topology.pattern(12) is not pattern
+    keys = pattern.columns * pattern.size + pattern.rows
+    assert all((keys[pattern.band_positions[turn]] == pattern.bands[turn].keys).all() for turn in (8, 9, 10, 11))
