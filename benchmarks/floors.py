@@ -1,4 +1,4 @@
-"""What no sparse factorisation on this machine can beat: its arithmetic and its memory traffic at the measured rates."""
+"""What no sparse factorisation on this machine can beat: its arithmetic and its memory traffic at measured rates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _BYTES = 8  # of a number in double precision
 
 
 def arithmetic_floor(column_counts: np.ndarray) -> float:
-    """Time [s] of the operations of a Cholesky factorisation, sum of the squared entries of the columns, at full rate."""
+    """Time [s] of a Cholesky factorisation at full rate: its operations are the squared entries of every column."""
     return float((column_counts.astype(float) ** 2).sum()) / multiplication_rate()
 
 

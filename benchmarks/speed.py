@@ -1,8 +1,8 @@
 """How fast the field solver is, against the project's own targets: ``python -m benchmarks.speed [part ...]``.
 
 CPU times (user and system, workers included) on one BLAS thread, medians where a measurement is repeated. The parts are
-``solve``, ``period``, ``map``, ``efficiency``, ``optima`` and ``sweep``; the sweep is the thesis's: ten stator radii, two
-slot counts, 15 x 15 designs, meshes included. All parts together, on a machine that does nothing else, write
+``solve``, ``period``, ``map``, ``efficiency``, ``optima`` and ``sweep``; the sweep is the thesis's: ten stator radii,
+two slot counts, 15 x 15 designs, meshes included. All parts together, on a machine that does nothing else, write
 results/reference/benchmarks/speed.json, .csv and .png; single parts are only printed.
 """
 
@@ -183,7 +183,7 @@ def optima() -> list[Row]:
 
 
 def scaling() -> pd.DataFrame:
-    """CPU time of a cold solve and of its largest part, a tangent assembled and factorised, over the number of unknowns, with floors."""
+    """CPU time of a cold solve and of one tangent, assembled and factorised, over the unknowns, with floors."""
     materials, point = reference_materials(), null_point()
     return pd.DataFrame([_scale(FieldModel(reference_section(density=d), materials), point) for d in _DENSITIES])
 

@@ -42,7 +42,8 @@ def _draw_unknowns(axes, solves: pd.DataFrame) -> None:
 def _draw_designs(axes, designs: pd.DataFrame) -> None:
     per_design = designs.cpu_s.iloc[-1] / designs.designs.iloc[-1]
     axes.plot(designs.designs, designs.cpu_s, "o-", label="measured")
-    axes.plot([0, designs.designs.iloc[-1]], [0, designs.cpu_s.iloc[-1]], "--", label=f"{1e3 * per_design:.1f} ms a design")
+    last = designs.iloc[-1]
+    axes.plot([0, last.designs], [0, last.cpu_s], "--", label=f"{1e3 * per_design:.1f} ms a design")
     axes.set(xlabel="designs of the sweep, meshes included", ylabel="CPU time / s", xlim=(0, None), ylim=(0, None))
 
 

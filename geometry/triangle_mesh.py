@@ -11,7 +11,7 @@ class TriangleMesh(MeshTri):
 
     @staticmethod
     def build_entities(t, indices, sort=True):
-        """Edges (2, k) of triangles (3, m) in the order of their nodes, and the three edges of every triangle (3, m)."""
+        """Edges (2, k) of triangles (3, m) in the order of their nodes, and the edges of every triangle (3, m)."""
         if indices is None or not sort:
             return MeshTri.build_entities(t, indices, sort)
         start, end = np.sort(np.hstack([t[pair] for pair in indices]), axis=0)

@@ -72,10 +72,10 @@ class FixedPattern:
 
 
 class JoinedPattern:
-    """Pattern of the matrix with stator and rotor joined at one of a few numbers of edges, and its symbolic factorisation.
+    """Pattern of the matrix with the rotor turned by one of a few numbers of edges, and its symbolic factorisation.
 
-    It holds the entries of all these turns, so that they share the analysis, which costs more than a factorisation; four
-    neighbouring turns together make the factorisation 3 % slower.
+    It holds the entries of all these turns, so that they share the analysis, which costs more than a factorisation;
+    four neighbouring turns together make the factorisation 3 % slower.
     bands: addresses of the rotor side of the gap, by number of edges
     """
 

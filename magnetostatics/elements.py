@@ -3,8 +3,8 @@
 Weak form for the vector potential A (per metre of length), B = (dA/dy, -dA/dx):
     integral nu(|B|^2) grad A . grad v = integral J v + integral nu (B_rx dv/dy - B_ry dv/dx)
 scikit-fem supplies the reference functions, the quadrature and the numbering. In reference coordinates (xi, eta) the
-functions are the same in every triangle: what differs is three numbers, the metric M, and so a vector or a matrix of all
-elements is one small constant matrix times a few numbers per element,
+functions are the same in every triangle: what differs is three numbers, the metric M, and so a vector or a matrix of
+all elements is one small constant matrix times a few numbers per element,
     grad A . grad v = (dA/dxi, dA/deta) M (dv/dxi, dv/deta) / |D|,   M = |D| J^-1 J^-T,   D = det J
 The element index comes last in every array, so that each operation is one pass over contiguous memory.
 """
@@ -53,7 +53,7 @@ class TriangleOrder:
 
     @cached_property
     def products(self) -> np.ndarray:
-        """Weighted (d_xi u d_xi v, d_xi u d_eta v + d_eta u d_xi v, d_eta u d_eta v) of every pair and point (K, 3 Q)."""
+        """Weighted (d_xi u d_xi v, d_xi u d_eta v + d_eta u d_xi v, d_eta u d_eta v) per pair and point (K, 3 Q)."""
         i, j = self.pairs
         u, v = self.gradients[:, 0], self.gradients[:, 1]
         parts = np.stack([u[i] * u[j], u[i] * v[j] + v[i] * u[j], v[i] * v[j]], axis=1) * self.weights

@@ -198,7 +198,7 @@ class FieldModel:
 
         start: a solution to start from, of this model or of one that shares its topology (a neighbouring current,
             angle or design). Quadratic elements begin with the field of linear ones, which costs a tenth of a
-            quadratic iteration each, and with a start take only its change: then one quadratic iteration is mostly enough.
+            quadratic iteration each, and with a start take only its change: mostly one quadratic iteration follows.
         Raises FieldSolutionError when the iteration does not converge.
         """
         with one_thread():

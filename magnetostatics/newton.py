@@ -54,8 +54,8 @@ def newton(
     residual(u) -> (n,);  direction(u, residual) -> Newton step (n,)
     again(residual) -> step (n,) with the tangent of the last Newton step, where that is much cheaper than a new one
     The first step is taken whole whatever the residual does (from zero field it always grows in saturated iron); later
-    ones are halved until the residual falls. Where ``again`` is given, one such step follows at the end, if the residual
-    falls by it: it costs a tenth and takes most of the error that is left. The record is that of the Newton steps.
+    ones are halved until the residual falls. Where ``again`` is given, one such step follows at the end, if the
+    residual falls by it: it costs a tenth and takes most of the error left. The record is that of the Newton steps.
     Raises FieldSolutionError with the record when the tolerance is not reached.
     """
     if scale == 0.0:  # neither magnets nor currents

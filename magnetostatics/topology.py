@@ -75,7 +75,8 @@ class Topology:
             if len(self._patterns) == _MOST_PATTERNS:
                 self._patterns.pop(next(iter(self._patterns)))
             turns = range(group * _TURNS, (group + 1) * _TURNS)
-            self._patterns[group] = JoinedPattern(self.fixed_pattern, {turn: self._band_entries(turn) for turn in turns})
+            bands = {turn: self._band_entries(turn) for turn in turns}
+            self._patterns[group] = JoinedPattern(self.fixed_pattern, bands)
         return self._patterns[group]
 
     def _band_entries(self, edges: int) -> Entries:
