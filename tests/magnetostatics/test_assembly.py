@@ -79,6 +79,8 @@ def test_entries_are_those_of_scipy():
     found = np.zeros((30, 30))
     found[entries.keys % 30, entries.keys // 30] = entries.sum(local)
     assert_allclose(found, wanted, atol=1e-13)
+    free = np.flatnonzero((sign[dofs][pairs[0]] * sign[dofs][pairs[1]]).ravel())
+    assert set(entries.keys) == set((columns * 30 + rows).ravel()[free])  # fixed unknowns do not fill the pattern
     assert (np.diff(entries.keys) > 0).all()
 
 
