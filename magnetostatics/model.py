@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from time import process_time
+from typing import Callable, Protocol
 
 import numpy as np
 
 from geometry.cross_section import CrossSection
+from geometry.gap import GapHalf
+from geometry.machine import GeometryError
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
 from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, refine_order
+from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.topology import IRON, Topology
 from magnetostatics.unknowns import Turn, Unknowns
@@ -26,16 +30,42 @@ _COARSE = NewtonSettings(tolerance=1e-3)  # of the linear elements that quadrati
 
 @dataclass(frozen=True)
 class MachineMaterials:
-    """What the regions of a machine are made of."""
+    """What the regions of a machine are made of.
 
-    stator_steel: Reluctivity
-    rotor_steel: Reluctivity
+    magnet: of all poles but ``other_magnets``, the (number, magnet) of those that differ; they need the whole machine
+    """
+
+    stator_steel: Reluctivity | LocalSteel
+    rotor_steel: Reluctivity | LocalSteel
     magnet: Magnet
+    other_magnets: tuple[tuple[int, Magnet], ...] = ()
+
+    def magnet_at(self, number: int) -> Magnet:
+        """The magnet of a pole."""
+        return dict(self.other_magnets).get(number, self.magnet)
+
+    def with_magnet(self, number: int, magnet: Magnet) -> MachineMaterials:
+        """The same with another magnet at one pole."""
+        return replace(self, other_magnets=tuple((dict(self.other_magnets) | {number: magnet}).items()))
+
+    def with_magnets(self, change: Callable[[Magnet], Magnet]) -> MachineMaterials:
+        """The same with every magnet changed."""
+        others = tuple((number, change(magnet)) for number, magnet in self.other_magnets)
+        return replace(self, magnet=change(self.magnet), other_magnets=others)
+
+
+class OperatingState(Protocol):
+    """What a field is solved for; ``OperatingPoint`` and the ones of ``magnetostatics.currents``."""
+
+    angle: float  # mechanical rotor angle, magnet 0 on the x axis at zero [rad]
+
+    def current_load(self, model: FieldModel) -> np.ndarray:
+        """Right-hand side (n,) [A] of the currents."""
 
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """Rotor angle and slot currents.
+    """Rotor angle and balanced currents of a sinusoidal supply.
 
     angle: mechanical rotor angle, magnet 0 on the x axis at zero [rad]
     current_density: amplitude of the current density in the copper [A/m^2]
@@ -53,13 +83,21 @@ class OperatingPoint:
         lead = pole_pairs * self.angle + pi / 2 - phase_axis + self.current_angle
         return self.current_density * np.cos(lead - 2 * pi / 3 * np.arange(3))
 
+    def ampere_turns(self, section: CrossSection) -> np.ndarray:
+        """Of one coil of phases A, B, C [A]."""
+        densities = self.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
+        return densities * self.packing_factor * section.half_slot_area * section.half_slots_per_coil_side
+
+    def current_load(self, model: FieldModel) -> np.ndarray:
+        return self.ampere_turns(model.section) @ model.phase_loads
+
 
 @dataclass(frozen=True, eq=False)
 class FieldSolution:
     """Vector potential a (n,) [Wb/m] of one operating point and how it was found."""
 
     model: FieldModel
-    point: OperatingPoint
+    point: OperatingState
     a: np.ndarray
     newton: NewtonRecord
     cpu_seconds: float
@@ -81,10 +119,12 @@ class FieldModel:
         order: TriangleOrder = QUADRATIC,
         topology: Topology | None = None,
     ):
+        _check_magnets(section, materials)
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
         self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
-        self._laws = tuple(zip(map(self._region, IRON), (materials.stator_steel, materials.rotor_steel)))
+        steels = zip(IRON, (materials.stator_steel, materials.rotor_steel))
+        self._laws = tuple((self._region(name), law_in(steel, section, name)) for name, steel in steels)
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @property
@@ -122,10 +162,8 @@ class FieldModel:
         return np.stack([self._magnet_load(m) for m in range(self.section.magnets)])
 
     def _magnet_load(self, number: int) -> np.ndarray:
-        elements = self._region(f"magnet_{number}")
-        machine, magnet = self.section.machine, self.materials.magnet
-        x, y = elements.points
-        direction = machine.magnetisation.direction_angle(np.arctan2(y, x), number * machine.pole_pitch)
+        elements, magnet = self._region(f"magnet_{number}"), self.materials.magnet_at(number)
+        direction = self.section.magnetisation_angle(number, elements.points) + magnet.axis_error
         strength = (-1) ** number * magnet.remanence / (MU_0 * magnet.recoil_permeability)
         return elements.scatter(elements.forces(-strength * np.sin(direction), strength * np.cos(direction)), self.size)
 
@@ -137,17 +175,24 @@ class FieldModel:
 
     @cached_property
     def phase_loads(self) -> np.ndarray:
-        """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage."""
-        sides = [self.section.layout.coil_side(*side) for side in self.section.coil_sides]
-        signs = np.array([[sign if phase == i else 0.0 for phase, sign in sides] for i in range(3)])
-        return signs @ self.coil_side_loads / self.section.half_slots_per_coil_side
+        """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage.
 
-    def load(self, point: OperatingPoint) -> np.ndarray:
+        A coil whose turns are not as designed counts with its relative turns.
+        """
+        sides = [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
+        factors = [[(coil.phase == i) * coil.sign * coil.turns * way for coil, way in sides] for i in range(3)]
+        return np.array(factors) @ self.coil_side_loads / self.section.half_slots_per_coil_side
+
+    @cached_property
+    def coil_loads(self) -> np.ndarray:
+        """Load of 1 A in one turn of every single coil (coils, n), in +z where it goes; what of it is in the sector."""
+        sides = [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
+        factors = [[(coil.index == k.index) * way for coil, way in sides] for k in self.section.layout.coils]
+        return np.array(factors) @ self.coil_side_loads / self.section.half_slots_per_coil_side
+
+    def load(self, point: OperatingState) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
-        densities = point.phase_densities(self.section.machine.pole_pairs, self.section.layout.phase_axis)
-        area = self.section.half_slot_area * self.section.half_slots_per_coil_side
-        ampere_turns = densities * point.packing_factor * area
-        return self.magnet_loads.sum(0) + ampere_turns @ self.phase_loads
+        return self.magnet_loads.sum(0) + point.current_load(self)
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
@@ -155,7 +200,7 @@ class FieldModel:
         """The rotor side of the gap, sheared so that the sliding circle moves by -rest [rad] against the rotor."""
         corners = self.section.mesh.p[:, self.section.mesh.t[:, self.rotor_band]]
         if rest != 0.0:
-            corners = _shear(corners, rest, self.section.machine)
+            corners = _shear(corners, rest, self.section.rotor_gap)
         return Elements.of(self.order, corners, self.elements.dofs[:, self.rotor_band])
 
     @cached_property
@@ -170,7 +215,7 @@ class FieldModel:
         """Of air, copper and magnets, per element of the mesh [m/H]."""
         reluctivity = np.full(self.section.mesh.nelements, 1 / MU_0)
         for m in range(self.section.magnets):
-            reluctivity[self.topology.regions[f"magnet_{m}"]] /= self.materials.magnet.recoil_permeability
+            reluctivity[self.topology.regions[f"magnet_{m}"]] /= self.materials.magnet_at(m).recoil_permeability
         return reluctivity
 
     def _join(self, turn: Turn) -> JoinedSystem:
@@ -182,7 +227,7 @@ class FieldModel:
 
     # ---- Newton -----------------------------------------------------------------------------------------------
 
-    def solve(self, point: OperatingPoint, start: FieldSolution | None = None) -> FieldSolution:
+    def solve(self, point: OperatingState, start: FieldSolution | None = None) -> FieldSolution:
         """Field of an operating point by Newton's method.
 
         start: a solution of this model to start from (a neighbouring current or angle); without one, quadratic elements
@@ -196,7 +241,7 @@ class FieldModel:
             u, record = newton(first, np.linalg.norm(problem.load), problem.residual, problem.direction, self.settings)
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began)
 
-    def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:
+    def residual(self, point: OperatingState, a: np.ndarray) -> np.ndarray:
         """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
         problem = _Problem(self, point)
         return problem.residual(problem.free_values(a))
@@ -206,7 +251,7 @@ class FieldModel:
         problem = _Problem(self, solution.point)
         return TangentSystem(problem, problem.system.factorise(self._iron_tangent(solution.a)))
 
-    def _coarse_potential(self, point: OperatingPoint) -> np.ndarray:
+    def _coarse_potential(self, point: OperatingState) -> np.ndarray:
         """Potential to start from: zero for linear elements, their solution for quadratic ones (n,)."""
         if self.order is LINEAR:
             return np.zeros(self.size)
@@ -237,7 +282,7 @@ class FieldModel:
 class _Problem:
     """One operating point of a model in terms of its free unknowns u (m,)."""
 
-    def __init__(self, model: FieldModel, point: OperatingPoint):
+    def __init__(self, model: FieldModel, point: OperatingState):
         turn = model.unknowns.turn(point.angle)
         self.model, self.system = model, model._join(turn)
         self.column, self.sign = model.unknowns.turned(turn.edges)
@@ -280,6 +325,17 @@ class TangentSystem:
         return self.problem.expand(self.system.solve(reduced))
 
 
+def _check_magnets(section: CrossSection, materials: MachineMaterials) -> None:
+    unknown = [number for number, _ in materials.other_magnets if not 0 <= number < section.machine.poles]
+    if unknown:
+        raise GeometryError(f"there is no magnet {unknown[0]}: they are numbered from 0 to {section.machine.poles - 1}")
+    if materials.other_magnets and section.sectors > 1:
+        raise GeometryError(
+            f"magnets that differ break the symmetry of the machine, but 1/{section.sectors} of it is meshed: "
+            "mesh the whole machine (mesh_cross_section(..., whole=True))"
+        )
+
+
 def _tangent(elements: Elements, law: Reluctivity, a: np.ndarray) -> np.ndarray:
     """nu grad phi_i . grad phi_j + 2 nu' (grad A . grad phi_i)(grad A . grad phi_j), integrated (K, E)."""
     x, y = elements.gradient(a)
@@ -290,10 +346,9 @@ def _tangent(elements: Elements, law: Reluctivity, a: np.ndarray) -> np.ndarray:
     return np.einsum("kqe,qe->ke", elements.stiffness_basis, nu) + np.einsum("kqe,kqe->ke", along[i], weighted[j])
 
 
-def _shear(corners: np.ndarray, rest: float, machine) -> np.ndarray:
+def _shear(corners: np.ndarray, rest: float, gap: GapHalf) -> np.ndarray:
     """Turn points (2, 3, E) of the rotor-side gap by -rest in proportion to their height above the rotor."""
     x, y = corners
     radius = np.hypot(x, y)
-    height = (radius - machine.rotor_outer_radius) / (machine.mid_gap_radius - machine.rotor_outer_radius)
-    angle = np.arctan2(y, x) - rest * np.clip(height, 0.0, 1.0)
+    angle = np.arctan2(y, x) - rest * np.clip(1 - gap.height(corners), 0.0, 1.0)
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)])
