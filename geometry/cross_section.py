@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Iterable
 
 import numpy as np
 from skfem import MeshTri
 
 from geometry.checks import check_machine
+from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import Machine
 from geometry.plane_mesh import PlaneMesh
@@ -32,6 +34,24 @@ class Probe:
 
 
 @dataclass(frozen=True)
+class Assembly:
+    """Where the parts stand that the defects of ``geometry.defects`` have moved; by default where they are drawn.
+
+    stator_centre: of the stator, against the axis of rotation [m]
+    rotor_centre: of the rotor, against the axis of rotation and turning with the rotor [m]
+    magnet_turns: (number of the magnet, angle by which it has been turned about the rotor's centre [rad])
+    """
+
+    stator_centre: tuple[float, float] = (0.0, 0.0)
+    rotor_centre: tuple[float, float] = (0.0, 0.0)
+    magnet_turns: tuple[tuple[int, float], ...] = ()
+
+    def magnet_turn(self, number: int) -> float:
+        """Angle by which a magnet has been turned [rad]."""
+        return sum(angle for which, angle in self.magnet_turns if which == number)
+
+
+@dataclass(frozen=True)
 class CrossSection:
     """One sector of a machine, meshed.
 
@@ -40,6 +60,7 @@ class CrossSection:
     sectors: how many such sectors make up the machine
     antiperiodic: True when the field changes sign from one sector to the next
     pieces: the half cells of stator and rotor that the mesh is copied from
+    assembly: where the parts stand that have been moved against each other
     """
 
     machine: Machine
@@ -48,6 +69,7 @@ class CrossSection:
     sectors: int
     antiperiodic: bool
     pieces: tuple[Piece, Piece]
+    assembly: Assembly = Assembly()
 
     @property
     def teeth(self) -> int:
@@ -74,10 +96,30 @@ class CrossSection:
         """Factor of the vector potential from one sector to the next."""
         return -1 if self.antiperiodic else 1
 
+    @property
+    def stator_gap(self) -> GapHalf:
+        """The gap between the sliding circle and the stator bore."""
+        m = self.machine
+        return GapHalf(m.mid_gap_radius, m.stator_inner_radius, self.assembly.stator_centre)
+
+    @property
+    def rotor_gap(self) -> GapHalf:
+        """The gap between the sliding circle and the magnets, in the coordinates of the rotor."""
+        m = self.machine
+        return GapHalf(m.mid_gap_radius, m.rotor_outer_radius, self.assembly.rotor_centre)
+
+    def magnetisation_angle(self, number: int, points: np.ndarray) -> np.ndarray:
+        """Angle of the magnetisation of magnet ``number`` [rad], taken outwards, at points (2, ...) of the rotor."""
+        x, y = self.assembly.rotor_centre
+        centre_line = number * self.machine.pole_pitch + self.assembly.magnet_turn(number)
+        return self.machine.magnetisation.direction_angle(np.arctan2(points[1] - y, points[0] - x), centre_line)
+
     @cached_property
     def half_slot_area(self) -> float:
-        """Area of one coil side as meshed [m^2]."""
-        return float(_triangle_areas(self.mesh)[self.mesh.subdomains["slot_0_R"]].sum())
+        """Area of one coil side as meshed [m^2]; the median, so that a defect of one slot does not count."""
+        areas = _triangle_areas(self.mesh)
+        sides = (self.mesh.subdomains[f"slot_{slot}_{side}"] for slot, side in self.coil_sides)
+        return float(np.median([areas[side].sum() for side in sides]))
 
     @cached_property
     def tooth_probes(self) -> tuple[Probe, ...]:
@@ -152,6 +194,12 @@ class Piece:
         for h, nodes in enumerate(self.nodes):
             placed[:, nodes] = _place(points, h, self.width).T
         return placed
+
+    def place_copies(self, points: np.ndarray, copies: Iterable[int]) -> tuple[np.ndarray, np.ndarray]:
+        """Points of the half cell (n, 2), or their moves, in some copies (2, k), and their node numbers (k,)."""
+        copies = [h % self.count for h in copies]
+        placed = np.hstack([_place(points, h, self.width).T for h in copies])
+        return placed, np.concatenate([self.nodes[h] for h in copies])
 
     @cached_property
     def triangles(self) -> np.ndarray:

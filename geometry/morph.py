@@ -4,46 +4,109 @@ Nodes on the outline keep their place along their curve; those inside follow by 
 small triangles stiffer than large ones; the gap layers are laid anew, so the sliding circle stays equally spaced. A
 design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a field
 solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
+
+Manufacturing defects move nodes as well, on the mesh of the whole machine and each by a ``Defect`` of its own
+(``geometry/defects.py``): what they move is added up, so their order does not matter.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Iterable
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from geometry.checks import check_machine
-from geometry.cross_section import CrossSection, Piece
+from geometry.cross_section import Assembly, CrossSection, Piece
 from geometry.machine import GeometryError, Machine
 from geometry.plane_mesh import Drawing
 
 _ON_CURVE = 1e-9  # m
 
 
+class Defect:
+    """Something of one machine that is not as drawn and breaks its symmetry; the concrete ones are in ``defects``."""
+
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """By how much the nodes of a whole machine without defects move (2, n) [m].
+
+        morpher: of any cross-section on the same triangles; section: the machine, as drawn
+        """
+        raise NotImplementedError
+
+    def assemble(self, assembly: Assembly) -> Assembly:
+        """Where the parts stand after it."""
+        return assembly
+
+
 class Morpher:
-    """Moves the nodes of one meshed cross-section onto other machines with the same slots, poles and magnet pattern."""
+    """Moves the nodes of one meshed cross-section onto other machines with the same slots, poles and magnet pattern.
+
+    section: as drawn, that is without defects
+    """
 
     def __init__(self, section: CrossSection):
+        if section.assembly != Assembly():
+            raise GeometryError("this mesh has been moved by defects already: take the one that it was moved from")
         self.section = section
         self._pieces = [_PieceMorpher(piece, section.machine) for piece in section.pieces]
 
-    def to(self, machine: Machine) -> CrossSection:
-        """The cross-section of another machine on the same triangles.
+    def to(self, machine: Machine, defects: Iterable[Defect] = ()) -> CrossSection:
+        """The cross-section of another machine, with its defects, on the same triangles.
 
-        Raises GeometryError when the machine cannot be built or triangles would turn over.
+        Raises GeometryError when the machine cannot be built, triangles would turn over, or there are defects and the
+        mesh is that of a sector.
         """
+        self._check(machine)
+        return self._with_defects(self._drawn(machine), tuple(defects))
+
+    def _drawn(self, machine: Machine) -> CrossSection:
+        if machine == self.section.machine:
+            return self.section
+        return self._at(np.hstack([piece.points(machine) for piece in self._pieces]), machine)
+
+    def copies_moved(self, machine: Machine, section: CrossSection, copies: Iterable[int]) -> np.ndarray:
+        """Moves (2, n) [m] of the nodes of some half cells of the stator, from the machine of a section to another."""
+        self._check(machine)
+        stator = self._pieces[0]
+        half_cells = stator.half_cell(machine) - stator.half_cell(section.machine)
+        moves = np.zeros_like(section.mesh.p)
+        placed, nodes = stator.piece.place_copies(half_cells, copies)
+        moves[:, nodes] = placed
+        return moves
+
+    def _with_defects(self, drawn: CrossSection, defects: tuple[Defect, ...]) -> CrossSection:
+        if not defects:
+            return drawn
+        if drawn.sectors > 1:
+            raise GeometryError(
+                f"a defect breaks the symmetry of the machine, but 1/{drawn.sectors} of it is meshed: "
+                "mesh the whole machine (mesh_cross_section(..., whole=True))"
+            )
+        assembly = drawn.assembly
+        for defect in defects:
+            assembly = defect.assemble(assembly)
+        return self._at(drawn.mesh.p + sum(d.moves(self, drawn) for d in defects), drawn.machine, assembly)
+
+    def _at(self, points: np.ndarray, machine: Machine, assembly: Assembly = Assembly()) -> CrossSection:
+        mesh = replace(self.section.mesh, doflocs=points)
+        if _areas(points, mesh.t).min() <= 0:
+            raise GeometryError("the mesh cannot be moved that far, triangles would turn over: mesh the machine anew")
+        return replace(self.section, machine=machine, mesh=mesh, assembly=assembly)
+
+    def _check(self, machine: Machine) -> None:
         check_machine(machine)
         base = self.section.machine
         if (machine.slots, machine.poles) != (base.slots, base.poles):
             raise GeometryError("a mesh can only be moved onto a machine with the same slots and poles: mesh it anew")
-        points = np.hstack([piece.points(machine) for piece in self._pieces])
-        mesh = replace(self.section.mesh, doflocs=points)
-        if _areas(points, mesh.t).min() <= 0:
-            raise GeometryError("the mesh cannot be moved that far, triangles would turn over: mesh the machine anew")
-        return replace(self.section, machine=machine, mesh=mesh)
+        if (machine.magnet_arc_fraction < 1) != (base.magnet_arc_fraction < 1):
+            raise GeometryError(
+                "a mesh of magnets that touch (magnet_arc_fraction = 1) cannot be moved onto magnets that do not, "
+                "nor back: mesh the machine anew, with magnet_arc_fraction below 1 where the arc is to change"
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +116,13 @@ class _PieceMorpher:
 
     def points(self, machine: Machine) -> np.ndarray:
         """Points of the piece (2, m) for a machine."""
+        return self.piece.place(self.half_cell(machine))
+
+    def half_cell(self, machine: Machine) -> np.ndarray:
+        """Points of the half cell (n, 2) for a machine."""
         moved = self.drawn_points + self._follow(self._outline(machine) - self.drawn_points[self.outline_nodes])
         gap = self.piece.cell.gap_points(machine, moved[self.rim])
-        return self.piece.place(np.vstack([moved, gap]))
+        return np.vstack([moved, gap])
 
     @cached_property
     def drawn_points(self) -> np.ndarray:

@@ -17,9 +17,9 @@ is a convention.
 from __future__ import annotations
 
 from cmath import exp
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, gcd, pi, sin
-from typing import ClassVar
+from typing import ClassVar, Mapping
 
 from geometry.machine import GeometryError
 
@@ -32,13 +32,17 @@ WIDEST_SEARCH = 24  # slots away from an infeasible number at which neighbours a
 
 @dataclass(frozen=True)
 class Coil:
-    """One coil: current in phase ``phase`` flows, times ``sign``, in +z through ``go`` and in -z through ``back``."""
+    """One coil: current in phase ``phase`` flows, times ``sign``, in +z through ``go`` and in -z through ``back``.
+
+    turns: relative to those of a coil as designed; a coil of 20 turns with two of them shorted and idle has 0.9
+    """
 
     index: int
     phase: int  # 0 A, 1 B, 2 C
     sign: int  # +1 or -1
     go: tuple[int, str]  # slot and side
     back: tuple[int, str]
+    turns: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -70,20 +74,37 @@ class WindingLayout:
         """The coils of phase 0 (A), 1 (B) or 2 (C), by rising index."""
         return tuple(coil for coil in self.coils if coil.phase == phase_index)
 
+    def with_turns(self, turns: Mapping[int, float]) -> WindingLayout:
+        """The same winding with other turns in some coils: {index of the coil: turns relative to the design}.
+
+        Raises GeometryError when there is no such coil or a number of turns is negative.
+        """
+        for index, number in turns.items():
+            if index not in {coil.index for coil in self.coils}:
+                raise GeometryError(f"there is no coil {index}: a coil has the number of the slot that it goes in")
+            if not number >= 0:
+                raise GeometryError(f"the relative turns of a coil are zero or more, found {number} for coil {index}")
+        return replace(self, coils=tuple(replace(coil, turns=turns.get(coil.index, coil.turns)) for coil in self.coils))
+
     def coil_side(self, slot: int, side: str) -> tuple[int, int]:
         """Phase and direction of the current in one half of a slot: +1 in +z, -1 in -z for a positive phase current.
 
         slot: any integer, counted round the machine
         side: "R" or "L"
         """
+        coil, direction = self.coil_at(slot, side)
+        return coil.phase, coil.sign * direction
+
+    def coil_at(self, slot: int, side: str) -> tuple[Coil, int]:
+        """The coil in one half of a slot, and +1 where it goes in +z, -1 where it comes back; see ``coil_side``."""
         if side not in (RIGHT, LEFT):
             raise GeometryError(f"the sides of a slot are 'R' and 'L', found {side!r}")
         place = (slot % self.slots, side)
         for coil in self.coils:
             if place in _halves(coil.go):
-                return coil.phase, coil.sign
+                return coil, 1
             if place in _halves(coil.back):
-                return coil.phase, -coil.sign
+                return coil, -1
         raise GeometryError(f"no coil side in slot {slot}, side {side}")
 
     def winding_factor(self, order: float = 1) -> float:
@@ -145,8 +166,8 @@ def sector_symmetric(layout: WindingLayout, sectors: int, antiperiodic: bool) ->
     step, sign = layout.slots // sectors, -1 if antiperiodic else 1
     for slot in range(layout.slots):
         for side in (RIGHT, LEFT):
-            here, there = layout.coil_side(slot, side), layout.coil_side(slot + step, side)
-            if there != (here[0], sign * here[1]):
+            (here, go), (there, come) = layout.coil_at(slot, side), layout.coil_at(slot + step, side)
+            if (there.phase, there.sign * come, there.turns) != (here.phase, sign * here.sign * go, here.turns):
                 return False
     return True
 

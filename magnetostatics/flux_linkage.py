@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.machine import GeometryError
 from magnetostatics.model import FieldSolution
 
 
@@ -14,6 +15,19 @@ def phase_flux_linkage(solution: FieldSolution) -> np.ndarray:
     """
     model = solution.model
     return model.section.sectors * model.phase_loads @ solution.a
+
+
+def coil_flux_linkage(solution: FieldSolution) -> np.ndarray:
+    """Flux linkage of every single coil of the whole machine (coils,) [Wb/m per turn], in the layout's order.
+
+    Positive for flux that a current going in +z through the coil's first side makes: outwards through the tooth of a
+    tooth coil. With the signs and turns of the coils, psi_phase = sum over its coils of sign * turns * psi_coil.
+    Raises GeometryError when only a sector is solved.
+    """
+    section = solution.model.section
+    if section.sectors > 1:
+        raise GeometryError("single coils need the whole machine: mesh_cross_section(..., whole=True)")
+    return solution.model.coil_loads @ solution.a
 
 
 def park(phases: np.ndarray, electrical_angle: float, phase_axis: float) -> np.ndarray:

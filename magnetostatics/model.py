@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from time import process_time
+from typing import Callable, Protocol
 
 import numpy as np
 
 from geometry.cross_section import CrossSection
+from geometry.gap import GapHalf
+from geometry.machine import GeometryError
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
 from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, lower_order, refine_order
 from magnetostatics.iron import Iron, IronState
+from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.topology import IRON, Topology
 from magnetostatics.unknowns import Turn, Unknowns
@@ -27,16 +31,42 @@ _COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear ele
 
 @dataclass(frozen=True)
 class MachineMaterials:
-    """What the regions of a machine are made of."""
+    """What the regions of a machine are made of.
 
-    stator_steel: Reluctivity
-    rotor_steel: Reluctivity
+    magnet: of all poles but ``other_magnets``, the (number, magnet) of those that differ; they need the whole machine
+    """
+
+    stator_steel: Reluctivity | LocalSteel
+    rotor_steel: Reluctivity | LocalSteel
     magnet: Magnet
+    other_magnets: tuple[tuple[int, Magnet], ...] = ()
+
+    def magnet_at(self, number: int) -> Magnet:
+        """The magnet of a pole."""
+        return dict(self.other_magnets).get(number, self.magnet)
+
+    def with_magnet(self, number: int, magnet: Magnet) -> MachineMaterials:
+        """The same with another magnet at one pole."""
+        return replace(self, other_magnets=tuple((dict(self.other_magnets) | {number: magnet}).items()))
+
+    def with_magnets(self, change: Callable[[Magnet], Magnet]) -> MachineMaterials:
+        """The same with every magnet changed."""
+        others = tuple((number, change(magnet)) for number, magnet in self.other_magnets)
+        return replace(self, magnet=change(self.magnet), other_magnets=others)
+
+
+class OperatingState(Protocol):
+    """What a field is solved for; ``OperatingPoint`` and the ones of ``magnetostatics.currents``."""
+
+    angle: float  # mechanical rotor angle, magnet 0 on the x axis at zero [rad]
+
+    def current_load(self, model: FieldModel) -> np.ndarray:
+        """Right-hand side (n,) [A] of the currents."""
 
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """Rotor angle and slot currents.
+    """Rotor angle and balanced currents of a sinusoidal supply.
 
     angle: mechanical rotor angle, magnet 0 on the x axis at zero [rad]
     current_density: amplitude of the current density in the copper [A/m^2]
@@ -54,6 +84,14 @@ class OperatingPoint:
         lead = pole_pairs * self.angle + pi / 2 - phase_axis + self.current_angle
         return self.current_density * np.cos(lead - 2 * pi / 3 * np.arange(3))
 
+    def ampere_turns(self, section: CrossSection) -> np.ndarray:
+        """Of one coil of phases A, B, C [A]."""
+        densities = self.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
+        return densities * self.packing_factor * section.half_slot_area * section.half_slots_per_coil_side
+
+    def current_load(self, model: FieldModel) -> np.ndarray:
+        return self.ampere_turns(model.section) @ model.phase_loads
+
 
 @dataclass(frozen=True, eq=False)
 class FieldSolution:
@@ -63,7 +101,7 @@ class FieldSolution:
     """
 
     model: FieldModel
-    point: OperatingPoint
+    point: OperatingState
     a: np.ndarray
     newton: NewtonRecord
     cpu_seconds: float
@@ -86,13 +124,14 @@ class FieldModel:
         order: TriangleOrder = QUADRATIC,
         topology: Topology | None = None,
     ):
+        _check_magnets(section, materials)
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
         self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
         counts = [len(self.topology.regions[name]) for name in IRON]
-        self.iron = Iron(
-            self.elements.take(self.topology.iron), counts, (materials.stator_steel, materials.rotor_steel)
-        )
+        steels = zip(IRON, (materials.stator_steel, materials.rotor_steel))
+        laws = [law_in(steel, section, name) for name, steel in steels]
+        self.iron = Iron(self.elements.take(self.topology.iron), counts, laws)
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @property
@@ -130,10 +169,8 @@ class FieldModel:
         return np.stack([self._magnet_load(m) for m in range(self.section.magnets)])
 
     def _magnet_load(self, number: int) -> np.ndarray:
-        elements = self._region(f"magnet_{number}")
-        machine, magnet = self.section.machine, self.materials.magnet
-        x, y = elements.points
-        direction = machine.magnetisation.direction_angle(np.arctan2(y, x), number * machine.pole_pitch)
+        elements, magnet = self._region(f"magnet_{number}"), self.materials.magnet_at(number)
+        direction = self.section.magnetisation_angle(number, elements.points) + magnet.axis_error
         strength = (-1) ** number * magnet.remanence / (MU_0 * magnet.recoil_permeability)
         return elements.scatter(elements.forces(-strength * np.sin(direction), strength * np.cos(direction)), self.size)
 
@@ -141,24 +178,38 @@ class FieldModel:
     def phase_loads(self) -> np.ndarray:
         """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage.
 
-        1 A is spread evenly over each coil side, so that the product with a is its mean.
+        1 A is spread evenly over each coil side, so that the product with a is its mean. A coil whose turns are not as
+        designed counts with its relative turns.
         """
-        section = self.section
-        regions = [self.topology.regions[f"slot_{slot}_{side}"] for slot, side in section.coil_sides]
+        sides = self._coils_of_sides
+        factors = np.array([coil.sign * coil.turns * way for coil, way in sides])
+        return self._spread([coil.phase for coil, _ in sides], factors, 3)
+
+    @cached_property
+    def coil_loads(self) -> np.ndarray:
+        """Load of 1 A in one turn of every single coil (coils, n), in +z where it goes; what of it is in the sector."""
+        sides, coils = self._coils_of_sides, self.section.layout.coils
+        rows = {coil.index: row for row, coil in enumerate(coils)}
+        return self._spread([rows[coil.index] for coil, _ in sides], np.array([way for _, way in sides]), len(coils))
+
+    @property
+    def _coils_of_sides(self) -> list:
+        """(coil, direction) of every coil side in the sector."""
+        return [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
+
+    def _spread(self, rows: list[int], factors: np.ndarray, count: int) -> np.ndarray:
+        """Loads (count, n) of a factor [A] spread evenly over each coil side, summed into the row of each."""
+        regions = [self.topology.regions[f"slot_{slot}_{side}"] for slot, side in self.section.coil_sides]
         side = np.repeat(np.arange(len(regions)), [len(region) for region in regions])
-        phase, sign = np.array([section.layout.coil_side(*place) for place in section.coil_sides])[side].T
         elements = self.elements.take(np.concatenate(regions))
         area = np.bincount(side, weights=elements.weights.sum(0))
-        local = elements.integrals() * (sign / (area[side] * section.half_slots_per_coil_side))
-        place = phase * self.size + elements.dofs
-        return np.bincount(place.ravel(), weights=local.ravel(), minlength=3 * self.size).reshape(3, -1)
+        local = elements.integrals() * ((factors / area)[side] / self.section.half_slots_per_coil_side)
+        place = np.asarray(rows)[side] * self.size + elements.dofs
+        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
 
-    def load(self, point: OperatingPoint) -> np.ndarray:
+    def load(self, point: OperatingState) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
-        densities = point.phase_densities(self.section.machine.pole_pairs, self.section.layout.phase_axis)
-        area = self.section.half_slot_area * self.section.half_slots_per_coil_side
-        ampere_turns = densities * point.packing_factor * area
-        return self.magnet_loads.sum(0) + ampere_turns @ self.phase_loads
+        return self.magnet_loads.sum(0) + point.current_load(self)
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
@@ -166,7 +217,7 @@ class FieldModel:
         """The rotor side of the gap, sheared so that the sliding circle moves by -rest [rad] against the rotor."""
         corners = self.section.mesh.p[:, self.section.mesh.t[:, self.rotor_band]]
         if rest != 0.0:
-            corners = _shear(corners, rest, self.section.machine)
+            corners = _shear(corners, rest, self.section.rotor_gap)
         return Elements.of(self.order, corners, self.elements.dofs[:, self.rotor_band])
 
     @cached_property
@@ -181,7 +232,7 @@ class FieldModel:
         """Of air, copper and magnets, per element of the mesh [m/H]."""
         reluctivity = np.full(self.section.mesh.nelements, 1 / MU_0)
         for m in range(self.section.magnets):
-            reluctivity[self.topology.regions[f"magnet_{m}"]] /= self.materials.magnet.recoil_permeability
+            reluctivity[self.topology.regions[f"magnet_{m}"]] /= self.materials.magnet_at(m).recoil_permeability
         return reluctivity
 
     def _join(self, turn: Turn) -> JoinedSystem:
@@ -193,7 +244,7 @@ class FieldModel:
 
     # ---- Newton -----------------------------------------------------------------------------------------------
 
-    def solve(self, point: OperatingPoint, start: FieldSolution | None = None) -> FieldSolution:
+    def solve(self, point: OperatingState, start: FieldSolution | None = None) -> FieldSolution:
         """Field of an operating point by Newton's method.
 
         start: a solution to start from, of this model or of one that shares its topology (a neighbouring current,
@@ -204,7 +255,7 @@ class FieldModel:
         with one_thread():
             return self._solve(point, self.load(point), start)
 
-    def _solve(self, point: OperatingPoint, load: np.ndarray, start: FieldSolution | None) -> FieldSolution:
+    def _solve(self, point: OperatingState, load: np.ndarray, start: FieldSolution | None) -> FieldSolution:
         began = process_time()
         coarse = self._coarse_solution(point, load, start)
         problem = _Problem(self, point, load)
@@ -218,7 +269,7 @@ class FieldModel:
         )
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began, coarse)
 
-    def _coarse_solution(self, point: OperatingPoint, load: np.ndarray, start: FieldSolution | None):
+    def _coarse_solution(self, point: OperatingState, load: np.ndarray, start: FieldSolution | None):
         """The same problem with linear elements, None where they are the elements of this model."""
         if self.order is LINEAR:
             return None
@@ -232,7 +283,7 @@ class FieldModel:
         refined = refine_order(self.topology.facets, change)
         return refined if start is None else start.a + refined
 
-    def residual(self, point: OperatingPoint, a: np.ndarray) -> np.ndarray:
+    def residual(self, point: OperatingState, a: np.ndarray) -> np.ndarray:
         """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
         problem = _Problem(self, point, self.load(point))
         return problem.residual(problem.free_values(a))
@@ -254,7 +305,7 @@ class FieldModel:
 class _Problem:
     """One operating point of a model in terms of its free unknowns u (m,)."""
 
-    def __init__(self, model: FieldModel, point: OperatingPoint, load: np.ndarray):
+    def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray):
         turn = model.unknowns.turn(point.angle)
         self.model, self.system = model, model._join(turn)
         self.column, self.sign = model.unknowns.turned(turn.edges)
@@ -314,10 +365,20 @@ class TangentSystem:
         return self.problem.expand(self.system.solve(reduced))
 
 
-def _shear(corners: np.ndarray, rest: float, machine) -> np.ndarray:
+def _check_magnets(section: CrossSection, materials: MachineMaterials) -> None:
+    unknown = [number for number, _ in materials.other_magnets if not 0 <= number < section.machine.poles]
+    if unknown:
+        raise GeometryError(f"there is no magnet {unknown[0]}: they are numbered from 0 to {section.machine.poles - 1}")
+    if materials.other_magnets and section.sectors > 1:
+        raise GeometryError(
+            f"magnets that differ break the symmetry of the machine, but 1/{section.sectors} of it is meshed: "
+            "mesh the whole machine (mesh_cross_section(..., whole=True))"
+        )
+
+
+def _shear(corners: np.ndarray, rest: float, gap: GapHalf) -> np.ndarray:
     """Turn points (2, 3, E) of the rotor-side gap by -rest in proportion to their height above the rotor."""
     x, y = corners
     radius = np.hypot(x, y)
-    height = (radius - machine.rotor_outer_radius) / (machine.mid_gap_radius - machine.rotor_outer_radius)
-    angle = np.arctan2(y, x) - rest * np.clip(height, 0.0, 1.0)
+    angle = np.arctan2(y, x) - rest * np.clip(1 - gap.height(corners), 0.0, 1.0)
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)])

@@ -15,7 +15,7 @@ from typing import Callable, Protocol
 
 import numpy as np
 
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.model import FieldModel, FieldSolution, OperatingState
 
 Reader = Callable[[FieldSolution], np.ndarray]
 
@@ -25,7 +25,7 @@ class Variation(Protocol):
 
     step: float
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingPoint]: ...
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]: ...
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
@@ -41,7 +41,7 @@ def sensitivities(solution: FieldSolution, variations: dict[str, Variation], rea
 
 
 # (change, model, point) on both sides of the solution
-_Ends = tuple[tuple[float, FieldModel, OperatingPoint], tuple[float, FieldModel, OperatingPoint]]
+_Ends = tuple[tuple[float, FieldModel, OperatingState], tuple[float, FieldModel, OperatingState]]
 
 
 def _both_ways(solution: FieldSolution, variation: Variation) -> _Ends:

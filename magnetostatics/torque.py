@@ -1,4 +1,4 @@
-"""Torque per metre of the whole machine by two independent routes."""
+"""Torque per metre of the whole machine by two independent routes, and the magnetic pull on its rotor."""
 
 from __future__ import annotations
 
@@ -15,22 +15,39 @@ def arkkio_torque(solution: FieldSolution) -> float:
     T/l = 1/(mu_0 (r_o - r_i)) integral over the ring of r B_r B_phi dS
     The ring ends at the sliding circle: the rotor half of the gap is sheared when the rotor stands between two nodes,
     the stator half keeps its mesh at every angle, so the torque over the angle is free of mesh noise (to 0.03 %).
+    Between a sliding circle and a bore that are not concentric it is the same average over the circles of ``GapHalf``.
+    The torque counts about the axis of rotation.
     Source: Arkkio 1987; any ring gives the same when the field is exact, and is far less sensitive than one contour.
     """
+    ring, density = gap_force_density(solution)
+    x, y = ring.points
+    return float(solution.model.section.sectors * ((x * density[1] - y * density[0]) * ring.weights).sum())
+
+
+def magnetic_pull(solution: FieldSolution) -> np.ndarray:
+    """Force of the stator on the rotor (2,) [N/m], x and y in the frame of the stator.
+
+    F/l = integral over the stator half of the gap of sigma . grad h dS, the stress averaged over all circles between
+    sliding circle and bore, as in ``arkkio_torque``. Zero in a machine of two or more sectors: they balance.
+    """
+    if solution.model.section.sectors > 1:
+        return np.zeros(2)
+    ring, density = gap_force_density(solution)
+    return (density * ring.weights).sum(axis=(1, 2))
+
+
+def gap_force_density(solution: FieldSolution) -> tuple[Elements, np.ndarray]:
+    """Stator half of the gap, and at its quadrature points (2, Q, E) the share in the force on the rotor [N/m^3]:
+
+        f = sigma . grad h,  sigma = (B B^T - |B|^2/2 I)/mu_0,  h from 0 on the sliding circle to 1 on the bore
+    """
     model = solution.model
-    section = model.section
-    gap = section.mesh.subdomains["gap"]
+    gap = model.section.mesh.subdomains["gap"]
     ring = model.elements.take(np.setdiff1d(gap, model.rotor_band, assume_unique=True))
-    depth = section.machine.stator_inner_radius - section.machine.mid_gap_radius
-    return float(section.sectors * _stress_moment(ring, solution.a) / (MU_0 * depth))
-
-
-def _stress_moment(elements: Elements, a: np.ndarray) -> float:
-    """integral r B_r B_phi dS, with B = (dA/dy, -dA/dx)."""
-    dx, dy = elements.gradient(a)
-    x, y = elements.points
-    times_radial, times_tangential = x * dy - y * dx, -(x * dx + y * dy)  # r B_r, r B_phi
-    return (times_radial * times_tangential / np.hypot(x, y) * elements.weights).sum()
+    dx, dy = ring.gradient(solution.a)
+    b = np.stack([dy, -dx])
+    upwards = model.section.stator_gap.gradient(ring.points)
+    return ring, (b * (b * upwards).sum(0) - (b * b).sum(0) / 2 * upwards) / MU_0
 
 
 def maxwell_torque(solution: FieldSolution) -> float:

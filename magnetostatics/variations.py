@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Callable
 
+from geometry.cross_section import CrossSection
 from geometry.machine import Machine
 from geometry.morph import Morpher
-from magnetostatics.model import FieldModel, OperatingPoint
+from magnetostatics.currents import PhaseCurrents
+from magnetostatics.local_steel import with_law
+from magnetostatics.model import FieldModel, MachineMaterials, OperatingPoint, OperatingState
+from materials.altered_steel import ScaledReluctivity, ScaledSaturation, stacked
 from materials.reluctivity import Reluctivity
 
 
@@ -17,10 +21,9 @@ class Remanence:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
-        magnet = model.materials.magnet
-        changed = replace(magnet, remanence=magnet.remanence + change)
-        return model.like(materials=replace(model.materials, magnet=changed)), point
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        materials = model.materials.with_magnets(lambda m: replace(m, remanence=m.remanence + change))
+        return model.like(materials=materials), point
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,28 @@ class RecoilPermeability:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
-        magnet = model.materials.magnet
-        changed = replace(magnet, recoil_permeability=magnet.recoil_permeability + change)
-        return model.like(materials=replace(model.materials, magnet=changed)), point
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        materials = model.materials.with_magnets(
+            lambda m: replace(m, recoil_permeability=m.recoil_permeability + change)
+        )
+        return model.like(materials=materials), point
+
+
+@dataclass(frozen=True)
+class OneMagnet:
+    """A property of one magnet of a whole machine, by the name of its field in ``Magnet``.
+
+    name: ``remanence`` [T], ``recoil_permeability`` or ``axis_error`` [rad]
+    """
+
+    number: int
+    name: str = "remanence"
+    step: float = 1e-4
+
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        magnet = model.materials.magnet_at(self.number)
+        changed = replace(magnet, **{self.name: getattr(magnet, self.name) + change})
+        return model.like(materials=model.materials.with_magnet(self.number, changed)), point
 
 
 @dataclass(frozen=True)
@@ -61,34 +82,49 @@ class SteelStrength:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
-        m = model.materials
-        steels = ScaledReluctivity(m.stator_steel, 1 + change), ScaledReluctivity(m.rotor_steel, 1 + change)
-        return model.like(materials=replace(m, stator_steel=steels[0], rotor_steel=steels[1])), point
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        return _with_steels(model, lambda law: ScaledReluctivity(law, 1 + change)), point
 
 
 @dataclass(frozen=True)
-class ScaledReluctivity(Reluctivity):
-    """Another law with H multiplied by a factor at every flux density."""
+class SaturationPolarisation:
+    """Scale of the saturation polarisation of both steels: 0.01 means one per cent more."""
 
-    law: Reluctivity
-    factor: float
+    step: float = 1e-4
 
-    def nu(self, b2):
-        return self.factor * self.law.nu(b2)
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        return _with_steels(model, lambda law: ScaledSaturation(law, 1 + change)), point
 
-    def nu_and_derivative(self, b2):
-        nu, slope = self.law.nu_and_derivative(b2)
-        return self.factor * nu, self.factor * slope
 
-    def field_strength(self, b):
-        return self.factor * self.law.field_strength(b)
+@dataclass(frozen=True)
+class StackingFactor:
+    """Share of the steel in both stacks, from a solid one on: -0.03 is a stacking factor of 0.97 times the present."""
 
-    def flux_density(self, h):
-        return self.law.flux_density(h / self.factor)
+    step: float = 1e-4
 
-    def energy_density(self, b):
-        return self.factor * self.law.energy_density(b)
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        return _with_steels(model, lambda law: stacked(law, 1 + change)), point
+
+
+def _with_steels(model: FieldModel, change: Callable[[Reluctivity], Reluctivity]) -> FieldModel:
+    m = model.materials
+    steels = with_law(m.stator_steel, change), with_law(m.rotor_steel, change)
+    return model.like(materials=replace(m, stator_steel=steels[0], rotor_steel=steels[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Materials:
+    """Anything that changes the materials.
+
+    change: (materials of the solution, amount) -> materials, for example
+        ``lambda m, d: replace(m, stator_steel=CutEdge(steel, 0.5e-3, 0.3 + d))``
+    """
+
+    change: Callable[[MachineMaterials, float], MachineMaterials]
+    step: float
+
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        return model.like(materials=self.change(model.materials, change)), point
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,5 +139,46 @@ class Dimension:
     machine: Callable[[float], Machine]
     step: float = 1e-6  # m
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float):
         return model.like(self.morpher.to(self.machine(change))), point
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Anything that moves nodes, defects of one machine among them.
+
+    section: change -> cross-section on the same triangles, for example
+        ``lambda d: morpher.to(machine, [StaticEccentricity(0.1e-3 + d, 0.3)])``
+    """
+
+    section: Callable[[float], CrossSection]
+    step: float = 1e-6  # m or rad
+
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        return model.like(self.section(change)), point
+
+
+@dataclass(frozen=True)
+class PhaseCurrent:
+    """Current of one phase of ``PhaseCurrents`` [A]."""
+
+    phase: int  # 0 A, 1 B, 2 C
+    step: float = 1e-2
+
+    def at(self, model: FieldModel, point: PhaseCurrents, change: float):
+        currents = tuple(i + change * (k == self.phase) for k, i in enumerate(point.currents))
+        return model, replace(point, currents=currents)
+
+
+@dataclass(frozen=True)
+class CoilTurns:
+    """Turns of one coil, relative to those of the design; a whole machine."""
+
+    coil: int  # its index in the winding
+    step: float = 1e-4
+
+    def at(self, model: FieldModel, point: OperatingState, change: float):
+        layout = model.section.layout
+        now = next(coil.turns for coil in layout.coils if coil.index == self.coil)
+        section = replace(model.section, layout=layout.with_turns({self.coil: now + change}))
+        return model.like(section), point

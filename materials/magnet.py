@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import isfinite
 
 from materials.errors import MaterialError
 from units import MU_0
@@ -19,17 +20,18 @@ class Magnet:
     """B = B_r(T) + mu_0 mu_r H,   B_r(T) = B_r (1 + alpha (T - T_ref)).
 
     Valid between about -40 degC and the maker's working temperature, and above the knee of the demagnetisation curve:
-    irreversible loss is not in this law.
+    irreversible loss is not in this law. A remanence of zero is a magnet that has lost it, or was never magnetised.
     """
 
     remanence: float  # B_r at the reference temperature [T]
     recoil_permeability: float = 1.05  # mu_r; 1.05 for NdFeB, the thesis's field model takes 1.0
     temperature_coefficient: float = NDFEB_REMANENCE_COEFFICIENT  # alpha [1/K]
     reference_temperature: float = ROOM_TEMPERATURE  # T_ref [degC]
+    axis_error: float = 0.0  # of the direction of magnetisation, counter-clockwise from the drawn one [rad]
 
     def __post_init__(self):
-        if not self.remanence > 0:
-            raise MaterialError(f"a magnet's remanence must be positive, found {self.remanence:g} T")
+        if not (isfinite(self.remanence) and self.remanence >= 0):
+            raise MaterialError(f"a magnet's remanence must be zero or more, found {self.remanence:g} T")
         if not self.recoil_permeability >= SMALLEST_RECOIL:
             raise MaterialError(f"a recoil permeability is 1 or more, found {self.recoil_permeability:g}")
 

@@ -14,6 +14,10 @@ ALLOWED = {
     "electrical": set(),
     "losses": {"magnetostatics", "materials", "geometry", "electrical"},
     "drivetrain": {"electrical"},
+    "gearbox": set(),
+    "vehicle": {"drivetrain"},
+    "effects": {"materials", "geometry"},
+    "workbench": {"effects", "magnetostatics", "geometry", "materials", "electrical", "figures"},
     "study": {"geometry", "materials", "electrical", "drivetrain"},
     "figures": {"geometry", "magnetostatics"},
     "pipeline": {
@@ -26,6 +30,10 @@ ALLOWED = {
         "electrical",
         "drivetrain",
         "losses",
+        "gearbox",
+        "vehicle",
+        "effects",
+        "workbench",
     },
 }
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from math import log, sqrt
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -83,8 +82,8 @@ def test_default_tolerance_is_enough():
 
 
 def without_magnets(steel=STEEL):
-    """Materials with no remanence; ``Magnet`` itself refuses that."""
-    return MachineMaterials(steel, steel, SimpleNamespace(remanence=0.0, recoil_permeability=1.0))
+    """Materials with no remanence."""
+    return MachineMaterials(steel, steel, Magnet(remanence=0.0, recoil_permeability=1.0))
 
 
 def test_no_sources_no_field():

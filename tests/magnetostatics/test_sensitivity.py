@@ -19,6 +19,8 @@ from magnetostatics.variations import (
     Dimension,
     RecoilPermeability,
     Remanence,
+    SaturationPolarisation,
+    StackingFactor,
     SteelStrength,
 )
 from materials.library import load_steel
@@ -69,6 +71,8 @@ PHYSICAL = {
     "current density": CurrentDensity(),
     "current angle": CurrentAngle(1e-5),
     "steel": SteelStrength(),
+    "saturation": SaturationPolarisation(1e-5),
+    "stacking factor": StackingFactor(1e-5),
 }
 
 

@@ -27,10 +27,14 @@ def test_coercive_field_closes_the_recoil_line():
     assert magnet.remanence - MU_0 * magnet.recoil_permeability * magnet.coercive_field == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(("remanence", "recoil_permeability"), [(0.0, 1.05), (-1.3, 1.05), (1.3, 0.9)])
+@pytest.mark.parametrize(("remanence", "recoil_permeability"), [(-1.3, 1.05), (float("nan"), 1.05), (1.3, 0.9)])
 def test_impossible_magnets_are_refused(remanence, recoil_permeability):
     with pytest.raises(MaterialError):
         Magnet(remanence, recoil_permeability)
+
+
+def test_a_magnet_may_have_lost_its_remanence():
+    assert Magnet(0.0).at(100.0).coercive_field == 0.0
 
 
 def test_no_magnet_beyond_the_linear_law():

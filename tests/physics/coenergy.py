@@ -9,38 +9,22 @@ permanent magnets included: they count as a fixed sheet of ampere-turns round a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from magnetostatics.currents import PhaseCurrents
 from magnetostatics.elements import Elements
+from magnetostatics.local_steel import law_in
 from magnetostatics.model import FieldModel, FieldSolution
 from units import MU_0
 
 
-@dataclass(frozen=True)
-class PhaseCurrents:
-    """An operating point with any three currents: ampere-turns of a coil of each phase [A], at a rotor angle [rad]."""
-
-    angle: float
-    ampere_turns: tuple[float, float, float]
-    coil_side_area: float
-    packing_factor: float = 1.0
-
-    def phase_densities(self, pole_pairs, phase_axis):
-        return np.array(self.ampere_turns) / self.coil_side_area
-
-
 def phase_currents(model: FieldModel, angle: float, ampere_turns) -> PhaseCurrents:
-    area = model.section.half_slot_area * model.section.half_slots_per_coil_side
-    return PhaseCurrents(angle, tuple(ampere_turns), area)
+    return PhaseCurrents(angle, tuple(ampere_turns))
 
 
 def ampere_turns_of(model: FieldModel, point) -> np.ndarray:
     """Ampere-turns of one coil of phases A, B, C [A] of any operating point."""
-    area = model.section.half_slot_area * model.section.half_slots_per_coil_side
-    machine, axis = model.section.machine, model.section.layout.phase_axis
-    return point.phase_densities(machine.pole_pairs, axis) * point.packing_factor * area
+    return point.ampere_turns(model.section)
 
 
 def coenergy(solution: FieldSolution) -> float:
@@ -58,8 +42,9 @@ def _half_square(elements: Elements, x, y, nu=1 / MU_0) -> float:
 def _iron(solution) -> float:
     model, materials = solution.model, solution.model.materials
     total = 0.0
-    for name, law in (("stator_iron", materials.stator_steel), ("rotor_iron", materials.rotor_steel)):
+    for name, steel in (("stator_iron", materials.stator_steel), ("rotor_iron", materials.rotor_steel)):
         elements = model.elements.take(model.section.mesh.subdomains[name])
+        law = law_in(steel, model.section, name)
         total += (law.energy_density(np.hypot(*elements.gradient(solution.a))) * elements.weights).sum()
     return total
 
@@ -76,10 +61,9 @@ def _air(solution) -> float:
 
 def _magnet(solution, number: int) -> float:
     model = solution.model
-    machine, magnet = model.section.machine, model.materials.magnet
+    magnet = model.materials.magnet_at(number)
     elements = model.elements.take(model.section.mesh.subdomains[f"magnet_{number}"])
-    x, y = elements.points
-    direction = machine.magnetisation.direction_angle(np.arctan2(y, x), number * machine.pole_pitch)
+    direction = model.section.magnetisation_angle(number, elements.points) + magnet.axis_error
     remanence = (-1) ** number * magnet.remanence
     dx, dy = elements.gradient(solution.a)
     excess = dy - remanence * np.cos(direction), -dx - remanence * np.sin(direction)  # B = (dA/dy, -dA/dx)

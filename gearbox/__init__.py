@@ -1,0 +1,1 @@
+"""Planetary gearbox with real teeth: involute geometry, strength after ISO 6336, search, mass and efficiency."""

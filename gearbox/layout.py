@@ -1,0 +1,102 @@
+"""Axial arrangement of the actuator: lever side, stages from the slow to the fast one, machine, sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gearbox.errors import GearError
+from gearbox.train import GearTrain
+from units import MILLIMETRE
+
+
+@dataclass(frozen=True)
+class MachineEnvelope:
+    """The machine as the assembly sees it: stator, rotor and shaft radius, active length, one end winding [m]."""
+
+    stator_outer_radius: float
+    rotor_outer_radius: float
+    shaft_radius: float
+    active_length: float
+    end_winding_length: float
+
+
+@dataclass(frozen=True)
+class Housing:
+    """What the casing adds: radial wall, lever side (two bearings, spline, lock nut), bearing seats either side of the
+    machine, cover with the position sensor [m]."""
+
+    wall: float
+    lever_side: float
+    bearing_seat: float
+    sensor_cover: float
+
+
+@dataclass(frozen=True)
+class Part:
+    """A cylinder of the axial section: name, kind, from where to where along the axis, inner and outer radius [m]."""
+
+    name: str
+    kind: str
+    start: float
+    length: float
+    inner_radius: float
+    outer_radius: float
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Parts from the lever to the sensor; the axis starts at the outer face of the lever side."""
+
+    parts: tuple[Part, ...]
+    length: float
+    diameter: float
+
+
+def actuator_layout(train: GearTrain, machine: MachineEnvelope, housing: Housing) -> Layout:
+    """The parts in line. Raises GearError when gearbox and machine do not fit the same casing."""
+    inner = max(machine.stator_outer_radius, train.envelope_diameter / 2)
+    if machine.rotor_outer_radius >= machine.stator_outer_radius:
+        raise GearError(
+            f"the rotor radius {machine.rotor_outer_radius / MILLIMETRE:g} mm must be below the stator radius "
+            f"{machine.stator_outer_radius / MILLIMETRE:g} mm"
+        )
+    parts, at = [], housing.lever_side
+    for number, stage in enumerate(train.stages, start=1):
+        parts += _stage_parts(train, stage, number, at)
+        at += train.construction.stage_length(stage.face_width)
+    start = at + housing.bearing_seat
+    parts += _machine_parts(machine, start)
+    at = start + machine.active_length + 2 * machine.end_winding_length + housing.bearing_seat
+    length = at + housing.sensor_cover
+    shaft = Part("rotor shaft", "shaft", start - housing.bearing_seat, at - start + housing.bearing_seat, 0.0,
+                 machine.shaft_radius)  # fmt: skip
+    lever = Part("input shaft", "shaft", 0.0, housing.lever_side, 0.0, 0.4 * inner)
+    casing = Part("casing", "casing", 0.0, length, inner, inner + housing.wall)
+    return Layout((casing, lever, shaft, *parts), length, 2 * (inner + housing.wall))
+
+
+def _stage_parts(train, stage, number, start):
+    build, gears, width = train.construction, stage.gears, stage.face_width
+    thick, orbit = build.flange_thickness(width), gears.centre_distance
+    pin = build.bore_fraction * gears.planet.root_radius
+    teeth, rim = start + thick + build.axial_gap, orbit + pin * (1 + build.flange_margin)
+    rows = (
+        ("ring", "ring", teeth, width, gears.ring.tip_radius, train.envelope_diameter / 2),
+        ("sun", "sun", teeth, start + build.stage_length(width) - teeth, 0.0, gears.sun.tip_radius),
+        ("planet", "planet", teeth, width, orbit - gears.planet.tip_radius, orbit + gears.planet.tip_radius),
+        ("pin", "carrier", start, build.stage_length(width), orbit - pin, orbit + pin),
+        ("carrier", "carrier", start, thick, gears.sun.tip_radius, rim),
+        ("carrier", "carrier", teeth + width + build.axial_gap, thick, gears.sun.tip_radius, rim),
+    )
+    return [Part(f"{name} {number}", *rest) for name, *rest in rows]
+
+
+def _machine_parts(machine, start):
+    stack, end = start + machine.end_winding_length, machine.end_winding_length
+    slots = (machine.rotor_outer_radius, machine.stator_outer_radius)
+    return [
+        Part("stator", "stator", stack, machine.active_length, *slots),
+        Part("end winding", "winding", start, end, *slots),
+        Part("end winding", "winding", stack + machine.active_length, end, *slots),
+        Part("rotor", "rotor", stack, machine.active_length, machine.shaft_radius, machine.rotor_outer_radius),
+    ]

@@ -1,0 +1,57 @@
+"""Another machine on moved triangles against the same machine meshed anew: torque, cogging and flux linkage."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from geometry.machine import GeometryError
+from geometry.morph import Morpher
+from magnetostatics.flux_linkage import phase_flux_linkage
+from magnetostatics.model import OperatingPoint
+from magnetostatics.torque import arkkio_torque, maxwell_torque
+from tests.magnetostatics.reference_machine import SWEEP, TIGHT, model_of, reference_machine, section_of
+from units import DEGREE
+
+RATED, NO_LOAD_FLUX = 55.5, 0.0295
+POINTS = [OperatingPoint(angle * DEGREE, j) for angle in (-19.7, -16.6) for j in (6e6 * sqrt(2), 0.0)]
+# Dimension [m], and how far moved and new mesh may be apart as a share of the rated torque, by ring and by circle
+CHANGES = {
+    "airgap -0.1": ({"airgap": 0.4e-3}, (5e-4, 5e-4)),
+    "airgap +0.1": ({"airgap": 0.6e-3}, (5e-4, 5e-4)),
+    "rotor radius -0.3": ({"rotor_outer_radius": 15.4e-3}, (5e-4, 5e-4)),
+    "rotor radius +0.3": ({"rotor_outer_radius": 16.0e-3}, (5e-4, 5e-4)),
+    "magnet length +0.3": ({"magnet_length": 2.8e-3}, (5e-4, 5e-4)),
+    "tooth width +0.5": ({"tooth_width": 6.0e-3}, (1e-3, 1e-3)),
+    "slot opening +0.5": ({"slot_opening": 2.5e-3}, (4e-3, 1e-3)),  # sheared under the shoe by as much as half the gap
+}
+
+
+@cache
+def morpher():
+    return Morpher(section_of(reference_machine()))
+
+
+def results(model):
+    solutions = [model.solve(point) for point in POINTS]
+    torques = np.array([[arkkio_torque(s), maxwell_torque(s)] for s in solutions])
+    return torques / RATED, np.array([phase_flux_linkage(s) for s in solutions]) / NO_LOAD_FLUX
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_moved_and_new_mesh_agree(name):
+    dimensions, tolerance = CHANGES[name]
+    machine = replace(reference_machine(), **dimensions)
+    moved = model_of(reference_machine(), settings=TIGHT).like(morpher().to(machine))
+    found, expected = results(moved), results(model_of(machine, SWEEP, settings=TIGHT))
+    assert (np.abs(found[0] - expected[0]).max(axis=0) < tolerance).all()
+    assert np.abs(found[1] - expected[1]).max() < 5e-4
+
+
+def test_a_gap_that_closes_is_refused():
+    with pytest.raises(GeometryError):
+        morpher().to(replace(reference_machine(), airgap=0.0))

@@ -1,0 +1,21 @@
+"""How strongly a person feels a vertical vibration: weighting W_k of ISO 2631-1, as a filter of third order."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.signal import bilinear, lfilter
+
+# Numerator and denominator in descending powers of s, thesis eq. 3.23 (fit by Zuo and Nayfeh).
+WEIGHTING = ((80.03, 989.0, 0.02108), (1.0, 78.92, 2412.0, 5614.0))
+
+
+def weighting_gain(frequency):
+    """|H_2631| at these frequencies [Hz]; within 15 % of the standard's W_k between 0.5 and 2 Hz."""
+    s = 2j * np.pi * np.asarray(frequency, dtype=float)
+    numerator, denominator = WEIGHTING
+    return np.abs(np.polyval(numerator, s) / np.polyval(denominator, s))
+
+
+def weighted_acceleration(acceleration: np.ndarray, step: float) -> np.ndarray:
+    """Acceleration as it is felt, from rest; samples along the last axis, step between them [s]."""
+    return lfilter(*bilinear(*WEIGHTING, fs=1 / step), acceleration, axis=-1)

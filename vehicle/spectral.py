@@ -1,0 +1,175 @@
+"""Indices of the linear quarter car on a random road: stationary, from rest, and over many simulated roads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Callable, Sequence
+
+import numpy as np
+from scipy.linalg import expm, solve_continuous_lyapunov
+
+from vehicle.errors import VehicleError
+from vehicle.models import QuarterCar
+from vehicle.quarter_car import Feedback, LinearRide, linear_ride
+from vehicle.road import NOISE_INTENSITY, IsoRoad
+
+
+@dataclass(frozen=True)
+class RideIndices:
+    """Root mean squares of a ride, and the mean power into the actuator.
+
+    comfort: weighted acceleration [m/s^2]; road_holding: dimensionless; stroke [m], force [N], velocity [m/s];
+    mean_power: E[F_act v_act] [W]
+    """
+
+    comfort: float
+    road_holding: float
+    stroke: float
+    force: float
+    velocity: float
+    mean_power: float
+
+
+def ride_of(car: QuarterCar, feedback: Feedback, road: IsoRoad, speed: float) -> LinearRide:
+    """Closed loop on this road at this speed [m/s]."""
+    return linear_ride(car, feedback, cutoff=road.cutoff(speed), noise_gain=road.noise_gain(speed))
+
+
+def stationary_indices(ride: LinearRide) -> RideIndices:
+    """Indices far from the start, from the covariance P of A P + P A' + 0.5 B B' = 0.
+
+    Raises VehicleError for a loop that is not stable: it has no stationary ride, see ``indices_from_rest``.
+    """
+    slowest = np.linalg.eigvals(ride.a).real.max()
+    if not slowest < 0:
+        raise VehicleError(
+            f"the closed loop is not stable (slowest pole {slowest:.3g} /s): it has no stationary indices; change the "
+            "control law or ask for the indices from rest"
+        )
+    noise = NOISE_INTENSITY * np.outer(ride.b, ride.b)
+    return _indices(ride, solve_continuous_lyapunov(ride.a, -noise))
+
+
+def indices_from_rest(ride: LinearRide, duration: float, step: float = 5e-3) -> RideIndices:
+    """Expected mean squares over a run of this duration [s] that begins at rest on a flat start.
+
+    step: of the average over time [s]; the covariance at each instant is exact
+    """
+    transition = expm(ride.a * step)
+    growth = _covariance_of_step(ride, step)
+    covariance, mean = np.zeros_like(ride.a), np.zeros_like(ride.a)
+    steps = round(duration / step)
+    for _ in range(steps):
+        following = transition @ covariance @ transition.T + growth
+        mean += (covariance + following) / (2 * steps)
+        covariance = following
+    return _indices(ride, mean)
+
+
+def _covariance_of_step(ride: LinearRide, step: float) -> np.ndarray:
+    """Integral of exp(A s) 0.5 B B' exp(A' s) over a step (van Loan)."""
+    size = len(ride.a)
+    noise = NOISE_INTENSITY * np.outer(ride.b, ride.b)
+    block = expm(np.block([[-ride.a, noise], [np.zeros_like(ride.a), ride.a.T]]) * step)
+    return block[size:, size:].T @ block[:size, size:]
+
+
+def _indices(ride: LinearRide, covariance: np.ndarray) -> RideIndices:
+    def root(row):
+        return sqrt(max(row @ covariance @ row, 0.0))
+
+    return RideIndices(
+        comfort=root(ride.comfort),
+        road_holding=root(ride.road_holding),
+        stroke=root(ride.stroke),
+        force=root(ride.force),
+        velocity=root(ride.velocity),
+        mean_power=float(ride.force @ covariance @ ride.velocity),
+    )
+
+
+def mean_power_theorem(tyre_stiffness: float, road: IsoRoad, speed: float) -> float:
+    """Mean power that a white road gives to a tyre, and any stabilising control without energy source dissipates [W].
+
+    E[P] = 1/2 k_u (2 pi)^2 G_r v 1/2: half the stiffness times the intensity of the road's velocity
+    """
+    return tyre_stiffness / 2 * NOISE_INTENSITY * road.noise_gain(speed) ** 2
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleIndices:
+    """Indices of many simulated roads as in ``RideIndices``, arrays (seeds,); stroke_peak: largest magnitude [m]."""
+
+    comfort: np.ndarray
+    road_holding: np.ndarray
+    stroke_peak: np.ndarray
+    mean_power: np.ndarray
+
+
+def ensemble_indices(ride: LinearRide, duration: float, seeds: Sequence[int], sample_time: float) -> EnsembleIndices:
+    """The linear ride simulated from rest over one road a seed, exactly between the samples.
+
+    duration [s]; sample_time: the noise is held so long [s]
+    """
+    size, steps = len(ride.a), round(duration / sample_time)
+    held = expm(np.block([[ride.a, ride.b[:, None]], [np.zeros((1, size + 1))]]) * sample_time)
+    transition, input_column = held[:size, :size], held[:size, size:]
+    outputs = np.array([ride.comfort, ride.road_holding, ride.stroke, ride.force, ride.velocity])
+    noise = _noise(seeds, steps, sample_time)
+    state, squares = np.zeros((size, len(seeds))), np.zeros((2, len(seeds)))
+    peak, work = np.zeros(len(seeds)), np.zeros(len(seeds))
+    for k in range(steps):
+        state = transition @ state + input_column * noise[k]
+        seen = outputs @ state
+        squares += seen[:2] ** 2
+        np.maximum(peak, np.abs(seen[2]), out=peak)
+        work += seen[3] * seen[4]
+    comfort, holding = np.sqrt(squares / steps)
+    return EnsembleIndices(comfort, holding, peak, work / steps)
+
+
+def _noise(seeds: Sequence[int], steps: int, sample_time: float) -> np.ndarray:
+    """Held white noise, (steps, seeds)."""
+    columns = [np.random.default_rng(seed).standard_normal(steps) for seed in seeds]
+    return np.stack(columns, axis=1) * sqrt(NOISE_INTENSITY / sample_time)
+
+
+@dataclass(frozen=True, eq=False)
+class Carpet:
+    """Indices over two tuning parameters, (first, second); NaN where there are none."""
+
+    first: np.ndarray
+    second: np.ndarray
+    comfort: np.ndarray
+    road_holding: np.ndarray
+    stroke: np.ndarray
+
+    def best(self, index: np.ndarray) -> tuple[float, float, float]:
+        """Both parameters where an index, ``comfort`` or ``road_holding``, is least, and its value there."""
+        i, j = np.unravel_index(np.nanargmin(index), index.shape)
+        return float(self.first[i]), float(self.second[j]), float(index[i, j])
+
+
+def carpet(
+    car: QuarterCar,
+    road: IsoRoad,
+    speed: float,
+    law: Callable[[float, float], Feedback],
+    first: np.ndarray,
+    second: np.ndarray,
+    indices: Callable[[LinearRide], RideIndices] = stationary_indices,
+) -> Carpet:
+    """A control law over its two tuning parameters (thesis Figs 4.13-4.17).
+
+    law: the control law of a first and a second parameter; indices: how a ride is judged, refusing with VehicleError
+    """
+    found = np.full((3, len(first), len(second)), np.nan)
+    for i, one in enumerate(first):
+        for j, other in enumerate(second):
+            try:
+                seen = indices(ride_of(car, law(one, other), road, speed))
+            except VehicleError:
+                continue  # stays NaN
+            found[:, i, j] = seen.comfort, seen.road_holding, seen.stroke
+    return Carpet(np.asarray(first), np.asarray(second), *found)
