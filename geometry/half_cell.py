@@ -129,7 +129,7 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
     d.point("shoe_axis", r_shoe, 0, 1.5 * in_tooth)
     d.point("shoe_slot", r_shoe, axis, in_tooth)
-    d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), 0.8 * in_tooth)
+    d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), 0.5 * in_tooth)
     d.point("bottom", r_sb, axis, in_tooth)
     d.point("outer_slot", r_so, axis, in_tooth)
     d.point("outer", r_so, 0, in_tooth)
