@@ -1,0 +1,215 @@
+"""Hides effects in a bench: draws the device, its tolerances, instruments and noise, and says what could be seen of it.
+
+A catalogue describes one kind of bench: what can be hidden in it, how it is laid out, and how its truth is simulated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any, Callable, Mapping, Protocol, Sequence
+
+import numpy as np
+
+from benchmarks.virtual_benches.case import Answer, Bench, Series
+from benchmarks.virtual_benches.instruments import Noise, readings
+
+FREE = 1e4  # prior size of a free effect, in units of one standard deviation of all data
+SMALL = (0.3, 3.0)  # chi2 of the one small effect that is left out of every model
+OUTSIDE = (30.0, 1000.0)  # chi2 that a truth outside the library keeps when the best single effect is fitted to it
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Something that may be hidden: size between low and high, log-uniform, of either sign where ``signed``."""
+
+    low: float
+    high: float
+    apply: Callable[[Any, float], Any]  # (state, size) -> state
+    signed: bool = False
+    alone: bool = False  # cannot be combined with every other effect
+
+    def size(self, rng: np.random.Generator) -> float:
+        size = float(np.exp(rng.uniform(np.log(self.low), np.log(self.high))))
+        return size * (float(rng.choice([-1.0, 1.0])) if self.signed else 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """One table as planned. conditions: what is logged (n,) of one repeat;  declared: size of u from the responses."""
+
+    file: str
+    kind: str
+    conditions: Mapping[str, np.ndarray]
+    u_random: Mapping[str, str]
+    declared: Callable[[Mapping[str, np.ndarray]], Mapping[str, np.ndarray]]
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A bench before anything is hidden. state: device and instruments in truth, at nominal."""
+
+    device: Mapping[str, object]
+    tolerance: Mapping[str, float]
+    systematic: Mapping[str, tuple[str, float]]
+    layouts: Sequence[Layout]
+    state: Any
+    repeats: int
+
+
+class Catalogue(Protocol):
+    name: str
+    effects: Mapping[str, Hidden]
+    outside: Mapping[str, Hidden]
+
+    def setup(self, rng: np.random.Generator) -> Setup: ...
+
+    def moved(self, setup: Setup, state: Any, name: str, z: float) -> Any:
+        """The state with a tolerance or systematic of the setup moved by z standard deviations."""
+
+    def simulate(self, setup: Setup, state: Any) -> list[dict[str, np.ndarray]]:
+        """Responses of every table, one repeat, free of random error and of drift."""
+
+    def drifts(self, state: Any) -> dict[str, float]:
+        """By how much a response column drifts from the first to the last row of each scan, SI."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Measures how far a change of the truth stands out of noise, tolerances and instruments."""
+
+    catalogue: Catalogue
+    setup: Setup
+    state: Any
+    noise: Noise
+
+    @cached_property
+    def declared(self) -> list[Mapping[str, np.ndarray]]:
+        """Declared uncertainties of every table at the nominal state."""
+        nominal = self.catalogue.simulate(self.setup, self.setup.state)
+        return [layout.declared(reference) for layout, reference in zip(self.setup.layouts, nominal)]
+
+    def visibility(self, changed: Any, sensitivities: np.ndarray, base: np.ndarray) -> float:
+        """chi2 that the change adds in the fitted repeats after tolerances and instruments took what they can."""
+        r = self.stacked(changed) - base
+        left = r - sensitivities @ np.linalg.solve(
+            np.eye(sensitivities.shape[1]) + sensitivities.T @ sensitivities, sensitivities.T @ r
+        )
+        return float(r @ left)
+
+    def stacked(self, state: Any) -> np.ndarray:
+        """All responses over their uncertainty; fitted repeats count as a smaller uncertainty."""
+        weight = np.sqrt(max(self.setup.repeats - 1, 1)) / self.noise.scale
+        tables = self.catalogue.simulate(self.setup, state)
+        parts = []
+        drifts = self.catalogue.drifts(state)
+        for responses, u in zip(tables, self.declared):
+            parts += [_drifted(responses[name], drifts.get(name, 0.0)) / u[name] * weight for name in responses]
+        return np.concatenate(parts)
+
+    def sensitivities(self, base: np.ndarray) -> np.ndarray:
+        names = [*self.setup.tolerance, *self.setup.systematic]
+        moved = [self.catalogue.moved(self.setup, self.state, name, 1.0) for name in names]
+        return np.stack([self.stacked(state) - base for state in moved], axis=1)
+
+    def signatures(self, base: np.ndarray) -> list[np.ndarray]:
+        """What each effect of the catalogue would do at its middle size, one column an effect."""
+        middle = {name: np.sqrt(hidden.low * hidden.high) for name, hidden in self.catalogue.effects.items()}
+        states = [hidden.apply(self.state, middle[name]) for name, hidden in self.catalogue.effects.items()]
+        return [(self.stacked(state) - base)[:, None] for state in states]
+
+
+def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = ()) -> tuple[Bench, Answer]:
+    """One blind case of a group from a seed; see ``case.Answer``.
+
+    wanted: names of what to hide instead of drawing it, for a story or a test
+    """
+    number = ("null", "single", "pair", "outside").index(group)
+    rng = np.random.default_rng([seed, number, sum(catalogue.name.encode())])
+    setup, noise = catalogue.setup(rng), Noise.drawn(rng)
+    state = setup.state
+    for name in [*setup.tolerance, *setup.systematic]:
+        state = catalogue.moved(setup, state, name, float(rng.standard_normal()))
+    judge = _Judge(catalogue, setup, state, noise)
+    base = judge.stacked(state)
+    sensitivities = judge.sensitivities(base)
+
+    def seen(changed):
+        return judge.visibility(changed, sensitivities, base)
+
+    def strange(changed, free):
+        """chi2 that is left when the best single effect, of any size and sign, has taken what it can."""
+        return min(judge.visibility(changed, np.hstack([sensitivities, s]), base) for s in free)
+
+    if group == "outside":
+        free = [FREE * s / np.linalg.norm(s) for s in judge.signatures(base)]
+        truth, answer = _outside(catalogue, seed, wanted, state, partial(strange, free=free), rng)
+    else:
+        truth, answer = _inside(catalogue, group, seed, wanted, state, seen, rng)
+    outside = [name for name in catalogue.outside if name != answer.outside]
+    with_it = judge.stacked(truth)  # a left-out effect is small beside what is hidden, which it may act on
+
+    def small(changed):
+        return judge.visibility(changed, sensitivities, with_it)
+
+    truth = _sized(catalogue.outside[rng.choice(outside)], truth, _log_uniform(SMALL, rng), small)[0]
+    bench = _measured(catalogue, setup, truth, noise, f"{catalogue.name}-{group}-{seed}", rng)
+    return bench, answer
+
+
+def _outside(catalogue, seed, wanted, state, seen, rng) -> tuple[Any, Answer]:
+    name = wanted[0] if wanted else str(rng.choice(list(catalogue.outside)))
+    truth, chi2 = _sized(catalogue.outside[name], state, _log_uniform(OUTSIDE, rng), seen)
+    return truth, Answer(catalogue.name, "outside", seed, outside=name, visibility={name: chi2})
+
+
+def _inside(catalogue, group, seed, wanted, state, seen, rng) -> tuple[Any, Answer]:
+    names = wanted or _chosen(catalogue.effects, {"null": 0, "single": 1, "pair": 2}[group], rng)
+    sizes = {name: catalogue.effects[name].size(rng) for name in names}
+    truth = state
+    for name, size in sizes.items():
+        truth = catalogue.effects[name].apply(truth, size)
+    visibility = {name: seen(catalogue.effects[name].apply(state, size)) for name, size in sizes.items()}
+    return truth, Answer(catalogue.name, group, seed, sizes, visibility=visibility)
+
+
+def _chosen(effects: Mapping[str, Hidden], count: int, rng: np.random.Generator) -> list[str]:
+    """Names of different effects, drawn alike; pairs only of those that can be combined."""
+    names = [name for name, hidden in effects.items() if count < 2 or not hidden.alone]
+    return [str(name) for name in rng.choice(names, count, replace=False)]
+
+
+def _sized(hidden: Hidden, state, chi2: float, seen) -> tuple[Any, float]:
+    """The state with the thing in it, at about the wanted visibility; chi2 grows with the square of a small size."""
+    size = hidden.size(np.random.default_rng(0))
+    for _ in range(2):
+        size *= float(np.clip(np.sqrt(chi2 / max(seen(hidden.apply(state, size)), 1e-12)), 1e-3, 30.0))
+    changed = hidden.apply(state, size)
+    return changed, seen(changed)
+
+
+def _log_uniform(between: tuple[float, float], rng: np.random.Generator) -> float:
+    return float(np.exp(rng.uniform(*np.log(between))))
+
+
+def _measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Bench:
+    """The truth as read by the instruments, all repeats; one scan of the bench drifts."""
+    answers = catalogue.simulate(setup, truth)
+    drifting = int(rng.integers(sum(len(responses) for responses in answers)))
+    series, channel = [], 0
+    for layout, responses in zip(setup.layouts, answers):
+        rows = len(next(iter(responses.values())))
+        repeat = np.repeat(np.arange(setup.repeats), rows)
+        read, declared = {}, layout.declared(responses)
+        for column, values in responses.items():
+            many = np.tile(_drifted(values, catalogue.drifts(truth).get(column, 0.0)), setup.repeats)
+            u = np.tile(declared[column], setup.repeats)
+            read[column] = readings(many, u, repeat, noise, channel == drifting, rng)
+            channel += 1
+        conditions = {key: np.tile(values, setup.repeats) for key, values in layout.conditions.items()}
+        series.append(Series(layout.file, layout.kind, repeat, conditions, read, layout.u_random))
+    return Bench(name, setup.device, setup.tolerance, setup.systematic, tuple(series))
+
+
+def _drifted(values: np.ndarray, drift: float) -> np.ndarray:
+    return values + drift * np.linspace(0.0, 1.0, len(values))

@@ -1,0 +1,28 @@
+"""Resistance rises with temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from effects.base import DesignEffect
+from effects.dq_design import DqMachine
+from effects.parameter import parameter
+from effects.prior import LogNormal
+from materials.conductor import COPPER
+
+
+@dataclass(frozen=True)
+class CopperDrift(DesignEffect):
+    """Resistance follows the measured winding temperature: R = R_ref (1 + coefficient (T_winding - T_ref))."""
+
+    title = "resistance rises with temperature"
+    looks_like = "copper loss and v_q at low speed rise with the winding temperature"
+    remedy = ("phase resistance hot and cold",)
+    designs = (DqMachine,)
+
+    coefficient: float = parameter(
+        0.0, "1/K", prior=LogNormal(COPPER.temperature_coefficient, 0.1), low=0.0, high=0.01, source="copper, IEC 60028"
+    )
+
+    def on_design(self, design):
+        return replace(design, copper_coefficient=design.copper_coefficient + self.coefficient)

@@ -1,0 +1,30 @@
+"""Cross saturation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from effects.law_effects import FluxEffect
+from effects.parameter import parameter
+from effects.prior import LogNormal
+
+
+@dataclass(frozen=True)
+class CrossSaturation(FluxEffect):
+    """Current of one axis takes permeability from the other: psi_d falls by k i_q^2, psi_q by 2 k i_d i_q.
+
+    Both from the co-energy -k i_d i_q^2, so that the flux linkages are reciprocal.
+    Source: Vagati et al., IEEE Trans. IA 36 (2000).
+    """
+
+    title = "cross saturation"
+    looks_like = "v_q falls with the square of i_q"
+    remedy = ("flux linkage over i_d and i_q", "back-EMF under q current")
+    model_error = 0.05
+
+    coefficient: float = parameter(
+        0.0, "Vs/A^2", prior=LogNormal(2e-6, 1.2), low=0.0, high=1e-2, source="some % of psi_m at rated current"
+    )
+
+    def flux(self, i_d, i_q, machine):
+        return -self.coefficient * i_q**2, -2.0 * self.coefficient * i_d * i_q

@@ -1,0 +1,39 @@
+"""Voltage drop of a rectifier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from effects.law_effects import CircuitEffect
+from effects.parameter import parameter
+from effects.prior import LogNormal
+
+
+@dataclass(frozen=True)
+class DiodeDrop(CircuitEffect):
+    """A rectifier keeps a constant voltage to itself, so that a small back-EMF drives no current.
+
+    left(u) = u + (sqrt((u - U)^2 + k^2) - sqrt((u + U)^2 + k^2)) / 2;   ideal: sign(u) max(|u| - U, 0)
+    Slope resistance of the diodes is another effect. Source: thesis section 5.2.1 (0.4 V), Sedra and Smith ch. 4.
+    """
+
+    title = "voltage drop of a rectifier"
+    looks_like = "no braking below a threshold of velocity, a constant loss of voltage above it"
+    remedy = ("slow force-velocity points at low shunt", "voltage on both sides of the rectifier")
+    model_error = 0.02
+
+    drop: float = parameter(
+        0.0, "V", prior=LogNormal(0.5, 1.0), low=0.0, high=5.0, source="0.4 V (thesis) to 1.4 V (silicon bridge)"
+    )
+    knee: float = parameter(
+        0.05, "V", prior=LogNormal(0.05, 0.7), low=1e-3, high=1.0, source="two diodes at 25 mV of thermal voltage"
+    )
+
+    def left(self, voltage, resistance):
+        return voltage + 0.5 * (np.hypot(voltage - self.drop, self.knee) - np.hypot(voltage + self.drop, self.knee))
+
+    @property
+    def is_null(self):
+        return self.drop == 0.0

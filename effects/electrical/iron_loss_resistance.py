@@ -1,0 +1,31 @@
+"""Iron loss."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from effects.base import DesignEffect
+from effects.dq_design import DqMachine
+from effects.parameter import parameter
+from effects.prior import LogNormal
+
+
+@dataclass(frozen=True)
+class IronLossResistance(DesignEffect):
+    """Iron loss as a resistance across the induced voltage: P_fe = 1.5 (omega psi)^2 / R_fe. The parameter is 1 / R_fe.
+
+    Source: Fernandez-Bernal et al., IEEE Trans. IA 37 (2001).
+    """
+
+    title = "iron loss"
+    looks_like = "drag torque in proportion to speed, more electrical power than copper and shaft account for"
+    remedy = ("no-load loss against speed", "drag with a dummy without magnets")
+    designs = (DqMachine,)
+    model_error = 0.03
+
+    conductance: float = parameter(
+        0.0, "1/ohm", prior=LogNormal(5e-3, 1.0), low=0.0, high=0.5, source="100 to 1000 ohm for kilowatt machines"
+    )
+
+    def on_design(self, design):
+        return replace(design, iron_conductance=design.iron_conductance + self.conductance)

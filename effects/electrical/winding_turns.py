@@ -1,0 +1,34 @@
+"""Other number of turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from effects.base import DesignEffect
+from effects.dq_design import DqMachine
+from effects.parameter import parameter
+from effects.prior import Normal
+
+
+@dataclass(frozen=True)
+class WindingTurns(DesignEffect):
+    """Another number of turns than declared: psi_m with n, inductances and resistance with n^2 (same slot fill)."""
+
+    title = "other number of turns"
+    looks_like = "back-EMF, inductances and resistance all off in the ratio n : n^2 : n^2"
+    remedy = ("count, or phase resistance together with back-EMF",)
+    designs = (DqMachine,)
+
+    change: float = parameter(
+        0.0, "1", prior=Normal(0.05), low=-0.5, high=0.5, source="one turn of ten to forty"
+    )
+
+    def on_design(self, design):
+        n = 1.0 + self.change
+        return replace(
+            design,
+            psi_m=design.psi_m * n,
+            inductance_d=design.inductance_d * n**2,
+            inductance_q=design.inductance_q * n**2,
+            resistance=design.resistance * n**2,
+        )

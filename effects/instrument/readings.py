@@ -1,0 +1,53 @@
+"""Gain, offset and drift of an instrument; a concrete effect says which columns it reads.
+
+Columns are named by patterns: "v_*" is every phase voltage. ``readings`` are responses that the instrument shows,
+``inverse_readings`` responses computed by dividing by what it shows, ``set_points`` conditions that were read with it.
+"""
+
+from __future__ import annotations
+
+from fnmatch import fnmatch
+from typing import Callable, ClassVar
+
+import numpy as np
+
+from effects.base import Columns, InstrumentEffect
+
+
+def changed(columns: Columns, patterns: tuple[str, ...], change: Callable[[np.ndarray], np.ndarray]) -> Columns:
+    """The columns with those that match a pattern changed."""
+    hit = [name for name in columns if any(fnmatch(name, pattern) for pattern in patterns)]
+    return {**columns, **{name: change(columns[name]) for name in hit}}
+
+
+class ReadingGain(InstrumentEffect):
+    """Reading = (1 + gain) * truth."""
+
+    readings: ClassVar[tuple[str, ...]]
+    inverse_readings: ClassVar[tuple[str, ...]] = ()
+    set_points: ClassVar[tuple[str, ...]] = ()
+
+    def on_condition(self, conditions: Columns, kind: str) -> Columns:
+        return changed(conditions, self.set_points, lambda read: read / (1.0 + self.gain))
+
+    def on_reading(self, response: Columns, conditions: Columns, kind: str) -> Columns:
+        shown = changed(response, self.readings, lambda truth: truth * (1.0 + self.gain))
+        return changed(shown, self.inverse_readings, lambda truth: truth / (1.0 + self.gain))
+
+
+class ReadingOffset(InstrumentEffect):
+    """Reading = truth + offset."""
+
+    readings: ClassVar[tuple[str, ...]]
+
+    def on_reading(self, response: Columns, conditions: Columns, kind: str) -> Columns:
+        return changed(response, self.readings, lambda truth: truth + self.offset)
+
+
+class ReadingDrift(InstrumentEffect):
+    """Reading = truth + drift * order; order runs from 0 to 1 through each scan, before which one zeroes."""
+
+    readings: ClassVar[tuple[str, ...]]
+
+    def on_reading(self, response: Columns, conditions: Columns, kind: str) -> Columns:
+        return changed(response, self.readings, lambda truth: truth + self.drift * conditions["order"])

@@ -1,0 +1,28 @@
+"""Permeability of the steel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from effects.base import DesignEffect
+from effects.machine_design import MachineAsBuilt
+from effects.parameter import parameter
+from effects.prior import LogNormal
+
+
+@dataclass(frozen=True)
+class SteelGrade(DesignEffect):
+    """The steel needs more field than its grade for the same flux density: H = (1 + excess) H_grade(B)."""
+
+    title = "permeability of the steel"
+    looks_like = "slightly lower flux everywhere, more where the steel is nearly saturated"
+    remedy = ("ring sample", "flux linkage over current")
+    designs = (MachineAsBuilt,)
+    model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
+
+    excess: float = parameter(
+        0.0, "1", prior=LogNormal(0.4, 0.6), low=0.0, high=3.0, source="grades and stress after punching"
+    )
+
+    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+        return replace(design, field_scale=design.field_scale * (1.0 + self.excess))

@@ -1,0 +1,103 @@
+"""A permanent-magnet machine on the bench as the effects see it: as drawn, and where it may differ as built."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from geometry.machine import Machine
+from geometry.winding import star_of_slots
+from materials.magnet import Magnet
+
+
+@dataclass(frozen=True)
+class MachineAsBuilt:
+    """One machine, all that its field and its terminals depend on. Tuples count round it from magnet, slot or coil 0.
+
+    machine: cross-section, all magnets, slots and teeth alike;  steel: grade;  magnet: what all magnets are made of
+    length: active length [m];  turns: of every coil [1];  phase_resistance: A, B, C at 20 degC [ohm]
+    magnet_strengths: remanence of every magnet over that of ``magnet`` [1]
+    magnet_turns: angle by which every magnet sits too far on, counter-clockwise [rad]
+    opening_changes: by which every slot opening is wider than drawn [m]
+    stator_shift: of the stator against the axis of rotation, x and y [m]
+    rotor_shift: of the rotor against the axis of rotation, from the axis of magnet 0, turning with it [m]
+    field_scale: H of the steel over that of the grade at the same flux density [1]
+    saturation_scale: polarisation of the steel over that of the grade at the same field [1]
+    stacking_factor: share of the length that is steel [1]
+    edge_damage: share of its permeability that the stator steel has lost at its cut edges [1]
+    edge_depth: how far in from the edges [m]
+    skew: angle between the two ends of the machine, even along its length [rad]
+    radial_share: how far the magnetisation has turned from parallel (0) to radial (1) [1]
+    end_leakage: share of the magnets' flux that closes beyond the ends instead of through the winding [1]
+    cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine
+    """
+
+    machine: Machine
+    steel: str
+    magnet: Magnet
+    length: float
+    turns: tuple[float, ...]
+    phase_resistance: tuple[float, float, float]
+    magnet_strengths: tuple[float, ...]
+    magnet_turns: tuple[float, ...]
+    opening_changes: tuple[float, ...]
+    stator_shift: tuple[float, float] = (0.0, 0.0)
+    rotor_shift: tuple[float, float] = (0.0, 0.0)
+    field_scale: float = 1.0
+    saturation_scale: float = 1.0
+    stacking_factor: float = 1.0
+    edge_damage: float = 0.0
+    edge_depth: float = 0.7e-3
+    skew: float = 0.0
+    radial_share: float = 0.0
+    end_leakage: float = 0.0
+    cogging_of_mesh: float = 1.0
+
+    @classmethod
+    def drawn(
+        cls, machine: Machine, steel: str, magnet: Magnet, length: float, turns_per_coil: float, resistance: float
+    ) -> MachineAsBuilt:
+        """The machine with a coil on every tooth, all magnets, slots and coils alike; resistance: of a phase [ohm]."""
+        return cls(
+            machine,
+            steel,
+            magnet,
+            length,
+            turns=(turns_per_coil,) * machine.slots,
+            phase_resistance=(resistance,) * 3,
+            magnet_strengths=(1.0,) * machine.poles,
+            magnet_turns=(0.0,) * machine.poles,
+            opening_changes=(0.0,) * machine.slots,
+        )
+
+    def with_one(self, name: str, index: int, value: float) -> MachineAsBuilt:
+        """One entry of one of the tuples replaced."""
+        values = list(getattr(self, name))
+        values[index] = value
+        return replace(self, **{name: tuple(values)})
+
+    def with_machine(self, **changes) -> MachineAsBuilt:
+        """Other dimensions of the cross-section."""
+        return replace(self, machine=replace(self.machine, **changes))
+
+    def with_magnet(self, **changes) -> MachineAsBuilt:
+        """Another material of all magnets."""
+        return replace(self, magnet=replace(self.magnet, **changes))
+
+    def without_turns(self, coil: int, missing: float) -> MachineAsBuilt:
+        """One coil with fewer turns, and its phase with less resistance."""
+        phase = star_of_slots(self.machine.slots, self.machine.pole_pairs).coils[coil].phase
+        share = missing / sum(self._turns_of(phase))
+        return self.with_one("turns", coil, self.turns[coil] - missing)._with_resistance(phase, 1.0 - share)
+
+    def with_phase_turns(self, phase: int, factor: float) -> MachineAsBuilt:
+        """All coils of one phase with ``factor`` times their turns, and as much resistance."""
+        coils = star_of_slots(self.machine.slots, self.machine.pole_pairs).coils
+        turns = tuple(n * (factor if coil.phase == phase else 1.0) for n, coil in zip(self.turns, coils))
+        return replace(self, turns=turns)._with_resistance(phase, factor)
+
+    def _turns_of(self, phase: int) -> list[float]:
+        coils = star_of_slots(self.machine.slots, self.machine.pole_pairs).coils
+        return [n for n, coil in zip(self.turns, coils) if coil.phase == phase]
+
+    def _with_resistance(self, phase: int, factor: float) -> MachineAsBuilt:
+        return self.with_one("phase_resistance", phase, self.phase_resistance[phase] * factor)

@@ -1,0 +1,29 @@
+"""Friction that grows away from mid-stroke."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from effects.law_effects import ForceEffect
+from effects.mechanical.coulomb_friction import REVERSAL
+from effects.parameter import parameter
+from effects.prior import LogNormal
+
+
+@dataclass(frozen=True)
+class GuideMisalignment(ForceEffect):
+    """Guides that bind away from the middle of the stroke: F = gradient |x| tanh(v / 1 mm/s)."""
+
+    title = "friction that grows away from mid-stroke"
+    looks_like = "extra loss in the impedance in proportion to 1 / omega, none at constant velocity in mid-stroke"
+    remedy = ("impedance at two amplitudes", "slow pull over the whole stroke")
+    model_error = 0.03
+
+    gradient: float = parameter(
+        0.0, "N/m", prior=LogNormal(2e3, 1.5), low=0.0, high=1e6, source="10 N over 2 mm, guides with 0.1 mm run-out"
+    )
+
+    def force(self, position, velocity):
+        return self.gradient * np.abs(position) * np.tanh(velocity / REVERSAL)

@@ -1,0 +1,93 @@
+"""Effects on a machine as built: nothing at zero, the right place otherwise, alternatives for magnet, slot and coil."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from effects.base import DesignEffect, Effect
+from effects.library import package_effects
+from effects.machine.bearing_friction import BearingFriction
+from effects.machine.dynamic_eccentricity import DynamicEccentricity
+from effects.machine.lost_turns import LostTurns
+from effects.machine.magnet_temperature import MagnetTemperature
+from effects.machine.phase_imbalance import PhaseImbalance
+from effects.machine_design import MachineAsBuilt
+from effects.parameter import parameters_of
+from tests.workbench.models.machine_case import drawn
+
+OWN = {name: cls for name, cls in package_effects().items() if cls.__module__.startswith("effects.machine.")}
+FIELD = {name: cls for name, cls in OWN.items() if issubclass(cls, DesignEffect)}
+
+
+def moved(effect: Effect) -> Effect:
+    """Every parameter half a standard deviation above its centre."""
+    return effect.at(np.full(len(parameters_of(effect)), 0.5))
+
+
+def test_enough_act_through_the_field():
+    assert len(FIELD) >= 16
+
+
+@pytest.mark.parametrize("name", FIELD)
+def test_null_changes_nothing(name):
+    for effect in OWN[name].variants(drawn()):
+        assert effect.on_design(drawn()) == drawn()
+
+
+@pytest.mark.parametrize("name", FIELD)
+def test_every_variant_makes_another_machine(name):
+    variants = OWN[name].variants(drawn())
+    designs = [moved(effect).on_design(drawn()) for effect in variants]
+    assert all(design != drawn() for design in designs)
+    assert len({repr(design) for design in designs}) == len(variants)
+
+
+def test_alternatives():
+    counts = {name: len(cls.variants(drawn())) for name, cls in OWN.items()}
+    assert (counts["weak_magnet"], counts["magnet_position"], counts["wide_slot"]) == (10, 10, 12)
+    assert (counts["lost_turns"], counts["phase_imbalance"], counts["airgap_change"]) == (12, 3, 1)
+
+
+def test_warm_magnets_follow_their_coefficient():
+    assert_allclose(MagnetTemperature(rise=50.0).on_design(drawn()).magnet.remanence, 1.3 * (1 - 0.0012 * 50))
+
+
+def test_lost_turns_take_resistance_and_turns():
+    """One of the 28 turns of phase A, which has the coils 0, 1, 6 and 7 (star of slots of 12 slots, 10 poles)."""
+    design = LostTurns(coil=1, turns=1.0).on_design(drawn())
+    assert design.turns[1] == 6.0 and design.turns[0] == 7.0
+    changed = [r / 12.6e-3 for r in design.phase_resistance]
+    assert_allclose(changed, [27 / 28, 1.0, 1.0])
+
+
+def test_more_turns_missing_than_there_are():
+    with pytest.raises(ValueError, match="cannot be missing"):
+        LostTurns(coil=1, turns=8.0).on_design(drawn())
+
+
+def test_phase_imbalance_changes_four_coils():
+    design = PhaseImbalance(phase=2, share=0.1).on_design(drawn())
+    assert sum(turns != 7.0 for turns in design.turns) == 4
+    assert_allclose(design.phase_resistance[2], 1.1 * 12.6e-3)
+
+
+def test_eccentricities_add_up():
+    before = replace(drawn(), rotor_shift=(1e-5, 0.0))
+    after = DynamicEccentricity(share=0.1, direction=np.pi / 2).on_design(before)
+    assert_allclose(after.rotor_shift, (1e-5, 5e-5))
+
+
+def test_friction_has_the_sign_of_the_motion():
+    design, torque = drawn(), np.zeros(2)
+    found = BearingFriction(level=0.01).on_response(
+        {"torque": torque}, {"angle_mech": torque, "direction": np.array([1.0, -1.0])}, "cogging", design
+    )
+    assert_allclose(found["torque"], [-0.01, 0.01])
+    still = BearingFriction(level=0.01).on_response({"torque": torque}, {"angle_mech": torque}, "locked_rotor", design)
+    assert still["torque"] is torque
+
+
+def test_they_act_on_machines_only():
+    assert all(cls.designs == (MachineAsBuilt,) for cls in OWN.values())

@@ -1,0 +1,101 @@
+"""A measurement as it flows through the workbench: tables of columns in SI with roles and uncertainties."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Mapping
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """One measured response column of a table.
+
+    values, random: reading and its declared random standard uncertainty, SI (n,)
+    unit: as in the file, for people; scale: file unit -> SI factor
+    """
+
+    name: str
+    values: np.ndarray
+    random: np.ndarray
+    unit: str
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """One table of a campaign; n rows in the order of acquisition.
+
+    kind: measurement kind, for example "back_emf"
+    conditions: columns that the model is asked at, by SI-less name ("angle_mech", "i_a", "velocity"), SI (n,)
+    condition_random: their declared random uncertainties, SI (n,), where any
+    responses: measured columns by name without unit ("v_a", "torque", "force", "re", "im")
+    scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
+    held_out: rows that no fit may see (n,) bool
+    """
+
+    kind: str
+    file: str
+    conditions: Mapping[str, np.ndarray]
+    responses: Mapping[str, Response]
+    scan: np.ndarray
+    repeat: np.ndarray
+    held_out: np.ndarray
+    condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def rows(self) -> int:
+        return len(self.held_out)
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """How far each row is through its scan in the order of acquisition, 0 to 1 (n,)."""
+        progress = np.zeros(self.rows)
+        for scan in np.unique(self.scan):
+            mine = self.scan == scan
+            progress[mine] = np.linspace(0.0, 1.0, int(mine.sum()))
+        return progress
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """An input of the model that is only known to within sigma (SI, or relative to the nominal value)."""
+
+    name: str
+    sigma: float
+    relative: bool
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class Systematic:
+    """An error shared by all rows of an instrument.
+
+    name: ``<quantity>_<what>`` without unit: voltage_gain, torque_offset, encoder_zero
+    kind: "gain" (relative) or "offset" (SI);  sigma: standard uncertainty
+    """
+
+    name: str
+    kind: str
+    sigma: float
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """A folder of measurements of one device.
+
+    device: the ``[device]`` table as read, keys with units;  repeats: declared number of repeats
+    file_hashes: SHA-256 of every data file;  complaints: what had to be left out or limits the conclusions
+    """
+
+    id: str
+    folder: str
+    device: Mapping[str, object]
+    tables: tuple[Table, ...]
+    tolerances: tuple[Tolerance, ...]
+    systematics: tuple[Systematic, ...]
+    repeats: int
+    file_hashes: Mapping[str, str]
+    complaints: tuple[str, ...] = ()
