@@ -1,0 +1,41 @@
+"""The machine of the tests: 12 slots, 10 poles, on meshes as coarse as the statement allows."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from effects.machine_design import MachineAsBuilt
+from geometry.half_cell import MeshDensity
+from geometry.machine import Machine
+from materials.magnet import Magnet
+from workbench.models.machine_build import MeshPlan, SurrogateBuilder
+from workbench.models.machine_field import LoadedState, MachineField
+from workbench.models.machine_surrogate import Surrogate
+
+COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
+MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
+PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
+STATES = (LoadedState(0.1, (40.0, -20.0, -20.0)), LoadedState(0.1, (0.0, 0.0, 0.0)))
+
+
+def drawn() -> MachineAsBuilt:
+    mm = 1e-3
+    machine = Machine(
+        12, 5, 42.5 * mm, 15.7 * mm, 3.3 * mm, 5.5 * mm, 2.5 * mm, 0.5 * mm, 2 * mm, 1.43 * mm, 1.43 * mm, 5 * mm
+    )
+    return MachineAsBuilt.drawn(machine, "35PN270", Magnet(1.3, 1.0, -0.0012, 22.0), 41 * mm, 7, 12.6e-3)
+
+
+@cache
+def field(density: MeshDensity = COARSE) -> MachineField:
+    return MachineField(drawn(), density)
+
+
+@cache
+def builder() -> SurrogateBuilder:
+    return SurrogateBuilder(drawn(), PLAN)
+
+
+@cache
+def surrogate() -> Surrogate:
+    return builder().build(STATES)

@@ -1,0 +1,123 @@
+"""The machine bench: reading the device, signs of the answers, sentences for what is wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from benchmarks.virtual_benches.machine_bench import DEVICE
+from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
+from workbench.errors import WorkbenchError
+from workbench.models.machine import MachineBench
+from workbench.table import Tolerance
+
+BENCH = MachineBench(cache=None)
+ANGLES = np.linspace(0.0, 2 * np.pi, 50, endpoint=False)
+
+
+def prepared():
+    return replace(BENCH, surrogate=surrogate(), builder=builder())
+
+
+def test_device():
+    design = BENCH.design(DEVICE)
+    assert design == drawn()
+    assert BENCH.accepts(DEVICE) and not BENCH.accepts({"moving_mass_kg": 1.0})
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    (
+        ({"airgap_mm": None}, "lacks airgap"),
+        ({"airgap_mm": -0.5}, "airgap must be a positive"),
+        ({"steel": "tin"}, "unknown steel 'tin'"),
+        ({"magnetisation": "halbach"}, "magnetisation must be one of parallel, radial"),
+        ({"coils_in_series_per_phase": 2}, "must be slots / 3"),
+        ({"magnet_arc_fraction": 1.2}, "magnet_arc_fraction must be at most 1"),
+    ),
+)
+def test_wrong_devices(change, words):
+    device = {key: value for key, value in (DEVICE | change).items() if value is not None}
+    with pytest.raises(WorkbenchError, match=words):
+        BENCH.design(device)
+
+
+def test_tolerances():
+    moved = BENCH.with_tolerance(drawn(), Tolerance("remanence", 0.01, relative=True), 2.0)
+    assert_allclose(moved.magnet.remanence, 1.3 * 1.02)
+    moved = BENCH.with_tolerance(drawn(), Tolerance("airgap", 0.02e-3, relative=False), -1.0)
+    assert_allclose(moved.machine.airgap, 0.48e-3)
+    with pytest.raises(WorkbenchError, match="no input of this model"):
+        BENCH.with_tolerance(drawn(), Tolerance("colour", 1.0, relative=False), 1.0)
+
+
+def test_voltage_is_the_slope_of_the_flux_linkage_and_turns_with_the_speed():
+    forward = prepared().respond(drawn(), "back_emf", {"angle_mech": ANGLES, "speed": np.full(50, 100.0)})
+    back = prepared().respond(drawn(), "back_emf", {"angle_mech": ANGLES, "speed": np.full(50, -100.0)})
+    assert_allclose(forward["v_a"], -back["v_a"])
+    step = 1e-3
+    ends = [evaluated_linkage(ANGLES + sign * step) for sign in (1, -1)]
+    slope = (ends[0] - ends[1]) / (2 * step)
+    assert_allclose(forward["v_a"], 100.0 * slope, atol=2e-3 * np.abs(slope).max() * 100)
+
+
+def evaluated_linkage(angle):
+    from workbench.models.machine_surrogate import evaluated
+
+    return 41e-3 * evaluated(surrogate().spectrum(drawn())[1:2], angle)[0]
+
+
+def test_a_warm_magnet_induces_less():
+    """-0.12 %/K against the temperature at which the remanence was stated."""
+    at = {"angle_mech": ANGLES, "speed": np.full(50, 100.0)}
+    cold = prepared().respond(drawn(), "back_emf", at | {"magnet_T": np.full(50, 22.0)})["v_a"]
+    warm = prepared().respond(drawn(), "back_emf", at | {"magnet_T": np.full(50, 72.0)})["v_a"]
+    assert_allclose(warm, 0.94 * cold)
+
+
+def test_resistance_of_copper():
+    """234.5 degC + T: annealed copper, IEC 60028."""
+    found = prepared().respond(drawn(), "phase_resistance", {"winding_T": np.array([20.0, 100.0])})["r_b"]
+    assert_allclose(found, [12.6e-3, 12.6e-3 * (234.5 + 100) / (234.5 + 20)], rtol=1e-3)
+
+
+def test_flux_change_is_zero_without_current():
+    at = {"angle_mech": np.full(2, STATES[0].angle), "i_a": np.array([40.0, 0.0])}
+    at |= {"i_b": -at["i_a"] / 2, "i_c": -at["i_a"] / 2}
+    found = prepared().respond(drawn(), "flux_linkage", at)
+    assert found["dpsi_a"][0] > 0
+    assert all(found[f"dpsi_{x}"][1] == 0.0 for x in "abc")
+
+
+def test_end_leakage_takes_the_magnets_flux_and_leaves_the_currents():
+    leaky = replace(drawn(), end_leakage=0.1)
+    emf = {"angle_mech": ANGLES, "speed": np.full(50, 100.0)}
+    for kind, at, name, factor in (("back_emf", emf, "v_a", 0.9), ("cogging", emf, "torque", 0.81)):
+        before, after = (prepared().respond(d, kind, at)[name] for d in (drawn(), leaky))
+        assert_allclose(after, factor * before)
+
+
+def test_exact_is_the_surrogate_at_the_drawing():
+    at = {"angle_mech": ANGLES}
+    exact = prepared().exact(drawn(), "cogging", at)["torque"]
+    assert_allclose(exact, prepared().respond(drawn(), "cogging", at)["torque"], atol=1e-9)
+
+
+def test_sentences():
+    with pytest.raises(WorkbenchError, match="prepare"):
+        BENCH.respond(drawn(), "cogging", {"angle_mech": ANGLES})
+    with pytest.raises(WorkbenchError, match="no measurement kind impedance"):
+        prepared().respond(drawn(), "impedance", {})
+    with pytest.raises(WorkbenchError, match="currents of all phases"):
+        prepared().respond(drawn(), "locked_rotor", {"angle_mech": ANGLES, "i_a": ANGLES})
+
+
+def test_a_second_build_comes_from_the_cache(tmp_path):
+    from tests.workbench.models.machine_case import PLAN
+    from workbench.models.machine_build import SurrogateBuilder
+
+    known = SurrogateBuilder(drawn(), PLAN, tmp_path)
+    idle = {"fine": surrogate().no_load, "base": np.zeros((13, 3))}
+    known._save("no_load", idle)
+    assert_allclose(SurrogateBuilder(drawn(), PLAN, tmp_path).build(()).no_load, surrogate().no_load)

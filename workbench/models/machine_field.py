@@ -1,0 +1,263 @@
+"""Field solutions of a machine as built, coil by coil: torque and flux linkages at any angle and current.
+
+A sample is [torque, psi of coil 0, psi of coil 1, ...], per metre of length and per turn, the flux of a coil positive
+outwards through its tooth. Without current a revolution is put together from the smallest window of angles that the
+symmetry of the machine leaves:
+
+    a slot pitch on, with the same rotor:  coil k sees what coil k - 1 saw
+    a pole pitch on, with the same stator: every coil sees the same with the opposite sign
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import lcm, pi
+from typing import Callable, Iterable, Sequence
+
+import numpy as np
+
+from effects.machine_design import MachineAsBuilt
+from geometry.cross_section import CrossSection, mesh_cross_section
+from geometry.defects import DynamicEccentricity, MagnetPosition, SlotOpening, StaticEccentricity
+from geometry.half_cell import MeshDensity
+from geometry.machine import Machine, Magnetisation
+from geometry.morph import Defect, Morpher
+from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.currents import CoilCurrents, PhaseCurrents
+from magnetostatics.cut_edge import CutEdge
+from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingState
+from magnetostatics.newton import NewtonSettings
+from magnetostatics.torque import arkkio_torque
+from materials.altered_steel import ScaledReluctivity, ScaledSaturation, stacked
+from materials.library import load_steel
+from materials.reluctivity import Reluctivity
+
+_TIGHT = NewtonSettings(tolerance=1e-7)  # differences of solutions are wanted
+
+
+@dataclass(frozen=True)
+class LoadedState:
+    """Rotor angle [rad] and constant phase currents A, B, C [A]."""
+
+    angle: float
+    currents: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PartlyRadial(Magnetisation):
+    """Magnetised between parallel (share 0) and radial (share 1), or beyond: direction turned in proportion."""
+
+    share: float
+
+    def direction_angle(self, position_angle, centre_angle):
+        off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
+        return centre_angle + self.share * off
+
+
+class MachineField:
+    """One machine at one mesh density; designs with the same poles, slots and kind of magnet share the mesh.
+
+    steel: from the grade's name to its law
+    """
+
+    def __init__(
+        self,
+        nominal: MachineAsBuilt,
+        density: MeshDensity,
+        steel: Callable[[str], Reluctivity] = load_steel,
+    ):
+        self.nominal, self.density, self.steel = nominal, density, steel
+        self._meshes: dict[tuple, tuple[CrossSection, Morpher, FieldModel]] = {}
+
+    @property
+    def layout(self) -> WindingLayout:
+        return star_of_slots(self.nominal.machine.slots, self.nominal.machine.pole_pairs)
+
+    @property
+    def edges(self) -> int:
+        """Edges around the sliding circle."""
+        return self.density.edges_around(self.nominal.machine)
+
+    @property
+    def window(self) -> int:
+        """Edges in the period of cogging, 2 pi / lcm(slots, poles)."""
+        m = self.nominal.machine
+        return self.edges // lcm(m.slots, m.poles)
+
+    # ---- models -------------------------------------------------------------------------------------------------
+
+    def model(self, design: MachineAsBuilt, whole: bool) -> FieldModel:
+        """The field problem of a design, on moved nodes of the nominal mesh where that can be."""
+        section, morpher, first = self._mesh(design.machine, whole)
+        machine = replace(design.machine, magnetisation=_magnetisation(design))
+        moved = morpher.to(machine, defects_of(design)) if machine != section.machine or whole else section
+        return first.like(moved, materials_of(design, self.steel(design.steel)))
+
+    def _mesh(self, machine: Machine, whole: bool) -> tuple[CrossSection, Morpher, FieldModel]:
+        base = self.nominal.machine
+        alike = (machine.magnet_arc_fraction < 1) == (base.magnet_arc_fraction < 1)
+        drawn = base if alike else replace(base, magnet_arc_fraction=machine.magnet_arc_fraction)
+        key = drawn, whole
+        if key not in self._meshes:
+            section = mesh_cross_section(drawn, self.layout, self.density, whole)
+            materials = materials_of(self.nominal, self.steel(self.nominal.steel))
+            first = FieldModel(section, _all_alike(materials), _TIGHT)
+            self._meshes[key] = section, Morpher(section), first
+        return self._meshes[key]
+
+    def forget(self) -> None:
+        """Give the memory of all meshes and factorisations back."""
+        self._meshes.clear()
+
+    # ---- samples ------------------------------------------------------------------------------------------------
+
+    def no_load(self, design: MachineAsBuilt) -> np.ndarray:
+        """Samples without current at equal angles over a revolution from angle zero on (edges, 1 + coils)."""
+        steps, symmetries = self._no_load_window(design)
+        whole = not is_symmetric(design)
+        model, sample = self.model(design, whole), read_whole if whole else read_sector
+        window = solve_in_turn(model, [idle(2 * pi * n / self.edges) for n in range(steps)])
+        moves = [(symmetry, 0) for symmetry in symmetries]
+        known = complete({(n, 0): sample(s) for n, s in enumerate(window)}, self.edges, 1, moves)
+        return np.array([known[n, 0] for n in range(self.edges)])
+
+    def loaded(self, design: MachineAsBuilt, states: Sequence[LoadedState]) -> np.ndarray:
+        """Samples with current (states, 1 + coils)."""
+        whole = not (is_symmetric(design) and len(set(design.turns)) == 1)
+        model, sample = self.model(design, whole), read_whole if whole else read_sector
+        points = [self.point(design, state, whole) for state in states]
+        return np.array([sample(solution) for solution in solve_in_turn(model, points)])
+
+    def point(self, design: MachineAsBuilt, state: LoadedState, whole: bool) -> OperatingState:
+        """A loaded state as the field model takes it."""
+        if not whole:
+            return PhaseCurrents(state.angle, state.currents, design.turns[0])
+        return CoilCurrents(state.angle, tuple(coil_ampere_turns(design, self.layout, np.array(state.currents))))
+
+    def _no_load_window(self, design: MachineAsBuilt) -> tuple[int, tuple[Symmetry, ...]]:
+        stator, rotor = stator_is_regular(design), rotor_is_regular(design)
+        symmetries = ((self.slot_pitch,) if stator else ()) + ((self.pole_pitch,) if rotor else ())
+        m = self.nominal.machine
+        parts = {(True, True): lcm(m.slots, m.poles), (True, False): m.slots, (False, True): m.poles}
+        return self.edges // parts.get((stator, rotor), 1), symmetries
+
+    @property
+    def slot_pitch(self) -> Symmetry:
+        steps = self.edges // self.nominal.machine.slots
+        return Symmetry(steps, lambda sample: np.append(sample[0], np.roll(sample[1:], 1)))
+
+    @property
+    def pole_pitch(self) -> Symmetry:
+        return Symmetry(self.edges // self.nominal.machine.poles, lambda sample: np.append(sample[0], -sample[1:]))
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """``steps`` further the sample is ``change`` of the one here."""
+
+    steps: int
+    change: Callable[[np.ndarray], np.ndarray]
+
+
+def complete(
+    known: dict[tuple[int, int], np.ndarray], count: int, members: int, moves: Iterable[tuple[Symmetry, int]]
+) -> dict[tuple[int, int], np.ndarray]:
+    """Samples of a whole revolution by (step, member) from those of a window.
+
+    count: steps of a revolution; members: of a family of equal parts, 1 when there is none
+    moves: a symmetry, and by how much the number of the member grows with it
+    """
+    known, waiting = dict(known), list(known)
+    while waiting:
+        n, m = waiting.pop()
+        for symmetry, shift in moves:
+            there = (n + symmetry.steps) % count, (m + shift) % members
+            if there not in known:
+                known[there] = symmetry.change(known[n, m])
+                waiting.append(there)
+    return known
+
+
+def solve_in_turn(model: FieldModel, points: Sequence[OperatingState]) -> list[FieldSolution]:
+    """Solutions of neighbouring states, each started from the one before."""
+    solutions: list[FieldSolution] = []
+    for point in points:
+        solutions.append(model.solve(point, solutions[-1] if solutions else None))
+    return solutions
+
+
+def coil_ampere_turns(design: MachineAsBuilt, layout: WindingLayout, currents: np.ndarray) -> np.ndarray:
+    """sign * turns * phase current of every coil (coils,) [A]."""
+    return np.array([coil.sign * design.turns[k] * currents[coil.phase] for k, coil in enumerate(layout.coils)])
+
+
+def idle(angle: float) -> PhaseCurrents:
+    """No current at a rotor angle [rad]."""
+    return PhaseCurrents(angle, (0.0, 0.0, 0.0))
+
+
+def read_whole(solution: FieldSolution) -> np.ndarray:
+    """The sample of a solution of the whole machine (1 + coils,)."""
+    return np.append(arkkio_torque(solution), solution.model.coil_loads @ solution.a)
+
+
+def read_sector(solution: FieldSolution) -> np.ndarray:
+    """The sample of a symmetric machine from its sector; a coil is in the sector with its tooth."""
+    section = solution.model.section
+    first = (solution.model.coil_loads @ solution.a)[: section.teeth]
+    sectors = [section.sign**k * first for k in range(section.sectors)]
+    return np.concatenate([[arkkio_torque(solution)], *sectors])
+
+
+# ---- what a design means in the field --------------------------------------------------------------------------------
+
+
+def stator_is_regular(design: MachineAsBuilt) -> bool:
+    """All slots alike and the bore about the axis of rotation."""
+    return not any(design.opening_changes) and not any(design.stator_shift)
+
+
+def rotor_is_regular(design: MachineAsBuilt) -> bool:
+    """All magnets alike, in their places, and about the axis of rotation."""
+    alike = all(strength == 1.0 for strength in design.magnet_strengths)
+    return alike and not any(design.magnet_turns) and not any(design.rotor_shift)
+
+
+def is_symmetric(design: MachineAsBuilt) -> bool:
+    return stator_is_regular(design) and rotor_is_regular(design)
+
+
+def defects_of(design: MachineAsBuilt) -> tuple[Defect, ...]:
+    """What moves nodes of the whole machine; nothing for a regular one."""
+    found: list[Defect] = [MagnetPosition(k, turn) for k, turn in enumerate(design.magnet_turns) if turn]
+    found += [SlotOpening(k, change) for k, change in enumerate(design.opening_changes) if change]
+    for kind, shift in ((StaticEccentricity, design.stator_shift), (DynamicEccentricity, design.rotor_shift)):
+        if any(shift):
+            found.append(kind(float(np.hypot(*shift)), float(np.arctan2(shift[1], shift[0]))))
+    return tuple(found)
+
+
+def materials_of(design: MachineAsBuilt, grade: Reluctivity) -> MachineMaterials:
+    """Steel and magnets of a design."""
+    law = grade
+    if design.field_scale != 1.0:
+        law = ScaledReluctivity(law, design.field_scale)
+    if design.saturation_scale != 1.0:
+        law = ScaledSaturation(law, design.saturation_scale)
+    law = stacked(law, design.stacking_factor)
+    stator = CutEdge(law, design.edge_depth, design.edge_damage) if design.edge_damage else law
+    materials = MachineMaterials(stator, law, design.magnet)
+    for number, strength in enumerate(design.magnet_strengths):
+        if strength != 1.0:
+            weaker = replace(design.magnet, remanence=design.magnet.remanence * strength)
+            materials = materials.with_magnet(number, weaker)
+    return materials
+
+
+def _all_alike(materials: MachineMaterials) -> MachineMaterials:
+    return replace(materials, other_magnets=())
+
+
+def _magnetisation(design: MachineAsBuilt) -> Magnetisation:
+    return PartlyRadial(design.radial_share) if design.radial_share else design.machine.magnetisation
