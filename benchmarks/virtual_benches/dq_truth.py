@@ -15,6 +15,7 @@ from scipy.optimize import fsolve
 ANGLES = 2 * np.pi * np.arange(48) / 48  # electrical, of one period
 PHASES = np.array([0.0, 2 * np.pi / 3, 4 * np.pi / 3])
 RATED = 25.0  # A, peak; where laws are scaled
+WINDAGE_SPEED = 300.0  # rad/s, at which the windage of the truth is that of a quadratic law
 REVERSAL = 0.3  # rad/s, rounds dry friction
 
 
@@ -104,7 +105,7 @@ def _air_gap(m: TrueMachine, i_d, i_q, speed):
 
 def _shaft(m: TrueMachine, torque, speed):
     direction = speed / np.sqrt(speed**2 + REVERSAL**2)
-    lost = m.friction * direction + m.viscous * speed + m.windage * speed * np.abs(speed) ** 0.97
+    lost = m.friction * direction + m.viscous * speed + m.windage * speed * np.abs(speed) ** 0.97 * WINDAGE_SPEED**0.03
     lost = lost + m.load_share * np.abs(torque) * direction
     lost = lost + m.speed_bump * direction / (1.0 + ((np.abs(speed) - 190.0) / 25.0) ** 2)
     lost = lost + m.drag_power * direction * (np.abs(speed) / 100.0) ** 1.5

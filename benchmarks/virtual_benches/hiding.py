@@ -153,7 +153,7 @@ def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = 
         return judge.visibility(changed, sensitivities, with_it)
 
     truth = _sized(catalogue.outside[rng.choice(outside)], truth, _log_uniform(SMALL, rng), small)[0]
-    bench = _measured(catalogue, setup, truth, noise, f"{catalogue.name}-{group}-{seed}", rng)
+    bench = measured(catalogue, setup, truth, noise, f"{catalogue.name}-{group}-{seed}", rng)
     return bench, answer
 
 
@@ -192,7 +192,7 @@ def _log_uniform(between: tuple[float, float], rng: np.random.Generator) -> floa
     return float(np.exp(rng.uniform(*np.log(between))))
 
 
-def _measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Bench:
+def measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Bench:
     """The truth as read by the instruments, all repeats; one scan of the bench drifts."""
     answers = catalogue.simulate(setup, truth)
     drifting = int(rng.integers(sum(len(responses) for responses in answers)))

@@ -10,7 +10,8 @@ from typing import Callable, Mapping
 import numpy as np
 
 from benchmarks.virtual_benches.case import Answer, Bench
-from benchmarks.virtual_benches.hiding import Hidden, Layout, Setup, hide
+from benchmarks.virtual_benches.hiding import Hidden, Layout, Setup, hide, measured
+from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_truth import FullField, expansion, with_strengths
 from effects.machine_design import MachineAsBuilt
 from units import DEGREE, RPM
@@ -50,11 +51,32 @@ SYSTEMATIC = {
 }
 VOLTAGE, COGGING, TORQUE, LINKAGE, RESISTANCE = 0.012, 0.0015, 0.008, 6e-6, 0.015  # V, Nm, Nm, Vs, mohm
 SPEED = 1000.0  # rpm
-EMF_ANGLES, COGGING_ANGLES = np.arange(0.0, 360.0, 3.0), np.arange(0.0, 360.0, 2.25)  # deg
-LOCKED_ANGLES, LOCKED_CURRENTS = np.arange(6.0, 78.0, 12.0), np.array([40.0, 110.0])  # deg, A
-LINKAGE_ANGLE, LINKAGE_CURRENTS = 69.0, np.array([-110.0, -40.0, 40.0, 110.0])  # deg, A
 WINDING = np.array([20.0, 40.0, 60.0, 80.0, 100.0])  # degC
 COPPER = 0.00393  # 1/K at 20 degC, IEC 60028
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Where a campaign measures: steps over the revolution and angles [deg], currents of phase A [A]."""
+
+    emf_step: float = 3.0
+    cogging_step: float = 2.25
+    locked_angles: tuple[float, ...] = (6.0, 18.0, 30.0, 42.0, 54.0, 66.0)
+    locked_currents: tuple[float, ...] = (40.0, 110.0)
+    linkage_angle: float = 69.0
+    linkage_currents: tuple[float, ...] = (-110.0, -40.0, 40.0, 110.0)
+
+    @property
+    def locked(self) -> int:
+        """Rows of the locked rotor."""
+        return len(self.locked_angles) * len(self.locked_currents)
+
+    def loaded_points(self) -> tuple[np.ndarray, np.ndarray]:
+        """Angles as read [rad] (n,) and phase currents as read [A] (n, 3): locked rotor, then flux linkage."""
+        current, angle = (x.ravel() for x in np.meshgrid(self.locked_currents, self.locked_angles, indexing="ij"))
+        angle = np.append(angle, np.full(len(self.linkage_currents), self.linkage_angle)) * DEGREE
+        current = np.append(current, self.linkage_currents)
+        return angle, np.stack([current, -current / 2, -current / 2], axis=1)
 
 
 @dataclass(frozen=True)
@@ -122,7 +144,7 @@ _TIMES = lambda value, size: value * (1 + size)  # noqa: E731
 class MachineBench:
     """See ``hiding.Catalogue``. Sizes in the unit of the first parameter of the library's effect.
 
-    cache: folder for field solutions
+    cache: folder for field solutions;  grid: where is measured
     """
 
     name = "machine"
@@ -166,8 +188,8 @@ class MachineBench:
         "resistance not straight over temperature": Hidden(5e-3, 5e-3, partial(_own, "heated")),
     }
 
-    def __init__(self, cache: Path | None = None):
-        self.cache = cache
+    def __init__(self, cache: Path | None = None, grid: Grid = Grid()):
+        self.cache, self.grid = cache, grid
         self.last: State | None = None  # that was simulated
         self.solved: dict[State, list[dict[str, np.ndarray]]] = {}  # readings by field solutions instead
 
@@ -182,7 +204,7 @@ class MachineBench:
     def setup(self, rng: np.random.Generator) -> Setup:
         places = tuple(int(rng.integers(n)) for n in (10, 12, 12, 3))
         state = State(self.drawn, places, float(rng.uniform(-np.pi, np.pi)))
-        return Setup(DEVICE, TOLERANCE, SYSTEMATIC, _layouts(), state, 3)
+        return Setup(DEVICE, TOLERANCE, SYSTEMATIC, _layouts(self.grid), state, 3)
 
     def moved(self, setup: Setup, state: State, name: str, z: float) -> State:
         if name in SYSTEMATIC:
@@ -199,15 +221,15 @@ class MachineBench:
         self.last = state
         if state in self.solved:
             return self.solved[state]
-        return _readings(state, _Expanded(self.truth, state.machine))
+        return _readings(state, _Expanded(self.truth, state.machine), self.grid)
 
     def drifts(self, state: State) -> dict[str, float]:
         return {}
 
     def _states(self) -> list[LoadedState]:
-        angle, currents = _loaded_points()
+        angle, currents = self.grid.loaded_points()
         found = {LoadedState(float(a), tuple(map(float, i))): None for a, i in zip(angle, currents)}
-        return [*found, LoadedState(LINKAGE_ANGLE * DEGREE, (0.0, 0.0, 0.0))]
+        return [*found, LoadedState(self.grid.linkage_angle * DEGREE, (0.0, 0.0, 0.0))]
 
 
 def hide_in_full_field(
@@ -216,9 +238,24 @@ def hide_in_full_field(
     """As ``hide``, with what the instruments see from field solutions of the very machine."""
     hide(bench, group, seed, wanted)
     state = bench.last
-    full = FullField(bench.drawn)
-    bench.solved[state] = _readings(state, full)
+    bench.solved[state] = _readings(state, FullField(bench.drawn), bench.grid)
     return hide(bench, group, seed, wanted)
+
+
+def measured_in_full_field(bench: MachineBench, hidden: Mapping[str, float], seed: int) -> Bench:
+    """A campaign of a machine that hides effects of given sizes, by name; tolerances, instruments and noise are drawn.
+
+    All from field solutions of the very machine, which takes seconds; nothing is left out besides.
+    """
+    rng = np.random.default_rng(seed)
+    setup, noise = bench.setup(rng), Noise.drawn(rng)
+    state = setup.state
+    for name in [*setup.tolerance, *setup.systematic]:
+        state = bench.moved(setup, state, name, float(rng.standard_normal()))
+    for name, size in hidden.items():
+        state = bench.effects[name].apply(state, size)
+    bench.solved[state] = _readings(state, FullField(bench.drawn), bench.grid)
+    return measured(bench, setup, state, noise, f"{bench.name}-{seed}", rng)
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,8 +277,8 @@ class _Expanded:
 # ---- what the instruments see ---------------------------------------------------------------------------------------
 
 
-def _readings(state: State, solver) -> list[dict[str, np.ndarray]]:
-    emf, cogging = _layouts()[:2]
+def _readings(state: State, solver, grid: Grid) -> list[dict[str, np.ndarray]]:
+    emf, cogging = _layouts(grid)[:2]
     angle, direction = _true_angle(state, emf.conditions["angle_mech_deg"]), emf.conditions["direction"]
     kept = 1 - state.machine.end_leakage
     slopes = kept * solver.no_load(state.machine, angle)[1]
@@ -252,15 +289,15 @@ def _readings(state: State, solver) -> list[dict[str, np.ndarray]]:
     torque = kept**2 * solver.no_load(state.machine, angle)[0] + state.coupling * np.sin(2 * angle)
     torque = torque - direction * (state.friction + state.uneven_friction * np.cos(angle))
     answers.append({"torque_Nm": torque * (1 + state.torque_gain) + state.torque_offset})
-    return answers + _loaded_readings(state, solver, kept) + [_resistances(state)]
+    return answers + _loaded_readings(state, solver, kept, grid) + [_resistances(state)]
 
 
-def _loaded_readings(state: State, solver, kept: float) -> list[dict[str, np.ndarray]]:
-    read, currents = _loaded_points()
+def _loaded_readings(state: State, solver, kept: float, grid: Grid) -> list[dict[str, np.ndarray]]:
+    read, currents = grid.loaded_points()
     angle = read - state.encoder_zero
     true = currents / (1 + state.current_gain) * (1 + state.shunt_bend * np.abs(currents) / 100)
     torque, linkage = solver.loaded(state.machine, angle, true)
-    locked = len(LOCKED_ANGLES) * len(LOCKED_CURRENTS)
+    locked = grid.locked
     alone = solver.no_load(state.machine, angle[:locked])[0]
     torque = kept * (torque[:locked] - alone) + kept**2 * alone
     idle = solver.loaded(state.machine, angle[locked:], 0 * true[locked:])[1]
@@ -281,21 +318,14 @@ def _true_angle(state: State, reading: np.ndarray) -> np.ndarray:
     return reading * DEGREE - state.encoder_zero
 
 
-def _loaded_points() -> tuple[np.ndarray, np.ndarray]:
-    """Angles as read [rad] (n,) and phase currents as read [A] (n, 3): locked rotor, then flux linkage."""
-    current, angle = (axis.ravel() for axis in np.meshgrid(LOCKED_CURRENTS, LOCKED_ANGLES, indexing="ij"))
-    angle = np.append(angle, np.full(len(LINKAGE_CURRENTS), LINKAGE_ANGLE)) * DEGREE
-    current = np.append(current, LINKAGE_CURRENTS)
-    return angle, np.stack([current, -current / 2, -current / 2], axis=1)
-
-
-def _layouts() -> tuple[Layout, ...]:
-    angle, currents = _loaded_points()
-    locked = len(LOCKED_ANGLES) * len(LOCKED_CURRENTS)
-    loaded = [_with_currents(angle[part], currents[part]) for part in (slice(locked), slice(locked, None))]
+def _layouts(grid: Grid) -> tuple[Layout, ...]:
+    angle, currents = grid.loaded_points()
+    parts = slice(grid.locked), slice(grid.locked, None)
+    loaded = [_with_currents(angle[part], currents[part]) for part in parts]
+    emf, cogging = (np.arange(0.0, 360.0, step) for step in (grid.emf_step, grid.cogging_step))
     return (
-        _layout("back_emf", _there_and_back(EMF_ANGLES, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
-        _layout("cogging", _there_and_back(COGGING_ANGLES), {"torque_Nm": COGGING}),
+        _layout("back_emf", _there_and_back(emf, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
+        _layout("cogging", _there_and_back(cogging), {"torque_Nm": COGGING}),
         _layout("locked_rotor", loaded[0], {"torque_Nm": TORQUE}),
         _layout("flux_linkage", loaded[1], {f"dpsi_{x}_Vs": LINKAGE for x in "abc"}),
         _layout("phase_resistance", {"winding_T_degC": WINDING}, {f"r_{x}_mohm": RESISTANCE for x in "abc"}),

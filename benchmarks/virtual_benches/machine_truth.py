@@ -50,10 +50,13 @@ class FullField:
 
     def __init__(self, nominal: MachineAsBuilt):
         self.field = MachineField(nominal, MESH, chords)
+        self._spectra: dict[MachineAsBuilt, np.ndarray] = {}  # of a whole machine, which takes seconds
 
     def no_load(self, design: MachineAsBuilt, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Torque [Nm] (n,) and d psi/d angle of the phases [Wb] (3, n) without current, the magnets whole."""
-        spectrum = averaged(self._phases(design, coefficients(self.field.no_load(design), ORDERS)), design.skew)
+        if design not in self._spectra:
+            self._spectra[design] = self._phases(design, coefficients(self.field.no_load(design), ORDERS))
+        spectrum = averaged(self._spectra[design], design.skew)
         return design.length * evaluated(spectrum[:1], angle)[0], design.length * evaluated(slope(spectrum[1:]), angle)
 
     def loaded(self, design: MachineAsBuilt, angle: np.ndarray, currents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

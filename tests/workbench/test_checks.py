@@ -1,0 +1,88 @@
+"""Each check that needs no model speaks on data made for it, and is silent on data without the fault."""
+
+import numpy as np
+import pytest
+
+from workbench.checks import checks_of
+from workbench.table import Campaign, Response, Table
+
+RANDOM = np.random.default_rng(4)
+ANGLE = np.tile(np.linspace(0, 2 * np.pi, 180, endpoint=False), 2)
+DIRECTION = np.repeat([1.0, -1.0], 180)
+SPEED = np.linspace(0.1, 0.5, 24)
+
+
+def table(kind, conditions, responses, u, repeat=None):
+    n = len(next(iter(responses.values())))
+    noisy = {k: Response(k, v + u * RANDOM.standard_normal(n), np.full(n, u), "") for k, v in responses.items()}
+    zero = np.zeros(n, dtype=int)
+    return Table(kind, f"{kind}.csv", conditions, noisy, zero, zero if repeat is None else repeat, zero.astype(bool))
+
+
+def said(*tables, device=None):
+    return " ".join(checks_of(Campaign("c", ".", device or {}, tables, (), (), 2, {})))
+
+
+def cogging(friction=0.0, zero=0.0):
+    torque = 0.05 * np.sin(60 * ANGLE) + friction * DIRECTION + zero
+    return table("cogging", {"angle_mech": ANGLE, "direction": DIRECTION}, {"torque": torque}, 0.002)
+
+
+def emf(gain=1.0, offset=0.0):
+    waves = {f"v_{x}": np.cos(5 * ANGLE - k * 2 * np.pi / 3) for k, x in enumerate("abc")}
+    waves["v_a"] = gain * waves["v_a"] + offset
+    return table("back_emf", {"angle_mech": ANGLE}, waves, 0.005)
+
+
+def resistance(coefficient):
+    warm = np.linspace(20, 100, 9)
+    return table("phase_resistance", {"winding_T": warm}, {"r_a": 0.012 * (1 + coefficient * (warm - 20))}, 1e-5)
+
+
+def force(zero=0.0, k=60.0):
+    v, shunt = np.tile(SPEED, 2), np.repeat([0.5, 10.0], len(SPEED))
+    return table(
+        "damping_velocity", {"velocity": v, "shunt": shunt}, {"force": k**2 * v / (1.2 + shunt) + 20 * v + zero}, 0.2
+    )
+
+
+def voltage(k=60.0):
+    return table("back_emf", {"velocity": SPEED}, {"voltage": k * SPEED}, 0.01)
+
+
+DAMPER = {"internal_resistance_ohm": 1.2}
+
+
+@pytest.mark.parametrize(
+    "wrong, right, words, device",
+    [
+        ([cogging(friction=0.01)], [cogging()], "half-difference", {}),
+        ([cogging(zero=0.01)], [cogging()], "zero of the torque cell", {}),
+        ([emf(gain=1.03)], [emf()], "differ by", {}),
+        ([emf(offset=0.02)], [emf()], "has an offset", {}),
+        ([resistance(0.0043)], [resistance(0.00393)], "copper by 0.00393", {}),
+        ([force(zero=-40.0)], [force()], "give power", DAMPER),
+        ([force(), voltage(66.0)], [force(), voltage()], "force constant from the forces", DAMPER),
+    ],
+)
+def test_a_check_speaks_when_it_should(wrong, right, words, device):
+    assert words in said(*wrong, device=device)
+    assert words not in said(*right, device=device)
+
+
+def test_repeats_that_disagree_and_clipping():
+    repeat = np.repeat([0, 1], len(SPEED))
+    v = np.tile(SPEED, 2)
+    shifted = table("damping_velocity", {"velocity": v}, {"force": 20 * v + 8.0 * repeat}, 0.2, repeat)
+    assert "disagree by" in said(shifted)
+    clipped = table("damping_velocity", {"velocity": v}, {"force": np.minimum(20 * v, 6.0)}, 1e-12)
+    stuck = np.minimum(np.round(clipped.responses["force"].values, 6), 6.0)
+    clipped.responses["force"] = Response("force", stuck, np.full(len(v), 0.2), "N")
+    assert "clipped?" in said(clipped)
+
+
+def test_a_negative_real_part_is_no_passive_device():
+    f = np.linspace(1, 20, 20)
+    wrong = table("impedance", {"frequency": f}, {"re": 30.0 - 3 * f, "im": f}, 0.5)
+    assert "negative" in said(wrong)
+    assert "negative" not in said(table("impedance", {"frequency": f}, {"re": 30.0 + 0 * f, "im": f}, 0.5))

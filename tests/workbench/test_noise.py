@@ -1,0 +1,90 @@
+"""Noise that was put in is found again, and the whitener undoes exactly the covariance it is meant for."""
+
+import numpy as np
+import pytest
+
+from tests.workbench.toy_bench import LIBRARY, SpringModel, written
+from workbench.bench import bench_of
+from workbench.campaign import read_campaign
+from workbench.model import Model
+from workbench.noise import LawError, Whitener, matched_rows
+from workbench.stack import thinned
+
+
+def bench(folder):
+    campaign = read_campaign(folder)
+    return bench_of(Model(SpringModel(), SpringModel().design(campaign.device)), campaign, LIBRARY)
+
+
+@pytest.mark.parametrize("repeats", [2, 3])
+@pytest.mark.parametrize("scale, rho", [(1.0, 0.0), (1.7, 0.5), (0.6, 0.3)])
+def test_size_and_correlation_are_found(tmp_path, scale, rho, repeats):
+    found = bench(written(tmp_path, n=1300, scale=scale, rho=rho, seed=3, repeats=repeats)).noise.channels[0]
+    assert found.scale == pytest.approx(scale, rel=0.06)  # three standard errors of 1300 correlated differences
+    assert found.rho == pytest.approx(rho, abs=0.08)
+
+
+def test_a_wrong_model_does_not_look_like_noise(tmp_path):
+    quiet = bench(written(tmp_path / "a", n=400)).noise.channels[0]
+    wrong = bench(written(tmp_path / "b", n=400, extra=lambda x: 50 * np.sin(3000 * x))).noise.channels[0]
+    assert wrong.scale == pytest.approx(quiet.scale, rel=1e-5)  # readings are written to 1e-6
+
+
+def test_a_wild_reading_counts_less_and_leaves_the_size_alone(tmp_path):
+    folder = written(tmp_path, n=400)
+    clean = bench(folder).noise.channels[0]
+    lines = (folder / "pull.csv").read_text().splitlines()
+    repeat, x, force = lines[50].split(",")
+    lines[50] = f"{repeat},{x},{float(force) + 2.0}"  # 40 standard deviations
+    (folder / "pull.csv").write_text("\n".join(lines))
+    noise = bench(folder).noise
+    assert noise.channels[0].scale == pytest.approx(clean.scale, rel=0.02)
+    assert noise.inflation[49] > 8 and noise.channels[0].wild >= 1
+
+
+def test_coarse_steps_of_a_converter_do_not_make_noise_vanish(tmp_path):
+    folder = written(tmp_path, n=300, repeats=3, scale=0.8)
+    lines = (folder / "pull.csv").read_text().splitlines()
+    parts = [line.split(",") for line in lines[1:]]
+    coarse = [f"{r},{x},{round(float(f) / 0.1) * 0.1:.3f}" for r, x, f in parts]
+    (folder / "pull.csv").write_text("\n".join([lines[0], *coarse]))
+    assert bench(folder).noise.channels[0].scale == pytest.approx(np.hypot(0.8, 0.1 / np.sqrt(12) / 0.05), rel=0.1)
+
+
+def test_whitening_makes_ar1_noise_white_exactly():
+    n, rho, sigma = 6, 0.6, np.linspace(1, 3, 6)
+    white = Whitener(sigma, np.r_[0.0, np.full(n - 1, rho)])
+    covariance = np.outer(sigma, sigma) * rho ** np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    operator = white(np.eye(n))
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(n), atol=1e-12)
+
+
+def test_the_error_of_a_law_is_whitened_exactly():
+    random = np.random.default_rng(1)
+    wrong = random.standard_normal((7, 3))
+    directions, size, _ = np.linalg.svd(wrong, full_matrices=False)
+    law = LawError(slice(0, 7), directions, size)
+    operator = law.apply(np.eye(7))
+    covariance = np.eye(7) + wrong @ wrong.T
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(7), atol=1e-12)
+    assert law.half_log_det == pytest.approx(0.5 * np.linalg.slogdet(covariance)[1], rel=1e-12)
+
+
+def test_repeats_are_matched_by_their_conditions_when_rows_are_lost(tmp_path):
+    folder = written(tmp_path, n=50)
+    lines = (folder / "pull.csv").read_text().splitlines()
+    (folder / "pull.csv").write_text("\n".join(lines[:10] + lines[12:]))  # two rows of the first repeat are gone
+    table = read_campaign(folder).tables[0]
+    stations = matched_rows(table)
+    x = table.conditions["displacement"]
+    assert len(stations) >= 48 and np.allclose(x[stations[:, 0]], x[stations[:, 1]], atol=1e-12)
+
+
+def test_thinning_does_not_keep_step_with_a_cycle(tmp_path):
+    table = read_campaign(written(tmp_path, n=5000)).tables[0]
+    few = thinned(table, 200)
+    assert few.rows <= 200
+    x = few.conditions["displacement"]
+    rows = np.searchsorted(table.conditions["displacement"][:5000], x[few.repeat == 0])
+    assert len(np.unique(rows % 5)) == 5
+    assert np.array_equal(x[few.repeat == 0], x[few.repeat == 1])  # repeats can still be compared

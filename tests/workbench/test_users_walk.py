@@ -1,0 +1,89 @@
+"""The walk of a user on campaigns with a hidden effect: compare finds the channel, diagnose names it, add lowers the error.
+
+The campaigns come from virtual benches that follow other laws and methods than the models, see
+``benchmarks/virtual_benches``. Sizes are drawn by the bench; the seeds are the first whose effect stands out by a chi2 of
+100 to 10 000 (beyond that the approximate law of an effect is seen as something missing, rightly).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
+from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
+from benchmarks.virtual_benches.hiding import hide
+from effects.library import library
+from workbench.base_models import nominal_model
+from workbench.campaign import read_campaign
+from workbench.comparison import compare
+from workbench.diagnosis import diagnose
+from workbench.ledger import ACCEPTED
+from workbench.walk import add_effect
+
+BENCHES = {"damper": DAMPER, "dq": DQ}
+FIRST_SEED, CLEAR = 50000, (100.0, 1e4)
+NAMED = ("effect", "group")
+# Effects, and the tables in which they show
+HIDDEN = {
+    ("damper", "coulomb_friction"): {"force_velocity", "impedance"},
+    ("damper", "diode_drop"): {"force_velocity", "impedance", "open_circuit"},
+    ("damper", "inertance"): {"impedance"},
+    ("damper", "mount_compliance"): {"impedance"},
+    ("damper", "excess_viscous"): {"force_velocity", "impedance"},
+    ("dq", "quadrature_inductance"): {"operation"},
+    ("dq", "friction_torque"): {"operation", "drag", "short_circuit"},
+    ("dq", "iron_loss_resistance"): {"operation", "drag", "short_circuit"},
+    ("dq", "torque_gain"): {"operation", "drag", "short_circuit"},
+}
+EMPTY = [("damper", 50000), ("damper", 50001), ("dq", 50000), ("dq", 50001)]
+
+
+def clear_case(bench: str, effect: str):
+    """The first campaign of a bench in which the effect is clear."""
+    cases = (hide(BENCHES[bench], "single", seed, (effect,)) for seed in range(FIRST_SEED, FIRST_SEED + 20))
+    return next(truth for truth, answer in cases if CLEAR[0] < answer.visibility[effect] < CLEAR[1])
+
+
+def opened(truth, folder):
+    campaign = read_campaign(truth.write(folder / truth.id))
+    return nominal_model(campaign), campaign
+
+
+@pytest.fixture(scope="module", params=HIDDEN, ids="-".join)
+def walked(request, tmp_path_factory):
+    """Comparison, diagnosis and what adding the named effect did."""
+    folder = tmp_path_factory.mktemp("walk")
+    model, campaign = opened(clear_case(*request.param), folder)
+    diagnosis = diagnose(model, campaign, library())
+    name = request.param[1]
+    added = add_effect(model, campaign, library(), name, folder)
+    return request.param, compare(model, campaign, library()), diagnosis, added
+
+
+def test_compare_finds_the_failing_channel(walked):
+    """Or, where the tolerances could take the effect over, a pull of three sigma and more."""
+    case, comparison, _, _ = walked
+    if comparison.failing:
+        assert comparison.failing.split(".")[0] in HIDDEN[case]
+    else:
+        assert max(abs(pull.pull) for pull in comparison.pulls) > 3
+
+
+def test_diagnose_names_the_effect_or_its_group(walked):
+    (_, effect), _, diagnosis, _ = walked
+    assert diagnosis.verdict in NAMED, diagnosis.verdict
+    assert effect in diagnosis.names
+
+
+def test_add_brings_the_held_out_error_to_the_noise(walked):
+    _, _, _, added = walked
+    start, step = added.ledger.steps[0], added.ledger.steps[-1]
+    assert step.decision == ACCEPTED, step.reason
+    assert step.held_out_chi2_per_n < max(start.held_out_chi2_per_n, 1.0)
+    assert step.held_out_chi2_per_n <= 1.2
+
+
+@pytest.mark.parametrize("bench, seed", EMPTY)
+def test_nothing_is_missing_where_nothing_is_hidden(bench, seed, tmp_path):
+    model, campaign = opened(hide(BENCHES[bench], "null", seed)[0], tmp_path)
+    assert diagnose(model, campaign, library()).verdict == "nothing_missing"

@@ -1,0 +1,354 @@
+"""What a comparison and a diagnosis found, as plain values: the only input of the reports and of the JSON files.
+
+Numbers are in the unit that stands beside them (the unit of the data file), fit for people. A residual is measured minus
+model. "u" is the standard uncertainty of one reading after the noise was measured from repeats; a residual "in u" is
+divided by it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Mapping
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Something along which data lie: ``Axis("speed", "rpm")``; the unit is empty for a pure number."""
+
+    name: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class ChannelScore:
+    """V0: one channel. Errors [unit]; rms_error_percent of the channel's rms reading.
+
+    excess_share: share of this channel in the sum of chi2 - n over all channels that exceed it
+    noise_floor: rms error that noise alone leaves [unit];  u_val: rms of sqrt(u_D^2 + u_num^2) [unit]
+    held_out_chi2_per_n: None where nothing is held out
+    """
+
+    channel: str
+    unit: str
+    n: int
+    rms_error: float
+    rms_error_percent: float
+    bias: float
+    chi2_per_n: float
+    chi2_per_n_nominal: float
+    held_out_chi2_per_n: float | None
+    noise_floor: float
+    u_val: float
+    excess_share: float
+
+
+@dataclass(frozen=True)
+class Pull:
+    """V1: how far the fit moved one declared uncertainty.
+
+    pull: shift / sigma;  sigma: as declared, relative or [unit];  what: "tolerance", "instrument" or "effect"
+    """
+
+    name: str
+    pull: float
+    sigma: float
+    unit: str
+    what: str
+    source: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelFit:
+    """A channel against its natural axis, (n,): reading, model at nominal inputs, model with fitted inputs, u.
+
+    series: label of each row by which the lines are told apart ("shunt 1 ohm"); held_out: rows no fit has seen
+    """
+
+    channel: str
+    unit: str
+    axis: Axis
+    x: np.ndarray
+    measured: np.ndarray
+    nominal: np.ndarray
+    fitted: np.ndarray
+    u: np.ndarray
+    held_out: np.ndarray
+    series: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RegimeMap:
+    """V2: mean residual in u of the cells of a grid; NaN where no reading lies.
+
+    x_edges (nx + 1,), y_edges (ny + 1,): cells; y is None for one condition only, and then ny is 1
+    mean, p_value, count: (ny, nx); p_value by permutation of the residuals
+    """
+
+    channel: str
+    x: Axis
+    y: Axis | None
+    x_edges: np.ndarray
+    y_edges: np.ndarray
+    mean: np.ndarray
+    p_value: np.ndarray
+    count: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class OrderSpectrum:
+    """V3: residual amplitude of every order per revolution [unit], (k,).
+
+    floor: amplitude that noise alone stays below in 99 of 100 spectra;  classes: family of each order, from ORDER_CLASSES
+    """
+
+    channel: str
+    unit: str
+    orders: np.ndarray
+    amplitude: np.ndarray
+    floor: np.ndarray
+    classes: tuple[str, ...]
+
+
+ORDER_CLASSES = ("native", "rotor", "stator", "emf", "other_emf", "encoder", "current", "imbalance", "other")
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """V4: residual ~ quantity ** exponent, with its 90 % interval.
+
+    meaning: the law that the exponent speaks for, empty where the interval allows several;  n: levels of the quantity
+    """
+
+    channel: str
+    quantity: str
+    exponent: float
+    low90: float
+    high90: float
+    n: int
+    meaning: str = ""
+
+
+@dataclass(frozen=True)
+class Parity:
+    """V5: rms of the odd and the even part of the residual in u under a reversal, and what noise alone would give."""
+
+    channel: str
+    reversal: str
+    odd: float
+    even: float
+    floor: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sequence:
+    """V6: residual in u in the order of acquisition, (n,).
+
+    axis: Axis("sample"), time or a temperature;  scan: number of each row's scan
+    trend: residual in u from the first to the last by a straight line;  p_value: by permutation
+    """
+
+    channel: str
+    axis: Axis
+    x: np.ndarray
+    residual: np.ndarray
+    scan: np.ndarray
+    trend: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """Permutation p-value of the residual on one condition."""
+
+    condition: str
+    p_value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Whiteness:
+    """V7: autocorrelation of the residual within scans at lags 1, 2, ... (k,) after whitening, its 99 % band."""
+
+    channel: str
+    autocorrelation: np.ndarray
+    band99: float
+    dependences: tuple[Dependence, ...] = ()
+
+
+@dataclass(frozen=True)
+class SignatureMatch:
+    """V8: cosine between the residual and what an effect would leave, both freed of what tolerances can explain."""
+
+    name: str
+    title: str
+    cosine: float
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """All that ``compare`` found. Views hold one entry a channel where they can be had for it, and are empty otherwise.
+
+    failing: name of the channel with the largest share of the excess, empty when none fails
+    effects: names of the effects that the model already has
+    chi2_per_n, held_out_chi2_per_n: over all channels
+    """
+
+    campaign: str
+    model: str
+    effects: tuple[str, ...]
+    failing: str
+    chi2_per_n: float
+    held_out_chi2_per_n: float | None
+    scoreboard: tuple[ChannelScore, ...]
+    pulls: tuple[Pull, ...]
+    fits: tuple[ChannelFit, ...]
+    regimes: tuple[RegimeMap, ...] = ()
+    orders: tuple[OrderSpectrum, ...] = ()
+    scalings: tuple[Scaling, ...] = ()
+    parities: tuple[Parity, ...] = ()
+    sequences: tuple[Sequence, ...] = ()
+    whiteness: tuple[Whiteness, ...] = ()
+    signatures: tuple[SignatureMatch, ...] = ()
+    checks: tuple[str, ...] = ()
+    complaints: tuple[str, ...] = ()
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted parameter: value, standard uncertainty and 90 % interval [unit]."""
+
+    value: float
+    std: float
+    low90: float
+    high90: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One effect that was tried. probability: that it, alone, is what is missing."""
+
+    name: str
+    title: str
+    probability: float
+    log_evidence: float
+    parameters: Mapping[str, Estimate]
+    chi2_per_n_before: float
+    chi2_per_n_after: float
+    held_out_chi2_per_n_before: float | None
+    held_out_chi2_per_n_after: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class SizePosterior:
+    """Density of a parameter of the named effect over a grid of values [unit], (k,) each, and its prior density."""
+
+    effect: str
+    parameter: str
+    unit: str
+    values: np.ndarray
+    density: np.ndarray
+    prior: np.ndarray
+    estimate: Estimate
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How well the data tell two effects apart: expected log-Bayes factor [nats] at the fitted size, and what would."""
+
+    first: str
+    second: str
+    nats: float
+    separated_by: str = ""
+
+
+@dataclass(frozen=True)
+class DetectionLimit:
+    """The smallest size of an effect that these data would have shown."""
+
+    name: str
+    title: str
+    parameter: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class NextMeasurement:
+    """A measurement that would help: where, its gain of evidence [nats] and its declared cost."""
+
+    kind: str
+    words: str
+    conditions: Mapping[str, object]
+    gain_nats: float
+    cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """All that ``diagnose`` found.
+
+    verdict: nothing_missing, effect, group, pair, partial, none_of_these or cannot_tell;  probability: of the verdict
+    abstention_power: share of unknown discrepancies that these data would flag, by their size in u ({3.0: 0.4, 10.0: 1.0})
+    before, after: the failing channel without and with the leading effect, the same rows
+    """
+
+    campaign: str
+    model: str
+    verdict: str
+    names: tuple[str, ...]
+    probability: float
+    ranking: tuple[Ranked, ...]
+    p_nothing_missing: float
+    p_none_of_these: float
+    p_pairs: Mapping[str, float]
+    abstention_power: Mapping[float, float]
+    detection_limits: tuple[DetectionLimit, ...]
+    next_measurements: tuple[NextMeasurement, ...]
+    residual_signature: Mapping[str, object]
+    seed: int
+    wall_s: float
+    before: ChannelFit | None = None
+    after: ChannelFit | None = None
+    posteriors: tuple[SizePosterior, ...] = ()
+    separations: tuple[Separation, ...] = ()
+    false_alarm_rate: float | None = None
+    complaints: tuple[str, ...] = ()
+    provenance: Mapping[str, str] = field(default_factory=dict)
+    p_partial: Mapping[str, float] = field(default_factory=dict)
+    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a pair: name -> names that may stand for it
+
+
+@dataclass(frozen=True)
+class LedgerStep:
+    """One row of the ledger. step 0 is the model before any effect; decision: "start", "accepted" or "refused".
+
+    rms_error, noise_floor: per channel [unit of the channel]
+    """
+
+    step: int
+    effect: str
+    title: str
+    decision: str
+    parameters: Mapping[str, Estimate]
+    log_evidence_gain: float
+    chi2_per_n: float
+    held_out_chi2_per_n: float | None
+    rms_error: Mapping[str, float]
+    noise_floor: Mapping[str, float]
+    units: Mapping[str, str]
+    verdict: str = ""
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """The steps in their order; goal: held-out chi2/n at which the walk ends."""
+
+    campaign: str
+    model: str
+    steps: tuple[LedgerStep, ...]
+    goal: float = 1.2
+    provenance: Mapping[str, str] = field(default_factory=dict)

@@ -1,0 +1,5 @@
+"""Pictures and pages of what ``workbench.findings`` holds; nothing is computed here but what a picture needs."""
+
+from workbench.report.pages import write_comparison_report, write_diagnosis_report, write_ledger_report
+
+__all__ = ["write_comparison_report", "write_diagnosis_report", "write_ledger_report"]

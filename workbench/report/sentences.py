@@ -1,0 +1,417 @@
+"""One sentence for every view of a comparison, whether it is alarming, and the verdicts in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterable
+
+import numpy as np
+from scipy.stats import binom
+from scipy.stats import f as fisher
+
+from workbench.findings import (
+    ChannelScore,
+    Comparison,
+    Diagnosis,
+    Ledger,
+    LedgerStep,
+    OrderSpectrum,
+    Parity,
+    Ranked,
+    RegimeMap,
+    Whiteness,
+)  # fmt: skip
+from workbench.report.words import (
+    amount,
+    bounds,
+    chi2_text,
+    interval,
+    listed,
+    number,
+    p_text,
+    percent,
+    plain,
+    prefixed,
+    probability_text,
+    signed,
+)
+
+GOAL = 1.2  # chi2/n up to which a channel is at the noise
+ALARMING_PULL = 3.0  # sigma
+ALARMING_P = 0.01  # probability that noise alone gives what a view shows
+ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
+ALARMING_PART = 1.5  # odd or even part over what noise alone gives
+
+ORDER_WORDS = {
+    "native": "of the machine as drawn (multiples of LCM(Q, 2p))",
+    "rotor": "of a defect on the rotor (multiples of Q)",
+    "stator": "of a defect on the stator (multiples of 2p)",
+    "emf": "of the EMF (odd multiples of p)",
+    "other_emf": "that the EMF of a sound machine does not have",
+    "encoder": "of the encoder or its run-out (1, 2)",
+    "current": "of current harmonics (6 per electrical period)",
+    "imbalance": "of unequal phases (2 per electrical period)",
+    "other": "of no known family",
+}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a view says. alarming: None where these data do not allow the view."""
+
+    view: str
+    title: str
+    shows: str
+    sentence: str
+    alarming: bool | None
+
+    @property
+    def flag(self) -> str:
+        return {True: "alarming", False: "in order", None: "not to be had"}[self.alarming]
+
+
+_VIEWS = {
+    "V0": ("Scoreboard", "Error of every channel against its noise."),
+    "V1": ("Tolerance pulls", "How far the fit had to move each declared tolerance and calibration, in its own sigma."),
+    "V2": ("Regime map", "Mean residual over the operating range; p is by permutation of the residuals."),
+    "V3": ("Order spectrum", "Residual amplitude of every mechanical order; of 100 orders of noise one is above the line."),
+    "V4": ("Scaling", "Power of the residual's growth with each condition."),
+    "V5": ("Parity", "Odd and even part of the residual when a direction or sign is reversed."),
+    "V6": ("Order of acquisition", "Residual in the order in which it was measured."),
+    "V7": ("Whiteness", "Whether structure is left from reading to reading, and on any condition."),
+    "V8": ("Signature match", "Cosine between the residual and what each effect of the library would leave."),
+}  # fmt: skip
+
+
+def readings(comparison: Comparison) -> tuple[Reading, ...]:
+    """The nine views in their order."""
+    said = (_scoreboard, _pulls, _regimes, _orders, _scalings, _parities, _sequences, _whiteness, _signatures)
+    return tuple(Reading(view, *_VIEWS[view], *say(comparison)) for view, say in zip(_VIEWS, said, strict=True))
+
+
+def fails(score: ChannelScore, channels: int) -> bool:
+    """Whether a channel is further off than noise makes likely.
+
+    chi2/n above 1.2 and above the 1 % / channels quantile of F(n, n/2): the size of the noise was itself measured, from
+    the n/2 differences that two repeats give.
+    """
+    return score.chi2_per_n > max(GOAL, float(fisher.isf(ALARMING_P / channels, score.n, score.n / 2)))
+
+
+def channels_off(c: Comparison) -> list[ChannelScore]:
+    """Channels that are off by more than noise."""
+    return [score for score in c.scoreboard if fails(score, len(c.scoreboard))]
+
+
+def comparison_sentence(comparison: Comparison) -> str:
+    """The verdict-like summary of a comparison."""
+    alarms = [reading for reading in readings(comparison) if reading.alarming]
+    failing = _failing(comparison)
+    if failing:
+        return (
+            f"The model does not explain these data: {failing.channel} is off by "
+            f"{amount(failing.rms_error, failing.unit)} rms where its noise is "
+            f"{amount(failing.noise_floor, failing.unit)}; it carries {percent(failing.excess_share)} of the excess."
+        )
+    if _pulled(comparison):
+        names = listed(plain(pull.name) for pull in _pulled(comparison))
+        return (
+            f"The error is at the noise, but only because {names} had to leave the declared tolerance: an effect may "
+            "hide there."
+        )
+    if alarms:
+        names = listed(alarm.title.lower() for alarm in alarms)
+        return f"The size of the error is that of the noise, but it is not random: see {names}."
+    return "The model explains these data: every channel is at its noise and no view finds structure."
+
+
+def _scoreboard(c: Comparison) -> tuple[str, bool]:
+    off = channels_off(c)
+    if not off:
+        worst = max(c.scoreboard, key=lambda score: score.chi2_per_n)
+        return (
+            f"All {len(c.scoreboard)} channels are at the noise, as far as the repeats tell its size; the worst, "
+            f"{worst.channel}, has chi²/n = {chi2_text(worst.chi2_per_n)}.",
+            False,
+        )
+    worst = max(off, key=lambda score: score.excess_share)
+    return (
+        f"{len(off)} of {len(c.scoreboard)} channels {'is' if len(off) == 1 else 'are'} off by more than noise; "
+        f"{worst.channel} has chi²/n = {chi2_text(worst.chi2_per_n)}, an rms error of "
+        f"{amount(worst.rms_error, worst.unit)} ({amount(worst.rms_error_percent)} %) and a bias of "
+        f"{amount(worst.bias, worst.unit)}.",
+        True,
+    )
+
+
+def _pulls(c: Comparison):
+    if not c.pulls:
+        return "The campaign declares no tolerance and no calibration uncertainty.", None
+    pulled = _pulled(c)
+    if not pulled:
+        worst = max(c.pulls, key=lambda pull: abs(pull.pull))
+        return (
+            f"Nothing is moved by more than {ALARMING_PULL:g} sigma; the most, {plain(worst.name)}, by "
+            f"{signed(worst.pull)}.",
+            False,
+        )
+    moved = listed(f"{plain(pull.name)} by {signed(pull.pull)} sigma" for pull in pulled)
+    return f"The fit moves {moved}: this is not a tolerance any more, an effect hides in it.", True
+
+
+def _pulled(c: Comparison):
+    return sorted((pull for pull in c.pulls if abs(pull.pull) > ALARMING_PULL), key=lambda pull: -abs(pull.pull))
+
+
+def _regimes(c: Comparison):
+    if not c.regimes:
+        return "No channel has conditions that span a range.", None
+    worst = min(c.regimes, key=_chance_of)
+    chance = min(1.0, len(c.regimes) * _chance_of(worst))
+    if chance > ALARMING_P:
+        return (
+            f"No part of the operating range stands out from what chance gives ({p_text(chance)} for all cells "
+            "together).",
+            False,
+        )
+    row, column = _clearest_cell(worst)
+    where = f"{plain(worst.x.name)} {_span(worst.x_edges, column, worst.x.unit)}"
+    if worst.y is not None:
+        where += f" and {plain(worst.y.name)} {_span(worst.y_edges, row, worst.y.unit)}"
+    return (
+        f"{worst.channel} is off most clearly at {where}: on average {signed(worst.mean[row, column])} u "
+        f"({p_text(worst.p_value[row, column])}).",
+        True,
+    )
+
+
+def _clearest_cell(regime: RegimeMap) -> tuple[int, int]:
+    """Row and column of the largest mean among the cells that are least likely by chance."""
+    p_value = np.where(regime.count > 0, regime.p_value, np.inf)
+    mean = np.where(p_value <= p_value.min(), np.abs(regime.mean), -1.0)
+    return np.unravel_index(int(np.argmax(mean)), mean.shape)
+
+
+def _chance_of(regime: RegimeMap) -> float:
+    return by_chance(regime.p_value[regime.count > 0])
+
+
+def by_chance(p_values: Iterable[float]) -> float:
+    """Probability that so many tests of pure noise give p-values this small.
+
+    Twice the smaller of Bonferroni's bound for the smallest and the binomial tail for the number below ``ALARMING_P``:
+    few permutations bound the smallest p-value from below, but cannot make many of them small.
+    """
+    p = np.asarray(list(p_values), dtype=float)
+    if not len(p):
+        return 1.0
+    many = binom.sf(np.sum(p < ALARMING_P) - 1, len(p), ALARMING_P)
+    return float(min(1.0, 2 * min(len(p) * p.min(), many)))
+
+
+def _span(edges: np.ndarray, cell: int, unit: str) -> str:
+    factor, written = prefixed(float(np.max(np.abs(edges[cell : cell + 2]))), unit)
+    return f"{number(edges[cell] * factor)} to {number(edges[cell + 1] * factor)} {written}".rstrip()
+
+
+def _orders(c: Comparison):
+    if not c.orders:
+        return "No channel was measured over an angle.", None
+    tests = sum(len(spectrum.orders) for spectrum in c.orders)
+    worst = max(c.orders, key=lambda spectrum: np.max(spectrum.amplitude / spectrum.floor))
+    above = np.flatnonzero(tests * _order_chance(worst) < ALARMING_P)
+    if not len(above):
+        return (
+            f"No order of {listed(s.channel for s in c.orders)} stands above what {tests} orders of noise give.",
+            False,
+        )
+    families = {}
+    for k in above[np.argsort(-worst.amplitude[above])]:
+        families.setdefault(worst.classes[k], []).append(f"{worst.orders[k]:g}")
+    said = "; ".join(f"{', '.join(orders[:5])} {ORDER_WORDS[family]}" for family, orders in families.items())
+    return f"{worst.channel} has orders above the noise: {said}.", True
+
+
+def _order_chance(spectrum: OrderSpectrum) -> np.ndarray:
+    """Probability that noise reaches the amplitude of each order: Rayleigh's law, 1 % at the floor."""
+    return 0.01 ** ((spectrum.amplitude / spectrum.floor) ** 2)
+
+
+def _scalings(c: Comparison):
+    if not c.scalings:
+        return "No condition takes enough different values where the residual stands above the noise.", None
+    telling = [s for s in c.scalings if s.meaning]
+    if not telling:
+        return "The intervals are too wide to speak for one law.", False
+    best = min(telling, key=lambda s: (s.channel != c.failing, s.high90 - s.low90))
+    return (
+        f"The residual of {best.channel} goes with {plain(best.quantity)} to the power {number(best.exponent, 2)} "
+        f"({number(best.low90, 2)} to {number(best.high90, 2)}), like {best.meaning}.",
+        any(score.channel == best.channel for score in channels_off(c)),
+    )
+
+
+def _parities(c: Comparison):
+    if not c.parities:
+        return "Nothing was measured in both directions or with both signs.", None
+    worst = max(c.parities, key=_part)
+    if _part(worst) < ALARMING_PART:
+        return "Odd and even parts are what noise alone gives.", False
+    odd = worst.odd > worst.even
+    means = "friction, hysteresis or another loss" if odd else "an offset or a misalignment"
+    return (
+        f"Under reversal of {plain(worst.reversal)} the residual of {worst.channel} is mostly "
+        f"{'odd' if odd else 'even'} ({number(max(worst.odd, worst.even))} u against {number(worst.floor, 2)} u of "
+        f"noise), as {means} makes it.",
+        True,
+    )
+
+
+def _part(parity: Parity) -> float:
+    return max(parity.odd, parity.even) / parity.floor
+
+
+def _sequences(c: Comparison):
+    if not c.sequences:
+        return "The tables do not say in which order they were measured.", None
+    worst = min(c.sequences, key=lambda s: s.p_value)
+    if worst.p_value * len(c.sequences) > ALARMING_P:
+        return (
+            f"No drift: the strongest trend, in {worst.channel}, is {signed(worst.trend)} u from first to last "
+            f"({p_text(worst.p_value)}).",
+            False,
+        )
+    return (
+        f"{worst.channel} moves by {signed(worst.trend)} u from the first to the last {plain(worst.axis.name)} "
+        f"({p_text(worst.p_value)}): a drift, unless a condition was changed in this order.",
+        True,
+    )
+
+
+def _whiteness(c: Comparison):
+    if not c.whiteness:
+        return "The scans are too short for an autocorrelation.", None
+    found = [said for said in (_structure(w, len(c.whiteness)) for w in c.whiteness) if said]
+    if not found:
+        return "What is left is white: no autocorrelation within scans and no dependence on a condition.", False
+    return f"Structure is left in {listed(found)}.", True
+
+
+def _structure(w: Whiteness, channels: int) -> str:
+    """In words what is not white in a channel; empty where all is."""
+    lags = len(w.autocorrelation)
+    outside = int(np.sum(np.abs(w.autocorrelation) > w.band99))
+    in_lags = bool(channels * binom.sf(outside - 1, lags, 0.01) < ALARMING_P)
+    depends = bool(channels * by_chance(d.p_value for d in w.dependences) < ALARMING_P)
+    on = [plain(d.condition) for d in w.dependences if d.p_value < ALARMING_P]
+    parts = ["from reading to reading"] * in_lags + [f"depends on {listed(on)}"] * depends
+    return f"{w.channel} ({' and '.join(parts)})" if parts else ""
+
+
+def _signatures(c: Comparison):
+    if not c.signatures:
+        return "No effect of the library acts on these measurements.", None
+    best = max(c.signatures, key=lambda s: abs(s.cosine))
+    failing = bool(_failing(c) or _pulled(c))
+    if abs(best.cosine) < ALARMING_COSINE or not failing:
+        rest = "there is nothing it could explain" if not failing else "no single known effect looks like the residual"
+        return f"The nearest effect is {plain(best.name)} with a cosine of {best.cosine:.2f}; {rest}.", False
+    return (
+        f"The residual looks most like {plain(best.name)} (cosine {best.cosine:.2f}); diagnose says whether that is "
+        "enough.",
+        True,
+    )
+
+
+def _failing(c: Comparison) -> ChannelScore | None:
+    """The channel that is named as failing, where it does fail."""
+    return next((score for score in channels_off(c) if score.channel == c.failing), None)
+
+
+# ---- diagnosis ------------------------------------------------------------------------------------------------------
+
+
+def verdict_sentence(d: Diagnosis) -> str:
+    """The verdict of a diagnosis in plain words."""
+    names = [plain(name) for name in d.names]
+    return {
+        "nothing_missing": lambda: "Nothing is missing: the model with its tolerances explains these data.",
+        "effect": lambda: f"What is missing is {names[0]}{_size(d)}.",
+        "group": lambda: f"What is missing is one of {listed(names, 'or')}; these data cannot tell which.",
+        "pair": lambda: f"Two effects are missing together: {listed(names)}.",
+        "partial": lambda: f"{_explains(names)} a part{_size(d)}, but something remains.",
+        "none_of_these": lambda: f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}.",
+        "cannot_tell": lambda: "These data cannot tell whether something is missing.",
+    }[d.verdict]() + f" Probability {probability_text(d.probability)}."
+
+
+def _explains(names: list[str]) -> str:
+    said = listed(names)
+    return f"{said[0].upper()}{said[1:]} {'explains' if len(names) == 1 else 'together explain'}"
+
+
+def _size(d: Diagnosis) -> str:
+    if len(d.names) > 1:
+        return ""
+    leader = leading(d)
+    if leader is None or not leader.parameters:
+        return ""
+    sizes = listed(f"{plain(name)} {interval(estimate)}" for name, estimate in leader.parameters.items())
+    return f": {sizes}"
+
+
+def leading(d: Diagnosis) -> Ranked | None:
+    """The ranked effect that the verdict is about, else the most probable one."""
+    by_name = {ranked.name: ranked for ranked in d.ranking}
+    ordered = sorted(d.ranking, key=lambda ranked: -ranked.probability)
+    return next((by_name[name] for name in d.names if name in by_name), ordered[0] if ordered else None)
+
+
+def _where(d: Diagnosis) -> str:
+    channel = d.residual_signature.get("channel")
+    return f"; look at {channel}" if channel else ""
+
+
+def power_sentence(d: Diagnosis) -> str:
+    """How often these data would notice an effect outside the library."""
+    if not d.abstention_power:
+        return "The power to say “none of these” was not computed for these data."
+    said = listed(f"{percent(share)} of those of {size:g} u" for size, share in sorted(d.abstention_power.items()))
+    weak = max(d.abstention_power.values()) < 0.5
+    closing = (
+        " A definite name from data this weak must not be trusted: a set like this cannot abstain." if weak else ""
+    )
+    return f"Of unknown smooth discrepancies these data would flag {said}, u being that of one reading.{closing}"
+
+
+# ---- ledger ---------------------------------------------------------------------------------------------------------
+
+
+def ledger_sentence(ledger: Ledger) -> str:
+    """Where the walk stands."""
+    kept = [step for step in ledger.steps if step.decision != "refused"]
+    refused = [step for step in ledger.steps if step.decision == "refused"]
+    first, last = kept[0], kept[-1]
+    start, now = _judged(first), _judged(last)
+    added = listed(plain(step.effect) for step in kept[1:]) or "nothing yet"
+    goal = "at the goal" if now <= ledger.goal else "above the goal"
+    fell = "stands at" if last is first else f"fell from chi²/n = {chi2_text(start)} to"
+    said = f"Added: {added}. The error on {_which(last)} {fell} {chi2_text(now)}, {goal} of {ledger.goal:g} (noise: 1)."
+    return said + (f" Refused: {listed(plain(step.effect) for step in refused)}." if refused else "")
+
+
+def _judged(step: LedgerStep) -> float:
+    return step.chi2_per_n if step.held_out_chi2_per_n is None else step.held_out_chi2_per_n
+
+
+def _which(step: LedgerStep) -> str:
+    return "the fitted rows (none are held out)" if step.held_out_chi2_per_n is None else "held-out rows"
+
+
+def size_words(step: LedgerStep) -> str:
+    """Parameters of a step with their 90 % intervals; empty for the start."""
+    return "; ".join(f"{plain(name)} {_short(e)}" for name, e in step.parameters.items())
+
+
+def _short(e) -> str:
+    return f"{amount(e.value, e.unit)} [{bounds(e)}]"

@@ -1,0 +1,114 @@
+"""How names, units and numbers are written for people."""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+
+from figures.report import number_text
+from workbench.findings import Axis, Estimate
+
+_WRITTEN = {
+    "1": "", "percent": "%", "deg": "°", "degC": "°C", "um": "µm", "uH": "µH", "rpm": "rpm", "kg_m2": "kg m²",
+    "ohm": "Ω", "Ohm": "Ω", "mohm": "mΩ", "mOhm": "mΩ", "kohm": "kΩ",
+}  # fmt: skip
+
+_TAKES_PREFIX = ("m", "s", "V", "A", "N", "H", "Ω", "Nm", "Vs", "W", "T", "rad")
+_PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
+_SMALL = 0.01  # below it a prefix reads better than zeros
+_DIGITS_AT_MOST = 5  # zeros behind the digits that count, rather than an exponent
+
+
+def unit_text(unit: str) -> str:
+    """A unit as printed: ``Ns_per_m`` becomes ``Ns/m``."""
+    written = _WRITTEN.get(unit, "/".join(_WRITTEN.get(part, part) for part in unit.split("_per_")))
+    return written.replace("^2", "²").replace("^3", "³")
+
+
+def plain(name: str) -> str:
+    """A name of the code in plain letters: ``magnet_temperature`` becomes ``magnet temperature``."""
+    return name.replace("_", " ")
+
+
+def label(name: str, unit: str) -> str:
+    """Label of an axis: ``damping / (Ns/m)``, ``force / N``."""
+    written = unit_text(unit)
+    if not written:
+        return plain(name)
+    return f"{plain(name)} / {f'({written})' if '/' in written else written}"
+
+
+def axis_label(axis: Axis) -> str:
+    return label(axis.name, axis.unit)
+
+
+def quantity_of(channel: str) -> str:
+    """The measured column of a channel: ``force_velocity.force`` is a force."""
+    return channel.rpartition(".")[2]
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number without idle zeros or an exponent it can do without: ``0.4``, ``−12.3``, ``3812``, ``–`` for none."""
+    if value is None or not isfinite(value):
+        return number_text(value)
+    places = 0 if value == 0 else digits - 1 - floor(log10(abs(value)))
+    text = f"{value:.0f}" if -_DIGITS_AT_MOST < places < 0 else f"{value:.{digits}g}"
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def signed(value: float, digits: int = 3) -> str:
+    """A number with its sign."""
+    return ("+" if value > 0 else "") + number(value, digits)
+
+
+def chi2_text(value: float | None) -> str:
+    """chi2/n with two places, three digits where large."""
+    return number(value) if value is None or abs(value) >= 10 else f"{value:.2f}"
+
+
+def amount(value: float | None, unit: str = "", digits: int = 3) -> str:
+    """A number with its unit: ``3.2 N``, ``4.5 µm``, ``12 %``, ``–`` where there is none."""
+    factor, written = prefixed(value or 0.0, unit)
+    gap = "" if written in ("", "°") else "\N{NO-BREAK SPACE}"
+    return number(value, digits) if value is None else f"{number(value * factor, digits)}{gap}{written}"
+
+
+def prefixed(size: float, unit: str) -> tuple[float, str]:
+    """Factor to, and print of, the unit with the prefix in which a number of this size reads best."""
+    written = unit_text(unit)
+    small = 0 < abs(size) < _SMALL and written.split("/")[0].split(" ")[0] in _TAKES_PREFIX
+    for prefix, factor in _PREFIXES if small else ():
+        if abs(size) * factor >= 1:
+            return factor, prefix + written
+    return 1.0, written
+
+
+def interval(estimate: Estimate) -> str:
+    """``4.1 N (90 % interval 3.6 to 4.6)``."""
+    return f"{amount(estimate.value, estimate.unit)} (90 % interval {bounds(estimate)})"
+
+
+def bounds(estimate: Estimate) -> str:
+    """The 90 % interval in the unit in which ``amount`` writes the value: ``3.6 to 4.6``."""
+    factor, _ = prefixed(estimate.value, estimate.unit)
+    return f"{number(estimate.low90 * factor)} to {number(estimate.high90 * factor)}"
+
+
+def percent(share: float) -> str:
+    """A share: ``85 %``, ``99.6 %``."""
+    return f"{number(100 * share, 3 if share > 0.99 else 2)} %"
+
+
+def probability_text(p: float) -> str:
+    """A probability, never rounded up to certainty or down to impossibility."""
+    return "> 99.9 %" if p > 0.999 else "< 0.1 %" if p < 0.001 else percent(p)
+
+
+def p_text(p_value: float) -> str:
+    """``p = 0.03``; permutations that were all beaten give ``p < 0.001``."""
+    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
+
+
+def listed(names, last: str = "and") -> str:
+    """``a, b and c``."""
+    names = list(names)
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}" if names else ""

@@ -1,0 +1,188 @@
+"""From evidences to probabilities, and from probabilities to one verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+from typing import Mapping
+
+import numpy as np
+from scipy.special import logsumexp
+
+from workbench.hypotheses import Hypothesis
+from workbench.linear import Nuisances
+from workbench.priors import EFFECT_AND_UNKNOWN, NOTHING, ONE_EFFECT, TWO_EFFECTS, UNKNOWN
+
+SURE = 0.9  # probability from which something is named
+NAMED = 0.6  # share of what is missing that names must carry to be printed
+LIKELY_TWIN = 0.01  # of the probability of the leader, for an effect that the data cannot tell from it
+LIKELY = 0.03  # the same for one that they can
+TWINS = 3.0  # expected log-Bayes factor [nats] below which two effects cannot be told apart
+LARGEST_GROUP = 4  # names; with more the data tell nothing
+POWER_NEEDED = 0.5  # share of unknown discrepancies of ten u that must be noticed before a name is believed
+
+NOTHING_MISSING, EFFECT, GROUP, PAIR = "nothing_missing", "effect", "group", "pair"
+PARTIAL, NONE_OF_THESE, CANNOT_TELL = "partial", "none_of_these", "cannot_tell"
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Evidences:
+    """ln evidences of all hypotheses, on one scale. rest: an effect beside the unknown function"""
+
+    nothing: float
+    singles: Mapping[str, float]
+    pairs: Mapping[Pair, float]
+    unknown: float
+    rest: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Probabilities of all hypotheses; they add up to one."""
+
+    nothing: float
+    singles: Mapping[str, float]
+    pairs: Mapping[Pair, float]
+    unknown: float
+    rest: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """kind: one of the seven words;  names: the effect, or the members of the group or pair"""
+
+    kind: str
+    names: tuple[str, ...]
+    probability: float
+
+
+def posterior(evidences: Evidences) -> Posterior:
+    """Probabilities with the shares of ``workbench.priors``; pairs that were not fitted keep their share out of the
+    sum."""
+    effects = max(len(evidences.singles), 1)
+    pairs = max(effects * (effects - 1) // 2, 1)
+    weighed = Evidences(
+        evidences.nothing + log(NOTHING),
+        {n: v + log(ONE_EFFECT / effects) for n, v in evidences.singles.items()},
+        {n: v + log(TWO_EFFECTS / pairs) for n, v in evidences.pairs.items()},
+        evidences.unknown + log(UNKNOWN),
+        {n: v + log(EFFECT_AND_UNKNOWN / effects) for n, v in evidences.rest.items()},
+    )
+    total = logsumexp(_all(weighed))
+    share = lambda values: {name: float(np.exp(v - total)) for name, v in values.items()}  # noqa: E731
+    return Posterior(
+        float(np.exp(weighed.nothing - total)),
+        share(weighed.singles),
+        share(weighed.pairs),
+        float(np.exp(weighed.unknown - total)),
+        share(weighed.rest),
+    )
+
+
+def _all(e: Evidences) -> list[float]:
+    return [e.nothing, e.unknown, *e.singles.values(), *e.pairs.values(), *e.rest.values()]
+
+
+def separation(first: Hypothesis, second: Hypothesis, x_count: int, changes: Mapping[str, np.ndarray]) -> float:
+    """Expected log-Bayes factor [nats] of the first over the second if the first is true at its fitted size.
+
+    D = 1/2 min over v of |W_first - V v|^2, V: what the second can do near its own fit (its change and its slopes)
+    """
+    nuisances = Nuisances(first.fit.jacobian[:, :x_count])
+    own = nuisances.root(changes[first.names[0]])
+    other = np.column_stack([changes[second.names[0]], second.fit.jacobian[:, x_count:]])
+    basis, size, _ = np.linalg.svd(nuisances.root(other), full_matrices=False)
+    basis = basis[:, size > 1e-6 * max(size.max(initial=0.0), 1e-12)]
+    return 0.5 * float(own @ own - np.sum((basis.T @ own) ** 2))
+
+
+def twins_of(name: str, separations: Mapping[Pair, float]) -> tuple[str, ...]:
+    """Effects that the data cannot tell from the named one."""
+    others = {pair[1] for pair in separations if pair[0] == name}
+    return tuple(o for o in sorted(others) if min(separations[name, o], separations[o, name]) < TWINS)
+
+
+@dataclass(frozen=True)
+class Signs:
+    """What speaks beside the probabilities.
+
+    alarm: the data are not those of an empty campaign
+    power: to notice an unknown discrepancy of ten u
+    left: fitted and held-out rows agree on something that the leading explanation leaves over
+    left_by_nothing: the same for the model as it is
+    """
+
+    alarm: bool
+    power: float
+    left: bool = False
+    left_by_nothing: bool = False
+
+
+def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) -> Verdict:
+    """Exactly one verdict.
+
+    twins: effects that cannot be told from each effect
+    """
+    if not signs.alarm:
+        return _quiet(p, signs)
+    if signs.power < POWER_NEEDED:
+        return Verdict(CANNOT_TELL, (), 1 - p.nothing)
+    shares = shares_of(p)
+    something = sum(shares.values())
+    kind = max(shares, key=shares.get)
+    if kind == NONE_OF_THESE:
+        return Verdict(NONE_OF_THESE, (), p.unknown / something)
+    if kind == PARTIAL:
+        return Verdict(PARTIAL, (max(p.rest, key=p.rest.get),), shares[PARTIAL] / something)
+    named = _of_pairs(p, something) if kind == PAIR else _of_singles(p, twins, something)
+    return Verdict(PARTIAL, leaders(p), named.probability) if signs.left else named
+
+
+def _quiet(p: Posterior, signs: Signs) -> Verdict:
+    if signs.left_by_nothing:
+        return Verdict(NONE_OF_THESE, (), SURE)
+    return Verdict(NOTHING_MISSING if signs.power >= POWER_NEEDED else CANNOT_TELL, (), p.nothing)
+
+
+def shares_of(p: Posterior) -> dict[str, float]:
+    """Probability of each kind of something."""
+    return {
+        EFFECT: sum(p.singles.values()),
+        PAIR: sum(p.pairs.values()),
+        NONE_OF_THESE: p.unknown,
+        PARTIAL: sum(p.rest.values()),
+    }
+
+
+def leaders(p: Posterior) -> tuple[str, ...]:
+    """Names of the most probable explanation that effects of the library give: one or two."""
+    single = max(p.singles, key=p.singles.get, default=None)
+    first = max(p.pairs, key=p.pairs.get, default=None)
+    if first is not None and sum(p.pairs.values()) > sum(p.singles.values()):
+        return first
+    return (single,) if single is not None else ()
+
+
+def _of_singles(p: Posterior, twins: Mapping[str, tuple[str, ...]], something: float) -> Verdict:
+    """The leader and its twins; more names where they are needed to be sure, as long as each of them is likely
+    itself."""
+    ranked = sorted(p.singles, key=lambda name: (-p.singles[name], name))
+    best = p.singles[ranked[0]]
+    names = [
+        n for n in ranked if n == ranked[0] or (n in twins.get(ranked[0], ()) and p.singles[n] > LIKELY_TWIN * best)
+    ]
+    for name in ranked:
+        if sum(p.singles[n] for n in names) >= SURE * sum(p.singles.values()) or p.singles[name] < LIKELY * best:
+            break
+        if name not in names:
+            names.append(name)
+    share = sum(p.singles[n] for n in names) / something
+    if len(names) > LARGEST_GROUP or share < NAMED:
+        return Verdict(CANNOT_TELL, (), share)
+    return Verdict(EFFECT if len(names) == 1 else GROUP, tuple(names), share)
+
+
+def _of_pairs(p: Posterior, something: float) -> Verdict:
+    return Verdict(PAIR, max(p.pairs, key=p.pairs.get), sum(p.pairs.values()) / something)
