@@ -74,7 +74,7 @@ _VIEWS = {
     "V0": ("Scoreboard", "Error of every channel against its noise."),
     "V1": ("Tolerance pulls", "How far the fit had to move each declared tolerance and calibration, in its own sigma."),
     "V2": ("Regime map", "Mean residual over the operating range; p is by permutation of the residuals."),
-    "V3": ("Order spectrum", "Residual amplitude of every mechanical order; of 100 orders of noise one is above the line."),
+    "V3": ("Order spectrum", "Residual amplitude of every mechanical order; noise passes the line once in 100."),
     "V4": ("Scaling", "Power of the residual's growth with each condition."),
     "V5": ("Parity", "Odd and even part of the residual when a direction or sign is reversed."),
     "V6": ("Order of acquisition", "Residual in the order in which it was measured."),
