@@ -4,51 +4,69 @@ STUDY ?= motorcycle
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
 # One script pipeline/<stage>.py a stage; a stage whose inputs did not change says so and ends.
-STAGES := sweep optima limits fits match winding fields figures report
+STAGES := requirements linkage sweep optima limits fits match winding flux_map drive gearbox fields figures outcome
+STAGES += report
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help pipeline $(STAGES) losses flux_map inspect check test benchmark clean
+.PHONY: help pipeline $(STAGES) losses optimise inspect check compare diagnose ledger test benchmark blind-score clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make pipeline   all stages, results in results/<study>/ (report.html first)"
 	@echo "make <stage>    one stage with those before it: $(STAGES)"
 	@echo "make losses     loss and efficiency map of the wound machine"
-	@echo "make flux_map   flux linkage over current of the wound machine, with export"
+	@echo "make optimise   radius, slots, length, ratio and linkage together, beside the stage-by-stage design"
 	@echo "make inspect    the machine and its field in a window, or as PNG and HTML without a display"
 	@echo "make check      is the study file usable?"
+	@echo "make compare    where does the model fail against the bench data in CAMPAIGN=<folder>?"
+	@echo "make diagnose   which effect is missing, how sure, what to measure next?"
+	@echo "make ledger     add what is missing, step by step, until nothing is"
 	@echo "make test       all tests"
 	@echo "make benchmark  speed and accuracy against other codes"
+	@echo "make blind-score  how often the diagnosis is right, on campaigns made by other laws"
 	@echo "make clean      delete the results of all studies (not results/reference)"
 	@echo "STUDY=<name>    another study than $(STUDY): a file of studies/ or a path"
 
 pipeline: report
 
 # What a stage reads is written by the stages on the right.
+requirements: $(SET_UP)
+linkage: $(SET_UP)
 sweep: $(SET_UP)
 optima: sweep
 limits: $(SET_UP)
 fits: optima
-match: fits
+match: requirements linkage fits
 winding: match
+flux_map: winding
+drive: flux_map
+gearbox: match
 fields: winding
 figures: fields limits
-report: figures
+outcome: drive gearbox
+report: figures outcome
 
 $(STAGES):
 	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
 
-losses flux_map: winding
+losses: winding
 	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
+
+optimise: outcome
+	@$(PYTHON) -m pipeline.optimise "$(STUDY)"
 
 inspect: $(SET_UP)
 	@$(PYTHON) -m pipeline.inspect_fields "$(STUDY)"
 
 check: $(SET_UP)
 	@$(PYTHON) -m study.check "$(STUDY)"
+
+compare diagnose ledger: $(SET_UP)
+	@test -n "$(CAMPAIGN)" || { echo "say which campaign: make $@ CAMPAIGN=measurements/<folder>" >&2; exit 2; }
+	@.venv/bin/airgap $@ "$(CAMPAIGN)"
 
 test: $(SET_UP)
 	$(PYTHON) -m pytest
@@ -58,6 +76,9 @@ BENCHMARK_SET_UP := .venv-benchmark/.set-up
 benchmark: $(SET_UP) $(BENCHMARK_SET_UP)
 	$(PYTHON) -m benchmarks.other_codes
 	$(PYTHON) -m benchmarks.speed
+
+blind-score: $(SET_UP)
+	$(PYTHON) -m benchmarks.blind_score
 
 $(BENCHMARK_SET_UP): benchmarks/peer_requirements.txt benchmarks/set_up
 	@sh benchmarks/set_up

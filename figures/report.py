@@ -20,7 +20,8 @@ SIGNIFICANT_DIGITS = 4  # of numbers in tables
 # Ends of column names, longest first, and how the unit is written.
 _UNITS = {
     "_mm_per_rad": "(mm/rad)", "_Nm_per_m": "(Nm/m)", "_Nm_per_A": "(Nm/A)", "_mNm_per_A": "(mNm/A)",
-    "_A_per_mm2": "(A/mm²)", "_rad_per_s": "(rad/s)", "_m_per_s": "(m/s)", "_kNs_per_m": "(kNs/m)",
+    "_A_per_mm2": "(A/mm²)", "_rad_per_s": "(rad/s)", "_m_per_s2": "(m/s²)", "_m_per_s": "(m/s)",
+    "_kg_m2": "(kg m²)", "_rad2": "rad²", "_percent": "%", "_ms": "ms", "_kNs_per_m": "(kNs/m)",
     "_Ns_per_m": "(Ns/m)", "_Wb_per_m": "(Wb/m)", "_H_per_m": "(H/m)", "_degC": "°C", "_deg": "°",
     "_mm2": "mm²", "_mm": "mm", "_kg": "kg", "_Nm": "Nm", "_kN": "kN", "_N": "N", "_kW": "kW", "_W": "W",
     "_rpm": "rpm", "_mOhm": "mΩ", "_Ohm": "Ω", "_ohm": "Ω", "_uH": "µH", "_mH": "mH", "_H": "H", "_V": "V",

@@ -16,6 +16,7 @@ from geometry.half_cell import MeshDensity
 from geometry.machine import GeometryError, Machine
 from geometry.morph import Morpher
 from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.mesh_error import torque_with_error
 from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingPoint
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.probes import ProbeReader, probe_reader
@@ -67,6 +68,12 @@ class Judge:
         Raises GeometryError when it cannot be built, FieldSolutionError when the field does not converge.
         """
         return DesignSolver(self).design(machine)
+
+    def torque_error(self, machine: Machine) -> float:
+        """Bound of what the mesh may have put the torque off by [Nm/m]: ``torque_with_error`` in the first state."""
+        section = mesh_cross_section(machine, self.layout(machine), self.density)
+        model = FieldModel(section, self.materials, self.settings)
+        return torque_with_error(model, self.states(machine)[0])[1]
 
 
 # A mesh is moved onto machines whose dimensions differ by up to this share, beyond it a new one is made. Within these

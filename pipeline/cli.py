@@ -8,6 +8,7 @@ import sys
 from math import sqrt
 from pathlib import Path
 
+from pipeline.workbench_commands import add_commands
 from study.errors import StudyError, exit_on_wrong_study
 
 
@@ -19,10 +20,11 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="airgap", description="Design electric machines and test the design.")
+    parser = argparse.ArgumentParser(prog="airgap", description="Design electric machines, test the design, meet the bench.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_solve(commands.add_parser("solve", help="solve the field of one operating point"))
     _add_check(commands.add_parser("check", help="is a study file usable?"))
+    add_commands(commands)
     return parser
 
 
@@ -128,6 +130,7 @@ def _amplitude(options) -> float:
 def _result(solution) -> dict:
     """Everything a user may want to know of one solved state, units in the keys."""
     from magnetostatics.flux_linkage import park, phase_flux_linkage
+    from magnetostatics.mesh_error import refined_solution, torque_error
     from magnetostatics.probes import probe_reader
     from magnetostatics.torque import arkkio_torque, maxwell_torque
     from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, SQUARE_MILLIMETRE
@@ -139,6 +142,7 @@ def _result(solution) -> dict:
     densities = point.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
     return {
         "torque_per_length_Nm_per_m": {"arkkio": arkkio_torque(solution), "maxwell": maxwell_torque(solution)},
+        "torque_error_Nm_per_m": torque_error(solution, refined_solution(solution)),
         "flux_linkage_Wb_per_turn_per_m": dict(zip("abc", linkage.tolist())),
         "flux_linkage_dq_Wb_per_turn_per_m": dict(zip("dq", dq.tolist())),
         "probes_T": probe_reader(model).read(solution),
@@ -164,7 +168,8 @@ def _print(result: dict, target: str | None) -> None:
         _writable(target).write_text(text + "\n", encoding="utf-8")
     torque = result["torque_per_length_Nm_per_m"]
     print(
-        f"torque per length   {torque['arkkio']:.3f} Nm/m (ring average), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
+        f"torque per length   {torque['arkkio']:.3f} ± {result['torque_error_Nm_per_m']:.3f} Nm/m (ring average; ± bounds the "
+        f"error of the mesh), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
     )
     linkage = result["flux_linkage_Wb_per_turn_per_m"]
     print(

@@ -97,13 +97,21 @@ def tasks_of(study) -> dict[str, dict]:
     return tasks
 
 
-def _write_rotations(run, rows: dict[str, dict]) -> None:
+def torque_error(study, machine: str) -> float:
+    """Bound of the mesh error of the torques in a rotation table [Nm/m], by one refinement in the null position."""
+    from magnetostatics.mesh_error import torque_with_error
+
+    _, model = _model(str(study.path.resolve()), machine, detailed=False)
+    return torque_with_error(model, null_points(study, model)["nominal"])[1]
+
+
+def _write_rotations(study, run, rows: dict[str, dict]) -> None:
     import pandas as pd
 
     for name in MACHINES:
         own = [row for key, row in rows.items() if key.startswith(name)]
-        first = ["angle_mech_deg", "torque_arkkio_Nm_per_m", "torque_maxwell_Nm_per_m", "torque_no_current_Nm_per_m"]
-        table = pd.DataFrame(own)
+        first = ["angle_mech_deg", *(f"torque_{what}_Nm_per_m" for what in ("arkkio", "maxwell", "error", "no_current"))]
+        table = pd.DataFrame(own).assign(torque_error_Nm_per_m=torque_error(study, name))
         probes = sorted((c for c in table if c not in first), key=lambda c: (c.split("_")[0], int(c.split("_")[-2])))
         run.write(ROTATIONS[name], lambda path, table=table[first + probes]: table.to_csv(path, index=False))
 
@@ -126,7 +134,7 @@ def main(name: str) -> None:
     def work(run):
         from pipeline.parallel import default_workers, run_parallel
 
-        _write_rotations(run, run_parallel(solve_angle, tasks_of(study), default_workers(), run.checkpoint(), "fields"))
+        _write_rotations(study, run, run_parallel(solve_angle, tasks_of(study), default_workers(), run.checkpoint(), "fields"))
         _write_fields(study, run)
 
     stage_of(study).run(work)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 
+from pipeline.feeds import fed
 from pipeline.stage import Stage, command, results_folder
 from study.read import read_study
 
@@ -46,7 +47,7 @@ def stage_of(study) -> Stage:
         winding.OUTPUT,
     ]
     inputs += [*fields.ROTATIONS.values(), *fields.FIELDS.values()]
-    values = {name: value for name, value in study.model_dump(mode="json").items() if name != "study"}
+    values = {name: value for name, value in fed(study).model_dump(mode="json").items() if name != "study"}
     code = ("figures", "geometry", "drivetrain", "electrical", "pipeline.match", "pipeline.winding", "pipeline.figures")
     return Stage("figures", folder, values, tuple(folder / name for name in inputs), code, tuple(FILES.values()))
 
@@ -197,7 +198,7 @@ def _neighbours(choice) -> list:
 
 def main(name: str) -> None:
     """Draw the figures of a study."""
-    study = read_study(name)
+    study = fed(read_study(name))
 
     def work(run):
         from figures.style import save_png

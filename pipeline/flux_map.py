@@ -17,7 +17,7 @@ from study.read import read_study
 
 MAP, ENVELOPE, OUTPUT = "flux_map.nc", "flux_map_envelope.csv", "flux_map.json"
 EXPORTS = ("flux_map_export.mat", "flux_map_export.npz")
-_ANGLES = 20  # over 60 electrical degrees
+_ANGLES = 10  # over 60 electrical degrees; the mean over them is free of harmonics below the 60th
 _CURRENTS = 11  # along i_d and along i_q >= 0
 _MARGIN = 1.05  # reach of the map over the ampere-turns of the winding
 _SPEEDS = 151
@@ -30,7 +30,7 @@ def stage_of(study) -> Stage:
 
     folder = results_folder(study.study.id)
     code = (*FIELD_CODE, "electrical", "pipeline.winding", "pipeline.flux_map")
-    values = study.subset(*FIELD_SECTIONS, "requirements", "winding_selection")
+    values = study.subset(*FIELD_SECTIONS, "winding_selection", "flux_map")
     files = (folder / match.OUTPUT, folder / winding.OUTPUT)
     return Stage("flux_map", folder, values, files, code, (MAP, *EXPORTS, ENVELOPE, OUTPUT))
 
@@ -57,7 +57,7 @@ def _model(path: str, reach: float):
 
     study = read_study(path)
     model = field_model(study, matched_machine(study), to_mesh_density(study.mesh))
-    return model, CurrentGrid.motoring(reach, _CURRENTS)
+    return model, CurrentGrid.motoring(reach, study.flux_map.currents or _CURRENTS)
 
 
 def tasks_of(study, angles, reach: float) -> dict[str, dict]:
@@ -144,7 +144,7 @@ def _solve(study, chosen: dict, run):
 
     reach = reach_of(chosen)
     model, grid = _model(str(study.path.resolve()), reach)
-    angles = map_angles(model, _ANGLES)
+    angles = map_angles(model, study.flux_map.angles or _ANGLES)
     rows = run_parallel(solve_angle, tasks_of(study, angles, reach), default_workers(), run.checkpoint(), "flux map")
     data = to_dataset(model, grid, angles, list(rows.values()))
     iterations = data.iterations

@@ -28,7 +28,7 @@ def stage_of(study, loss_grade: str) -> Stage:
     from pipeline.winding import OUTPUT as WINDING
 
     folder = results_folder(study.study.id)
-    values = study.subset(*FIELD_SECTIONS, "requirements", "winding_selection") | {"loss_grade": loss_grade}
+    values = study.subset(*FIELD_SECTIONS, "winding_selection") | {"loss_grade": loss_grade}
     code = (*FIELD_CODE, "electrical", "losses", "figures.losses", "pipeline.winding", "pipeline.losses")
     return Stage("losses", folder, values, (folder / MATCH, folder / WINDING), code, (OUTPUT, FACTS, FIGURE))
 

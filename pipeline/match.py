@@ -1,7 +1,8 @@
 """Gearbox and motor matched over the stator radius, for every slot count, with the overload torque solved and scaled.
 
-Reads the study and ``fits.csv``, writes ``match.csv`` (one row per slot count, overload torque and radius), ``match.json``
-(the chosen machine in drawing units, why, what it violates, and what the linear overload assumption would cost).
+Reads the study, what the vehicle and the linkage feed it and ``fits.csv``; writes ``match.csv`` (one row per slot
+count, overload torque and radius), ``match.json`` (the chosen machine in drawing units, why, what it violates, what the
+stated requirements and linkage would give, and what the linear overload assumption would cost).
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import sys
 from dataclasses import dataclass
 from functools import partial
 
+from pipeline.feeds import fed, stated
 from pipeline.stage import Stage, StageError, command, results_folder
 from study.read import read_study
 
@@ -26,8 +28,10 @@ def stage_of(study) -> Stage:
     from pipeline.sweep import steel_files
 
     folder = results_folder(study.study.id)
-    values = study.subset(*FIELD_SECTIONS, "requirements", "linkage", "match", "printed_machine", "winding_selection")
-    code = (*FIELD_CODE, "drivetrain", "electrical", "pipeline.fits", "pipeline.match")
+    used = ("requirements", "linkage", "match", "printed_machine", "winding_selection")
+    values = fed(study).subset(*FIELD_SECTIONS, *used)
+    values["stated"] = study.subset("requirements", "linkage")
+    code = (*FIELD_CODE, "drivetrain", "electrical", "pipeline.feeds", "pipeline.fits", "pipeline.match")
     return Stage("match", folder, values, (folder / FITS, *steel_files(study)), code, (TABLE, OUTPUT))
 
 
@@ -185,14 +189,14 @@ class Matcher:
         least = best.best
         edge = f"; {best.at_edge}" if best.at_edge else ""
         return (
-            f"chosen in the study file ({chosen.section.slots} slots, {2e3 * chosen.section.stator_outer_radius:g} mm, cost "
-            f"{chosen.cost.total:.3f}); the least cost, {least.cost.total:.3f}, belongs to {least.section.slots} slots and "
-            f"{2 * least.section.stator_outer_radius / MILLIMETRE:.1f} mm{edge}"
+            f"chosen in the study file ({chosen.section.slots} slots, {2e3 * chosen.section.stator_outer_radius:g} "
+            f"mm, cost {chosen.cost.total:.3f}); the least cost, {least.cost.total:.3f}, belongs to "
+            f"{least.section.slots} slots and {2 * least.section.stator_outer_radius / MILLIMETRE:.1f} mm{edge}"
         )
 
 
 def reference_matches(matcher: Matcher) -> dict:
-    """Summaries of the study's own machine, matched with its solved torques and, if stated, with somebody else's."""
+    """Summaries of the machine of [machine], matched with its solved torques and, if stated, with somebody else's."""
     from drivetrain.match import linear_overload
     from units import SQUARE_MILLIMETRE
 
@@ -252,6 +256,16 @@ def summary(chosen, reason: str) -> dict:
     }
 
 
+def stated_match(matcher: Matcher, section) -> dict | None:
+    """The chosen cross-section under the requirements and the linkage that the study states, or why it has no match."""
+    from drivetrain.match import MatchError
+
+    try:
+        return summary(matcher.match_section(section), "the chosen cross-section, stated requirements and linkage")
+    except MatchError as error:
+        return {"refused": str(error)}
+
+
 def _table(results: dict):
     import pandas as pd
     from figures.match import radius_table
@@ -261,7 +275,8 @@ def _table(results: dict):
 
 def main(name: str) -> None:
     """Match gearbox and motor of a study."""
-    study = read_study(name)
+    own = read_study(name)
+    study, other = fed(own), stated(own)
 
     def work(run):
         from drivetrain.match import MatchError
@@ -274,7 +289,9 @@ def main(name: str) -> None:
         except (MatchError, FitRefused) as error:
             raise StageError(f"no match: {error}") from None
         outcome = {**summary(chosen, reason), "overload_torque": study.match.overload_torque}
-        outcome["reference_machine"] = reference_matches(matcher)
+        beside = matcher if other is None else Matcher.of(other)
+        outcome["reference_machine"] = reference_matches(beside)
+        outcome["stated_feed"] = None if other is None else stated_match(beside, chosen.section)
         for line in (reason, *chosen.notes):
             print(f"match: {line}")
         for name, found in outcome["reference_machine"].items():
@@ -283,7 +300,7 @@ def main(name: str) -> None:
         run.write(TABLE, lambda path: _table(results).to_csv(path, index=False))
         run.write_text(OUTPUT, json.dumps(outcome, indent=2) + "\n")
 
-    stage_of(study).run(work)
+    stage_of(own).run(work)
 
 
 def read_match(study) -> dict:

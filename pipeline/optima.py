@@ -22,8 +22,10 @@ COLUMNS = (
     "tooth_width_mm",
     "half_slot_area_mm2",
     "torque_nominal_Nm_per_m",
+    "torque_nominal_error_Nm_per_m",
     "torque_nominal_maxwell_Nm_per_m",
     "torque_overload_Nm_per_m",
+    "torque_overload_error_Nm_per_m",
     "torque_overload_linear_Nm_per_m",
     "limited_T",
     "limit_T",
@@ -73,8 +75,10 @@ def solve_optimum(task: dict) -> dict | None:
     radius = task["stator_diameter_mm"] / 2 * MILLIMETRE
     limit = study.saturation.limit_T
     optimum = find_optimum(judge, StudyFamily(study.machine), task["slots"], radius, limit, (start.width, start.radius))
-    overload = judge.at_amplitude(overload_amplitude(study)).judge(optimum.design.machine)
-    return _row(study, task, optimum, overload)
+    overloaded = judge.at_amplitude(overload_amplitude(study))
+    machine = optimum.design.machine
+    errors = judge.torque_error(machine), overloaded.torque_error(machine)
+    return _row(study, task, optimum, overloaded.judge(machine), errors)
 
 
 @lru_cache(maxsize=1)
@@ -82,7 +86,7 @@ def _study(path: str):
     return read_study(path)
 
 
-def _row(study, task, optimum, overload) -> dict:
+def _row(study, task, optimum, overload, errors) -> dict:
     from units import MILLIMETRE, SQUARE_MILLIMETRE
 
     design, machine = optimum.design, optimum.design.machine
@@ -96,8 +100,10 @@ def _row(study, task, optimum, overload) -> dict:
         machine.tooth_width / MILLIMETRE,
         design.coil_side_area / SQUARE_MILLIMETRE,
         design.torque,
+        errors[0],
         design.torque_maxwell,
         overload.torque,
+        errors[1],
         design.torque * ratio,
         design.limited,
         study.saturation.limit_T,

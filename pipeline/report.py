@@ -1,4 +1,4 @@
-"""One page that shows a study from its input to the wound machine, in reading order.
+"""One page that shows a study from its vehicle to the actuator and back to the vehicle, stage by stage.
 
 Reads the results of all stages, writes ``report.html``: every figure, the key numbers, what was decided and why.
 """
@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import sys
 
+from pipeline.feeds import fed
+from pipeline.report_chain import ChainSections, chain_figures, chain_results
 from pipeline.stage import Stage, command, results_folder
 from study.read import read_study
 
@@ -26,8 +28,10 @@ def stage_of(study) -> Stage:
         winding.TABLE,
         winding.OUTPUT,
         *figures.FILES.values(),
+        *chain_results(study),
+        *chain_figures(study).values(),
     ]
-    code = ("figures.report", "pipeline.report")
+    code = ("figures.report", "pipeline.report", "pipeline.report_chain")
     return Stage(
         "report", folder, study.model_dump(mode="json"), tuple(folder / name for name in inputs), code, (OUTPUT,)
     )
@@ -42,6 +46,7 @@ class _Page:
         from pipeline.match import read_match
 
         self.study, self.folder = study, results_folder(study.study.id)
+        self.chain = ChainSections(study, fed(study))
         self.match, self.winding = read_match(study), winding.read_winding(study)
         self.optima, self.limits, self.fits, self.windings = (
             pd.read_csv(self.folder / name) for name in (optima.OUTPUT, limits.OUTPUT, fits.OUTPUT, winding.TABLE)
@@ -67,41 +72,10 @@ class _Page:
             "ripple": torque.max() - torque.min(),
             "cogging": idle.abs().max(),
             "apart": apart,
+            "error": table.torque_error_Nm_per_m.max(),
         }
 
     # ---- sections, in reading order -------------------------------------------------------------------------------
-
-    def outcome(self):
-        """What came out, on one screen."""
-        from figures.report import KeyNumber, KeyNumbers, Remark, Section
-
-        m, w = self.match, self.winding["chosen"]
-        numbers = (
-            KeyNumber(
-                "stator diameter",
-                2 * m["stator_outer_radius_mm"],
-                "mm",
-                f"{m['slots']} slots, {self.study.machine.poles} poles",
-            ),
-            KeyNumber(
-                "rotor diameter", 2 * m["rotor_outer_radius_mm"], "mm", f"back iron {m['back_iron_width_mm']:.2f} mm"
-            ),
-            KeyNumber("active length", m["active_length_mm"], "mm", f"bound by the {m['binding']}"),
-            KeyNumber(
-                "transmission ratio", m["transmission_ratio_mm_per_rad"], "mm/rad", "wheel travel per rotor angle"
-            ),
-            KeyNumber(
-                "winding",
-                f"{w['turns']} × {w['strands']}",
-                "turns × wires",
-                f"{w['current_rms_A']:.1f} A RMS at overload",
-            ),
-            KeyNumber("base speed", w["base_speed_rpm"], "rpm", f"{w['power_at_base_speed_W'] / 1e3:.2f} kW there"),
-        )
-        remarks = [Remark(note) for note in m["notes"]]
-        return Section(
-            "Outcome", (KeyNumbers(numbers), f"Machine: {m['reason']}.", f"Winding: {self.winding['reason']}", *remarks)
-        )
 
     def machine(self):
         """The study's own machine and its field."""
@@ -109,8 +83,8 @@ class _Page:
 
         seen = self.rotation("reference")
         text = (
-            f"The machine of the study file at the nominal current density: mean torque {seen['mean']:.2f} Nm/m over one "
-            f"electrical period with the current on the q axis, ripple {seen['ripple']:.2f} Nm/m peak to peak, cogging up to "
+            f"The machine of the study file at the nominal current density: mean torque {seen['mean']:.2f} ± {seen['error']:.2f} Nm/m over "
+            f"one electrical period (± bounds the error of the mesh) with the current on the q axis, ripple {seen['ripple']:.2f} Nm/m peak to peak, cogging up to "
             f"{seen['cogging']:.2f} Nm/m. The two torque routes differ by at most {seen['apart']:.2%}."
         )
         return Section(
@@ -133,7 +107,7 @@ class _Page:
 
         s = self.study
         shown = "slots stator_diameter_mm back_iron_width_mm rotor_outer_radius_mm half_slot_area_mm2 torque_nominal_Nm_per_m"
-        shown += " torque_overload_Nm_per_m torque_overload_linear_Nm_per_m limited_T tooth_worst_T"
+        shown += " torque_nominal_error_Nm_per_m torque_overload_Nm_per_m torque_overload_error_Nm_per_m torque_overload_linear_Nm_per_m limited_T tooth_worst_T"
         over = (self.optima.torque_overload_linear_Nm_per_m / self.optima.torque_overload_Nm_per_m - 1) * 100
         text = (
             f"Largest torque per metre with a flux density of at most {s.saturation.limit_T:g} T, read as {s.saturation.reading}: "
@@ -208,7 +182,9 @@ class _Page:
                     "match_over_radius",
                     "Best match over the stator radius; solid with solved, dashed with scaled overload torque.",
                 ),
-                Table(frame, "The chosen machine beside the machine of the study file."),
+                f"Decision: {self.match['reason']}.",
+                *self.chain.feeds(self.match),
+                Table(frame, "The chosen machine beside the machine of the study file, which is matched as stated."),
                 *notes,
                 *self._assumption(),
             ),
@@ -253,7 +229,7 @@ class _Page:
 
         seen, nominal = self.rotation("matched"), self.match["torque_nominal_Nm_per_m"]
         text = (
-            f"The machine that the polynomials lead to, meshed and solved again: mean torque {seen['mean']:.2f} Nm/m on the q axis "
+            f"The machine that the polynomials lead to, meshed and solved again: mean torque {seen['mean']:.2f} ± {seen['error']:.2f} Nm/m on the q axis "
             f"(the fit, in the state of the reading: {nominal:.2f} Nm/m), cogging up to {seen['cogging']:.2f} Nm/m."
         )
         return Section(
@@ -269,15 +245,22 @@ class _Page:
 
     def sections(self) -> tuple:
         """All sections in reading order."""
-        return (
-            self.outcome(),
+        chain = self.chain
+        all_of_them = (
+            chain.result(),
+            chain.requirements(),
+            chain.linkage(),
             self.machine(),
             self.optimisation(),
             self.polynomials(),
             self.matching(),
             self.matched(),
             self.wound(),
+            chain.drive(),
+            chain.gearbox(),
+            chain.ride(),
         )
+        return tuple(section for section in all_of_them if section is not None)
 
 
 def main(name: str) -> None:
@@ -290,7 +273,7 @@ def main(name: str) -> None:
 
         sections = _Page(study).sections()
         provenance = {"study": study.path.name, "commit": git_commit() or "unknown", **package_versions()}
-        title, subtitle = study.study.title, "Cross-section, gearbox match and winding"
+        title, subtitle = study.study.title, "From the vehicle to a sized actuator, and back to the vehicle"
         run.write(
             OUTPUT, lambda path: write_report(path, sections, title=title, subtitle=subtitle, provenance=provenance)
         )

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import sys
 
+from pipeline.feeds import fed
 from pipeline.stage import Stage, StageError, command, results_folder
 from study.read import read_study
 
@@ -21,8 +22,8 @@ def stage_of(study) -> Stage:
     from pipeline.models import FIELD_CODE, FIELD_SECTIONS
 
     folder = results_folder(study.study.id)
-    values = study.subset(*FIELD_SECTIONS, "requirements", "winding_selection")
-    code = (*FIELD_CODE, "electrical", "pipeline.winding")
+    values = fed(study).subset(*FIELD_SECTIONS, "requirements", "winding_selection")
+    code = (*FIELD_CODE, "electrical", "pipeline.feeds", "pipeline.winding")
     return Stage("winding", folder, values, (folder / MATCH,), code, (TABLE, OUTPUT))
 
 
@@ -115,14 +116,14 @@ def row(winding, chosen: bool) -> dict:
 
 
 def choose(study, machine):
-    """``WindingChoice`` for a ``PerTurnMachine``."""
+    """``WindingChoice`` for a ``PerTurnMachine``, against the requirements that feed the match."""
     from electrical.winding_selection import select_winding
     from pipeline.match import read_match
     from study.convert import to_winding_limits, to_winding_requirement, to_wire
     from units import MILLIMETRE
 
     ratio = read_match(study)["transmission_ratio_mm_per_rad"] * MILLIMETRE
-    return select_winding(machine, to_wire(study), to_winding_limits(study), to_winding_requirement(study, ratio))
+    return select_winding(machine, to_wire(study), to_winding_limits(study), to_winding_requirement(fed(study), ratio))
 
 
 def main(name: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from study.chain import drives, searches_linkage
 from study.errors import exit_on_wrong_study
 from study.read import check_study, read_study
 from study.schema import Study
@@ -23,11 +24,32 @@ def summary(study: Study) -> str:
             f"  sweep       slots {slots}; {len(diameters)} diameters {min(diameters):g} to {max(diameters):g} mm; "
             f"{sweep.back_iron_steps} x {sweep.rotor_radius_steps} designs each",
             f"  saturation  {study.saturation.reading} below {study.saturation.limit_T:g} T",
-            f"  required    {study.requirements.force_peak_N:g} N peak, {study.requirements.force_rms_N:g} N RMS, "
-            f"{study.requirements.maximum_damping_kNs_per_m:g} kNs/m",
+            f"  required    {_required(study)}",
+            f"  linkage     {_linkage(study)}",
             "  usable",
         )
     )
+
+
+def _required(study: Study) -> str:
+    if drives(study):
+        ride = study.ride
+        what = "motorcycle" if study.motorcycle is not None else "quarter car"
+        return (
+            f"from runs of the {what}: road class {ride.road_class} at {ride.cruise_speed_km_per_h:g} km/h, "
+            f"{ride.maximum_regenerative_damping_kNs_per_m:g} kNs/m"
+        )
+    required = study.requirements
+    return (
+        f"{required.force_peak_N:g} N peak, {required.force_rms_N:g} N RMS, "
+        f"{required.maximum_damping_kNs_per_m:g} kNs/m, as stated"
+    )
+
+
+def _linkage(study: Study) -> str:
+    if searches_linkage(study):
+        return f"searched, choice {study.linkage_search.choice}"
+    return f"{study.linkage.ratio_nominal_mm_per_rad:g} mm/rad, as stated"
 
 
 def main(arguments: list[str] | None = None) -> None:

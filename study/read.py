@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from geometry.checks import check_machine
 from geometry.machine import GeometryError
 from geometry.winding import star_of_slots
+from study.chain import check_chain, check_libraries
 from study.convert import to_machine
 from study.errors import StudyError
 from study.key_units import split_unit
@@ -40,13 +41,15 @@ def read_study(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Study
     origin = _origin(path, overrides)
     _check_winding(study, "machine.slots", study.machine.slots, origin)
     _check_geometry(study, origin)
+    check_chain(study, origin)
     return study
 
 
 def check_study(study: Study) -> None:
-    """What only the whole pipeline needs, and what takes a second: ``check_sweep`` and ``check_steel``."""
+    """What only the whole pipeline needs, and what takes a second: sweep, steel, vehicle, linkage and gears."""
     check_sweep(study)
     check_steel(study)
+    check_libraries(study)
 
 
 def check_sweep(study: Study) -> None:

@@ -133,6 +133,13 @@ class MeshSection(Section):
     elements_across_tooth: Annotated[Optional[float], Quantity("elements across a tooth", 1, 40)] = None
 
 
+class FluxMapSection(Section):
+    """Resolution of the flux map; what is not stated has the default of ``pipeline.flux_map``."""
+
+    angles: Annotated[Optional[int], Quantity("rotor angles over 60 electrical degrees", 1, 720)] = None
+    currents: Annotated[Optional[int], Quantity("currents along either axis", 5, 101)] = None
+
+
 class SweepSection(Section):
     """Grid of the cross-section optimisation and its two current densities."""
 
@@ -190,6 +197,95 @@ class RequirementsSection(Section):
     velocity_at_power_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak power", 1e-4, 1e2)]
 
 
+class ChainSection(Section):
+    """What feeds the match: results of the stages before it, or what the study states."""
+
+    requirements: Literal["vehicle", "stated"]  # runs of the vehicle, or [requirements]
+    linkage: Literal["optimised", "stated"]  # the choice from the Pareto front, or the ratios of [linkage]
+
+
+class MotorcycleSection(Section):
+    """Motorcycle of four degrees of freedom with the actuator at the rear (thesis Fig. 3.6, Table 3.2)."""
+
+    sprung_mass_kg: Annotated[float, Quantity("mass of the body with rider", 1, 1e5)]
+    pitch_inertia_kg_m2: Annotated[float, Quantity("inertia of the body about its pitch axis", 0.1, 1e6)]
+    front_weight_fraction: Annotated[float, Quantity("share of the body that rests on the front axle", 0.05, 0.95)]
+    front_wheel_distance_mm: Annotated[float, Quantity("front axle ahead of the centre of gravity", 10, 1e4)]
+    rear_wheel_distance_mm: Annotated[float, Quantity("rear axle behind the centre of gravity", 10, 1e4)]
+    cog_height_mm: Annotated[float, Quantity("centre of gravity above the road", 10, 1e4)]
+    front_unsprung_mass_kg: Annotated[float, Quantity("mass of the front wheel", 0.1, 1e4)]
+    rear_unsprung_mass_kg: Annotated[float, Quantity("mass of the rear wheel", 0.1, 1e4)]
+    fork_leg_stiffness_kN_per_m: Annotated[float, Quantity("stiffness of one fork leg", 0.1, 1e5)]
+    fork_inclination_deg: Annotated[float, Quantity("fork against the vertical", 0, 80)]
+    rear_spring_stiffness_kN_per_m: Annotated[float, Quantity("stiffness of the rear spring", 0.1, 1e5)]
+    rear_motion_ratio: Annotated[float, Quantity("spring travel over wheel travel", 0.01, 10)]
+    front_tyre_stiffness_kN_per_m: Annotated[float, Quantity("vertical stiffness of the front tyre", 1, 1e5)]
+    rear_tyre_stiffness_kN_per_m: Annotated[float, Quantity("vertical stiffness of the rear tyre", 1, 1e5)]
+    stop_bump_mm: Annotated[float, Quantity("stroke of the rear at the bump stop, compression negative", -1e4, -1)]
+    stop_rebound_mm: Annotated[float, Quantity("stroke of the rear at the rebound stop", 1, 1e4)]
+    stop_stiffness_kN_per_m: Annotated[float, Quantity("stiffness of the end stops", 0, 1e6)]
+
+
+class QuarterCarSection(Section):
+    """One wheel with its part of the body (thesis Fig. 4.7, Table 4.4)."""
+
+    sprung_mass_kg: Annotated[float, Quantity("mass of the body over this wheel", 1, 1e5)]
+    unsprung_mass_kg: Annotated[float, Quantity("mass of the wheel", 0.1, 1e4)]
+    spring_stiffness_kN_per_m: Annotated[float, Quantity("stiffness of the spring at the wheel", 0.1, 1e5)]
+    tyre_stiffness_kN_per_m: Annotated[float, Quantity("vertical stiffness of the tyre", 1, 1e5)]
+
+
+DamperTable = Annotated[Optional[str], Field(min_length=1)]
+
+
+class DampersSection(Section):
+    """Damper curves at the wheel: a table (shipped, or a csv beside the study), or one damping for all velocities."""
+
+    front: DamperTable = None
+    maximum: DamperTable = None
+    minimum: DamperTable = None
+    front_kNs_per_m: Annotated[Optional[float], Quantity("linear damping of the front", 1e-3, 1e4)] = None
+    maximum_kNs_per_m: Annotated[Optional[float], Quantity("largest linear damping", 1e-3, 1e4)] = None
+    minimum_kNs_per_m: Annotated[Optional[float], Quantity("smallest linear damping", 1e-3, 1e4)] = None
+
+
+class RideSection(Section):
+    """Random road at cruise speed, and how much of the damping the actuator must give as a generator."""
+
+    maximum_regenerative_damping_kNs_per_m: Annotated[float, Quantity("damping without active power", 1e-3, 1e4)]
+    road_class: Literal["A", "B", "C", "D", "E"]
+    cruise_speed_km_per_h: Annotated[float, Quantity("speed on the random road", 1, 500)]
+    road_duration_s: Annotated[float, Quantity("length of a run on the random road", 1, 600)]
+    road_seeds: Annotated[
+        tuple[int, ...], Listed, Field(min_length=1), Quantity("seeds of the random road", 0, 2**31)
+    ]
+
+
+class ObstaclesSection(Section):
+    """Lumped obstacle, every speed with every amplitude and damping."""
+
+    shape: Annotated[str, Field(min_length=1)]
+    amplitudes_mm: Annotated[
+        tuple[float, ...], Listed, Field(min_length=1), Quantity("amplitudes, bumps positive", -1000, 1000)
+    ]
+    speeds_km_per_h: Annotated[tuple[float, ...], Listed, Field(min_length=1), Quantity("speeds", 1, 500)]
+    duration_s: Annotated[float, Quantity("length of a run", 0.1, 60)]
+
+    @field_validator("amplitudes_mm", mode="after")
+    @classmethod
+    def _every_obstacle_has_a_height(cls, amplitudes):
+        if 0 in amplitudes:
+            raise ValueError("names an obstacle without amplitude; give millimetres above (bump) or below (pothole)")
+        return amplitudes
+
+
+class AccelerationSection(Section):
+    """Full acceleration from rest, which loads the rear suspension (thesis eq. 3.25)."""
+
+    longitudinal_m_per_s2: Annotated[float, Quantity("longitudinal acceleration", 0.1, 50)]
+    duration_s: Annotated[float, Quantity("length of the run", 0.1, 60)]
+
+
 Point = Annotated[tuple[float, float], Listed]
 _COORDINATE = Quantity("coordinates x, y with the origin in hardpoint O", -1e4, 1e4)
 
@@ -213,6 +309,38 @@ class LinkageSection(Section):
     @model_validator(mode="after")
     def _ends_are_in_order(self):
         _require_order(self, "ratio_nominal_mm_per_rad", "ratio_max_mm_per_rad", equal_allowed=True)
+        return self
+
+
+class LinkageSearchSection(Section):
+    """What the Pareto front of linkages is searched over, and which of its points is built (thesis eqs 3.43-3.50).
+
+    Arm and boxes are the hardpoints of [linkage].
+    """
+
+    travel_rebound_mm: Annotated[float, Quantity("wheel travel below the nominal position", 1, 1e4)]
+    travel_bump_mm: Annotated[float, Quantity("wheel travel above the nominal position", 1, 1e4)]
+    ratio_limit_mm_per_rad: Annotated[float, Quantity("largest nominal ratio tau_lim", 1, 1e5)]
+    ratio_spread_limit_mm_per_rad: Annotated[float, Quantity("spread of the ratio that counts as 1", 0.01, 1e5)]
+    ratio_weight: Annotated[float, Quantity("weight of the nominal ratio against its spread", 0, 1)]
+    angle_window_deg: Annotated[float, Quantity("transmission angles about 90 degrees", 1, 90)]
+    lever_length_min_mm: Annotated[float, Quantity("shortest lever BC", 1, 1e4)]
+    seeds: Annotated[tuple[int, ...], Listed, Field(min_length=1), Quantity("seeds of the search", 0, 2**31)]
+    population: Annotated[int, Quantity("individuals of a generation", 4, 10000)]
+    generations: Annotated[int, Quantity("generations of a run", 1, 100000)]
+    choice: Literal["smallest_ratio", "best_angles", "knee"]
+    angles_worst_rad2: Annotated[
+        Optional[float], Quantity("worst angle objective f2 that smallest_ratio accepts", 0, 100)
+    ] = None
+    ratio_max_mm_per_rad: Annotated[
+        Optional[float], Quantity("largest nominal ratio that best_angles accepts", 1, 1e5)
+    ] = None
+
+    @model_validator(mode="after")
+    def _the_rule_has_its_number(self):
+        needed = {"smallest_ratio": "angles_worst_rad2", "best_angles": "ratio_max_mm_per_rad"}.get(self.choice)
+        if needed and getattr(self, needed) is None:
+            raise ValueError(f'has choice = "{self.choice}" without {needed}; add it')
         return self
 
 
@@ -240,6 +368,71 @@ class MatchSection(Section):
     gear_pressure_angle_deg: Annotated[float, Quantity("pressure angle", 10, 35)]
     gear_youngs_modulus_GPa: Annotated[float, Quantity("Young's modulus of the gears", 10, 1000)]
     gear_poisson_ratio: Annotated[float, Quantity("Poisson's ratio of the gears", 0, 0.49)]
+
+
+class GearboxSection(Section):
+    """Teeth of the planetary stages: loads, strength, manufacture and construction (thesis eqs 3.119-3.124)."""
+
+    ratio_tolerance: Annotated[float, Quantity("relative tolerance of the ratio", 1e-4, 0.5)]
+    planets: Annotated[int, Quantity("planets of a stage", 2, 8)]
+    life_h: Annotated[float, Quantity("operating life", 1, 1e6)]
+    torque_class_Nm: Annotated[float, Quantity("width of the torque classes at the slow shaft", 0.01, 1e5)]
+    swing_deg: Annotated[
+        Optional[float], Quantity("largest turn of the slow shaft between two reversals", 0.01, 3600)
+    ] = None  # where no vehicle is run
+    material: Literal["case_hardened_MQ", "case_hardened_ME"]
+    accuracy_grade: Annotated[int, Quantity("accuracy grade of ISO 1328", 1, 12)]
+    application_factor: Annotated[float, Quantity("application factor K_A", 0.5, 5)]
+    oil_viscosity_mm2_per_s: Annotated[float, Quantity("viscosity of the oil at 40 degC", 1, 2000)]
+    flank_roughness_um: Annotated[float, Quantity("roughness R_z of the flanks", 0.1, 100)]
+    root_roughness_um: Annotated[float, Quantity("roughness R_z of the roots", 0.1, 200)]
+    friction_coefficient: Annotated[float, Quantity("friction of the teeth", 0, 0.3)]
+    safety_flank: Annotated[float, Quantity("safety of the flanks under the load spectrum", 0, 10)]
+    safety_root: Annotated[float, Quantity("safety of the roots under the load spectrum", 0, 10)]
+    safety_static_flank: Annotated[float, Quantity("safety of the flanks under the peak torque, 0: reported", 0, 10)]
+    safety_static_root: Annotated[float, Quantity("safety of the roots under the peak torque, 0: reported", 0, 10)]
+    planet_bore_fraction: Annotated[float, Quantity("bore over root diameter of a planet", 0.05, 0.9)]
+    flange_fraction: Annotated[float, Quantity("thickness of a carrier flange over the face width", 0.01, 2)]
+    flange_thickness_min_mm: Annotated[float, Quantity("least thickness of a carrier flange", 0.1, 100)]
+    axial_gap_mm: Annotated[float, Quantity("gap between flange and teeth", 0.01, 50)]
+    # optional: the gear set of somebody else, rated in the same way and shown beside ours
+    printed_teeth: Annotated[
+        Optional[tuple[int, int, int]], Listed, Quantity("stated teeth of sun, planet and ring", 4, 2000)
+    ] = None
+    printed_module_mm: Annotated[Optional[float], Quantity("stated module", 0.1, 50)] = None
+    printed_shifts: Annotated[
+        Optional[tuple[float, float]], Listed, Quantity("stated profile shifts of sun and planet", -2, 2)
+    ] = None
+    printed_face_widths_mm: Annotated[
+        Optional[tuple[float, ...]], Listed, Quantity("stated face width of each stage", 0.1, 1000)
+    ] = None
+
+
+class AssemblySection(Section):
+    """What the gearbox and the machine are built into, and the friction of the whole, at the wheel."""
+
+    casing_wall_mm: Annotated[float, Quantity("radial wall of the casing", 0.1, 200)]
+    lever_side_mm: Annotated[float, Quantity("bearings, spline and nut of the lever shaft", 0, 1000)]
+    bearing_seat_mm: Annotated[float, Quantity("bearing seat on either side of the machine", 0, 500)]
+    sensor_cover_mm: Annotated[float, Quantity("cover with the position sensor", 0, 500)]
+    casing_mass_kg: Annotated[float, Quantity("casing, bearings, shafts and lever", 0, 1e4)]
+    viscous_friction_Ns_per_m: Annotated[float, Quantity("viscous friction at the wheel", 0, 1e6)]
+    coulomb_friction_N: Annotated[float, Quantity("dry friction at the wheel", 0, 1e5)]
+
+
+class PrintedActuatorSection(Section):
+    """The actuator of somebody else, for the comparison at the end (thesis Tables 3.12 and A.1)."""
+
+    source: Annotated[str, Field(min_length=1)]
+    force_peak_N: Annotated[float, Quantity("peak force at the wheel", 0.1, 1e6)]
+    actuator_torque_peak_Nm: Annotated[float, Quantity("peak torque at the slow shaft", 0.01, 1e6)]
+    machine_torque_peak_Nm: Annotated[float, Quantity("peak torque of the machine", 1e-3, 1e5)]
+    equivalent_mass_kg: Annotated[float, Quantity("equivalent inertia at the wheel", 1e-3, 1e5)]
+    gearbox_ratio: Annotated[float, Quantity("fast over slow speed of the gearbox", 1, 1e4)]
+    linkage_ratio_mm_per_rad: Annotated[float, Quantity("nominal ratio of the linkage", 1, 1e4)]
+    mass_kg: Annotated[float, Quantity("mass", 0.01, 1e4)]
+    diameter_mm: Annotated[float, Quantity("diameter of the envelope", 1, 1e4)]
+    length_mm: Annotated[float, Quantity("length of the envelope", 1, 1e4)]
 
 
 class PrintedMachineSection(Section):
@@ -272,11 +465,23 @@ class Study(Section):
     mesh: MeshSection = MeshSection()
     sweep: SweepSection
     saturation: SaturationSection
-    requirements: RequirementsSection
+    chain: Optional[ChainSection] = None  # without it everything is as stated
+    motorcycle: Optional[MotorcycleSection] = None
+    quarter_car: Optional[QuarterCarSection] = None
+    dampers: Optional[DampersSection] = None
+    ride: Optional[RideSection] = None
+    obstacles: Optional[ObstaclesSection] = None
+    acceleration: Optional[AccelerationSection] = None
+    requirements: Optional[RequirementsSection] = None
     linkage: LinkageSection
+    linkage_search: Optional[LinkageSearchSection] = None
     match: MatchSection
     printed_machine: Optional[PrintedMachineSection] = None
     winding_selection: WindingSelectionSection
+    flux_map: FluxMapSection = FluxMapSection()
+    gearbox: GearboxSection
+    assembly: AssemblySection
+    printed_actuator: Optional[PrintedActuatorSection] = None
 
     _path: Path = PrivateAttr(default=Path("study.toml"))
 

@@ -18,7 +18,7 @@ ALLOWED = {
     "vehicle": {"drivetrain"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", "magnetostatics", "geometry", "materials", "electrical", "figures"},
-    "study": {"geometry", "materials", "electrical", "drivetrain"},
+    "study": {"geometry", "materials", "electrical", "drivetrain", "gearbox", "vehicle"},
     "figures": {"geometry", "magnetostatics"},
     "pipeline": {
         "study",

@@ -12,13 +12,24 @@ import pytest
 import xarray as xr
 
 PROJECT = Path(__file__).resolve().parents[2]
-STAGES = "sweep optima limits fits match winding fields figures report".split()
+STAGES = "requirements linkage sweep optima limits fits match winding flux_map drive gearbox".split()
+STAGES += "fields figures outcome report".split()
 SMALL = {
     'id = "motorcycle"': 'id = "small-test-study"',
     "slots = [9, 12]": "slots = [12]",
     "[70, 75, 80, 85, 90, 95, 100, 105, 110, 115]": "[75, 80, 85, 90]",
     "back_iron_steps = 7": "back_iron_steps = 4",
     "rotor_radius_steps = 6": "rotor_radius_steps = 4",
+    "road_seeds = [0, 1, 2, 3, 4, 5]": "road_seeds = [0]",
+    "road_duration_s = 30.0": "road_duration_s = 5.0",
+    "amplitudes_mm = [-50, -40, -30, -20, -10, 10, 20, 30, 40, 50]": "amplitudes_mm = [-50, 50]",
+    "speeds_km_per_h = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]": "speeds_km_per_h = [50]",
+    "\nseeds = [1, 2, 3, 4]": "\nseeds = [1]",
+    "population = 100": "population = 24",
+    "generations = 150": "generations = 20",
+    "[flux_map]": "[flux_map]\nangles = 2\ncurrents = 5",
+    "ratio_tolerance = 0.03": "ratio_tolerance = 0.015",
+    "dc_bus_voltage_V = 48.0": "dc_bus_voltage_V = 90.0",
 }
 FOLDER = PROJECT / "results" / "small-test-study"
 
@@ -55,6 +66,11 @@ def test_results_are_labelled_and_have_their_provenance(study):
         "winding.json",
         "reference_nominal.vtu",
         "figures/fits.png",
+        "requirements.json",
+        "linkage_front.csv",
+        "gearbox.json",
+        "outcome.json",
+        "figures/axial_section.png",
         "report.html",
     ):
         provenance = json.loads((FOLDER / f"{file}.provenance.json").read_text())
@@ -73,12 +89,36 @@ def test_a_second_run_does_no_work(study):
         assert "unchanged" in run(stage, study).stdout
 
 
-def test_the_report_reads_from_outcome_to_winding(study):
+def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     html = (FOLDER / "report.html").read_text(encoding="utf-8")
-    titles = re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)
-    assert "Outcome" in titles[0] and "Winding" in titles[-1] and len(titles) == 7
-    assert html.count("data:image/png;base64") == 15
+    titles = [re.sub(r"^\d+\. ", "", title) for title in re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)]
+    assert titles[:3] == ["Outcome", "Requirements from the vehicle", "Linkage"]
+    assert titles[-2:] == ["Planetary gearbox", "The vehicle with the designed actuator"]
+    assert html.count("data:image/png;base64") == 15 + 5 + 3 + 3 + 3 + 3
     assert "regenerative damping 27.7 kNs/m is 12.3 kNs/m below the requirement" in html
+
+
+def test_the_computed_requirements_feed_the_match_and_the_stated_ones_stand_beside_it(study):
+    required = json.loads((FOLDER / "requirements.json").read_text())
+    linkage = json.loads((FOLDER / "linkage.json").read_text())
+    match = json.loads((FOLDER / "match.json").read_text())
+    inputs = json.loads((FOLDER / "match.json.provenance.json").read_text())["values"]
+    assert inputs["requirements"]["force_peak_N"] == required["values"]["force_peak_N"] != 2614.0
+    assert inputs["linkage"]["ratio_nominal_mm_per_rad"] == linkage["section"]["ratio_nominal_mm_per_rad"] < 170
+    torque = required["values"]["force_peak_N"] * match["transmission_ratio_mm_per_rad"]  # Nm/1000
+    needed = torque / match["torque_overload_Nm_per_m"]  # the overload force binds (3.66)
+    assert match["active_length_mm"] == pytest.approx(needed, rel=1e-3)
+    assert match["stated_feed"]["active_length_mm"] != pytest.approx(match["active_length_mm"], rel=1e-3)
+
+
+def test_what_was_designed_goes_back_into_the_vehicle(study):
+    outcome = json.loads((FOLDER / "outcome.json").read_text())
+    features = {row["feature"]: row["ours"] for row in outcome["features"]}
+    overall = features["linkage, nominal / (mm/rad)"] / features["gearbox, fast over slow speed"]
+    assert features["overall transmission ratio / (mm/rad)"] == pytest.approx(overall)
+    assert {row["actuator"] for row in outcome["worst"]} == {"ideal", "designed"} and len(outcome["ride"]) == 6
+    failing = {row["requirement"] for row in outcome["requirements"] if not row["holds"]}
+    assert {row["requirement"] for row in outcome["remedies"]} == {one for one in failing if "gears" not in one}
 
 
 def test_a_stage_without_its_input_says_what_to_run(study, tmp_path):

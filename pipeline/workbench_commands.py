@@ -1,0 +1,284 @@
+"""The commands of the workbench: compare, diagnose, add, ledger, effects, new-effect, import."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+EXIT_WRONG_INPUT = 2
+
+
+def add_commands(commands) -> None:
+    """Adds the commands to the parser of ``airgap``; nothing heavy is imported before one is run."""
+    _bench(commands.add_parser("compare", help="where does the model fail against a campaign?"), _compare)
+    _diagnose_parser(commands.add_parser("diagnose", help="which effect is missing, how sure, what to measure next?"))
+    adding = commands.add_parser("add", help="add an effect to the model: accepted only if the held-out error falls")
+    adding.add_argument("effect", help="name of an effect, see `airgap effects`")
+    _diagnose_parser(adding, _add)
+    walking = commands.add_parser("ledger", help="diagnose and add by itself until nothing more is named; the ledger")
+    _diagnose_parser(walking, _ledger)
+    listing = commands.add_parser("effects", help="what the library knows, one line each; a name shows its equation")
+    listing.add_argument("name", nargs="?")
+    _own_effects(listing)
+    listing.set_defaults(run=_effects)
+    own = commands.add_parser("new-effect", help="a skeleton of one's own effect, from the residual of a campaign")
+    own.add_argument("file", help="Python file to write, my_effect.py")
+    _bench(own, _new_effect, positional=False)
+    importing = commands.add_parser("import", help="write campaign.toml for a plain CSV file")
+    importing.add_argument("csv", help="CSV file, one column a quantity; it is only read")
+    importing.set_defaults(run=_import)
+
+
+def _bench(parser: argparse.ArgumentParser, run, positional: bool = True) -> None:
+    if positional:
+        parser.add_argument("campaign", help="folder with campaign.toml and its tables")
+    else:
+        parser.add_argument("campaign", nargs="?", help="folder of a campaign whose residual gives the first guess")
+    parser.add_argument("--out", metavar="DIR", help="where results go; default results/<campaign id>/")
+    parser.add_argument("--model", metavar="FILE", help="model file; default model.toml in the results, if it is there")
+    _own_effects(parser)
+    parser.set_defaults(run=run)
+
+
+def _diagnose_parser(parser: argparse.ArgumentParser, run=None) -> None:
+    _bench(parser, run or _diagnose)
+    parser.add_argument("--seed", type=int, help="of the simulated campaigns")
+
+
+def _own_effects(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--effects-from",
+        action="append",
+        default=[],
+        metavar="FILE.py",
+        help="import effects of one's own: this runs the file; repeatable, a folder means its .py files",
+    )
+
+
+@contextmanager
+def exit_on_wrong_campaign():
+    """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
+    from workbench.errors import WorkbenchError
+
+    try:
+        yield
+    except WorkbenchError as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(EXIT_WRONG_INPUT) from None
+
+
+def _library(options):
+    from effects.library import library
+    from workbench.errors import WorkbenchError
+
+    for file in options.effects_from:
+        if not Path(file).exists():
+            raise WorkbenchError(f"--effects-from {file}: there is no such file.")
+        print(f"importing effects from {file}: this runs the file", file=sys.stderr)
+    return library(options.effects_from)
+
+
+def _set_up(options):
+    """Campaign, library, model with its effects, and the folder of the results."""
+    from workbench.base_models import nominal_model
+    from workbench.campaign import read_campaign
+    from workbench.model_file import NAME, with_effects_of
+
+    campaign, effects = read_campaign(options.campaign), _library(options)
+    out = Path(options.out) if options.out else Path("results") / campaign.id
+    model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
+    if options.model or saved.exists():
+        model = with_effects_of(saved, model, effects)
+    out.mkdir(parents=True, exist_ok=True)
+    return campaign, effects, model, out
+
+
+def _compare(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.comparison import compare
+
+        campaign, effects, model, out = _set_up(options)
+        with _progress() as progress:
+            comparison = compare(model, campaign, effects, progress)
+        _write_comparison(out, comparison)
+        _print_comparison(comparison, out)
+
+
+def _diagnose(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.diagnosis import SEED, diagnose
+
+        campaign, effects, model, out = _set_up(options)
+        with _progress() as progress:
+            diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
+        _write_diagnosis(out, diagnosis)
+        _print_diagnosis(diagnosis, out)
+
+
+def _add(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.walk import add_effect
+
+        campaign, effects, model, out = _set_up(options)
+        with _progress() as progress:
+            added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
+        _write_comparison(out, added.comparison)
+        _write_diagnosis(out, added.diagnosis)
+        _write_ledger(out, added.ledger)
+        _print_step(added.step)
+        _print_comparison(added.comparison, out)
+
+
+def _ledger(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.walk import walk
+
+        campaign, effects, model, out = _set_up(options)
+        with _progress() as progress:
+            ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
+        _write_diagnosis(out, diagnosis)
+        _write_ledger(out, ledger)
+        _print_ledger(ledger)
+        _print_diagnosis(diagnosis, out)
+
+
+def _effects(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.errors import WorkbenchError
+
+        found = _library(options)
+        if options.name is None:
+            width = max(len(name) for name in found)
+            for name, cls in found.items():
+                print(f"{name:{width}}  {cls.title}: {_equation(cls)}")
+            return
+        if options.name not in found:
+            raise WorkbenchError(f"there is no effect {options.name!r}; `airgap effects` lists all.")
+        _print_effect(found[options.name])
+
+
+def _equation(cls) -> str:
+    """The first line of the docstring that holds an equation, else its first line."""
+    lines = [line.strip() for line in (cls.__doc__ or "").splitlines() if line.strip()]
+    return next((line for line in lines if " = " in line or " -> " in line), lines[0] if lines else "")
+
+
+def _print_effect(cls) -> None:
+    from inspect import cleandoc
+
+    from effects.parameter import parameters_of
+
+    print(f"{cls.name()}: {cls.title}\n\n{cleandoc(cls.__doc__ or '')}\n\n{cls.looks_like}")
+    for name, p in parameters_of(cls).items():
+        print(f"  {name} [{p.unit}]: null {p.null:g}, from {p.low:g} to {p.high:g}; prior {p.prior}; {p.source}")
+    for line in cls.remedy:
+        print(f"  shown by: {line}")
+
+
+def _new_effect(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.skeleton import write_new
+        from workbench.walk import skeleton_for
+
+        path = Path(options.file)
+        if options.campaign is None:
+            text = skeleton_for(path, None, None, None)
+        else:
+            campaign, effects, model, _ = _set_up(options)
+            text = skeleton_for(path, campaign, effects, model)
+        write_new(path, text)
+        print(f"wrote {path}; use it with --effects-from {path}")
+
+
+def _import(options) -> None:
+    with exit_on_wrong_campaign():
+        from workbench.draft import write_draft
+
+        print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
+
+
+@contextmanager
+def _progress():
+    """A bar on a terminal, nothing elsewhere."""
+    from tqdm import tqdm
+
+    with tqdm(bar_format="{desc} {elapsed}", leave=False, disable=not sys.stderr.isatty()) as bar:
+        yield bar.set_description_str
+
+
+def _write_comparison(out: Path, comparison) -> None:
+    from workbench.as_json import comparison_json
+    from workbench.report import write_comparison_report
+
+    (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
+    write_comparison_report(out / "comparison.html", comparison)
+
+
+def _write_diagnosis(out: Path, diagnosis) -> None:
+    from workbench.as_json import diagnosis_json
+    from workbench.report import write_diagnosis_report
+
+    (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
+    write_diagnosis_report(out / "diagnosis.html", diagnosis)
+
+
+def _write_ledger(out: Path, ledger) -> None:
+    from workbench.report import write_ledger_report
+
+    write_ledger_report(out / "ledger.html", ledger)
+
+
+def _print_comparison(c, out: Path) -> None:
+    from workbench.report.sentences import readings
+
+    print(
+        f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'held out':>8}"
+    )
+    for s in c.scoreboard:
+        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.2f}"
+        print(
+            f"{s.channel:28} {s.unit:>9} {s.n:8d} {s.rms_error:10.4g} {s.rms_error_percent:6.2f} {s.noise_floor:9.3g} "
+            f"{s.chi2_per_n:8.2f} {held:>8}"
+        )
+    for reading in readings(c):
+        print(f"{'!' if reading.alarming else ' '} {reading.view}: {reading.sentence}")
+    for words in c.checks + c.complaints:
+        print(f"! {words}")
+    print(f"results in {out}")
+
+
+def _print_diagnosis(d, out: Path) -> None:
+    from workbench.report.sentences import verdict_sentence
+
+    print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
+    for r in d.ranking[:8]:
+        held = (
+            "-"
+            if r.held_out_chi2_per_n_after is None
+            else (f"{r.held_out_chi2_per_n_before:.2f} -> {r.held_out_chi2_per_n_after:.2f}")
+        )
+        sizes = ", ".join(
+            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}" for n, e in r.parameters.items()
+        )
+        print(f"{r.name:28} {r.probability:6.3f} {r.log_evidence:8.1f} {held:>16}  {sizes}")
+    print(f"nothing missing {d.p_nothing_missing:.3f}, none of these {d.p_none_of_these:.3f}")
+    for option in d.next_measurements[:3]:
+        print(f"next: {option.words} ({option.gain_nats:.1f} nats)")
+    print(f"\n{verdict_sentence(d)}\nresults in {out}")
+
+
+def _print_ledger(ledger) -> None:
+    print(f"\n{'step':>4} {'effect':28} {'decision':9} {'ln Z gain':>9} {'chi2/n':>9} {'held out':>9}  then")
+    for s in ledger.steps:
+        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
+        print(
+            f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {s.log_evidence_gain:9.1f} {s.chi2_per_n:9.3f} {held:>9}"
+            f"  {s.verdict}"
+        )
+
+
+def _print_step(step) -> None:
+    held = "" if step.held_out_chi2_per_n is None else f", held-out chi2/n {step.held_out_chi2_per_n:.3f}"
+    print(f"{step.effect}: {step.decision}; {step.reason}{held}")
