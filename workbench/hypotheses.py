@@ -22,8 +22,8 @@ REACH = 4.0  # standard deviations to either side over which a posterior is inte
 PLACES = 17
 LAW_LENGTH = 1.0  # over which the error of a law changes, of the standard deviation of a condition
 LAW_LANDMARKS = 24
-# What a fit cannot know: effects too small to be seen, heavy tails. On virtual benches whose truth follows other laws (seeds
-# never scored) the scatter of fitted sizes about the true ones was 1.2 times what the fits said.
+# What a fit cannot know: effects too small to be seen, heavy tails. On virtual benches whose truth follows other laws
+# (seeds that are never scored) the scatter of fitted sizes about the true ones was 1.2 times what the fits said.
 WIDENING = 1.2
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
@@ -232,7 +232,7 @@ def rival(problem: Problem, fit: Fit, unknown: Unknown) -> Rival:
 
 
 def with_unknown(problem: Problem, unknown: Unknown, choice: Choice) -> tuple[Problem, float]:
-    """The problem with an unknown function integrated out, and half the ln determinant of all that is integrated out."""
+    """The problem with an unknown function integrated out, and half the ln determinant of all that is so."""
     laws = []
     for c, length in choice.parts:
         shapes = unknown.shapes[c][length]

@@ -1,8 +1,8 @@
 """The ledger: which effect was tried, what it did to the error of fitted and held-out rows, and what was decided.
 
 A step is accepted when the error of rows that no fit has seen falls. Where an effect takes over what tolerances had
-hidden, that error stays, or stays within the noise (chi2/n up to 1); then the pulls of the declared uncertainties must fall
-instead. Refused steps stay in the ledger.
+hidden, that error stays, or stays within the noise (chi2/n up to 1); then the pulls of the declared uncertainties
+must fall instead. Refused steps stay in the ledger.
 """
 
 from __future__ import annotations
@@ -105,7 +105,10 @@ def decide(before: Bench, after: Bench) -> tuple[str, str]:
     if new < old * (1 - SAME):
         return ACCEPTED, words
     if new <= max(old * (1 + SAME), rows) and relief > RELIEF:
-        return ACCEPTED, f"{words}, no more than noise; the squared pulls of declared uncertainties fall by {relief:.3g}"
+        return (
+            ACCEPTED,
+            f"{words}, no more than noise; the squared pulls of declared uncertainties fall by {relief:.3g}",
+        )
     return REFUSED, f"{words}: it does not fall"
 
 

@@ -23,6 +23,7 @@ from workbench.verdict import (
     NOTHING_MISSING,
     PAIR,
     PARTIAL,
+    SAME_SHAPE,
     Posterior,
     Signs,
     Verdict,
@@ -130,20 +131,34 @@ def alternatives(p: Posterior, said: Verdict, twins: Mapping[str, tuple[str, ...
     return out
 
 
-def _signs(search, p: Posterior) -> tuple[bool, bool]:
-    """Whether the leading explanation leaves over what the held-out rows show, too, and whether the model as it is
-    does."""
+def _signs(search, p: Posterior) -> tuple[bool, bool, bool]:
+    """Whether the leading explanation leaves over what the held-out rows show, too, whether the model as it is
+    does, and whether the leader is a pair that can follow any curve."""
     bench = search.bench
     if bench.held_out is None:
-        return False, False
+        return False, False, False
     held = bench.held_out.residual(bench.null.x)
     left_by_nothing = agreement(bench, bench.null.residual, held) > NOTHING_LEFT
     hypothesis = search.named(leaders(p))
     if hypothesis is None:
-        return False, left_by_nothing
+        return False, left_by_nothing, False
     x, effects = hypothesis.fit.x, hypothesis.effects
     part, _ = with_law_error(bench, effects, x, held_out(bench, hypothesis))
-    return agreement(bench, hypothesis.fit.residual, part.residual(x, effects)) > NOTHING_LEFT, left_by_nothing
+    left = agreement(bench, hypothesis.fit.residual, part.residual(x, effects)) > NOTHING_LEFT
+    return left, left_by_nothing, _is_bendable(search, hypothesis)
+
+
+def _is_bendable(search, hypothesis: Hypothesis) -> bool:
+    """Whether the effects of a pair have nearly the same shape beside the tolerances."""
+    if len(hypothesis.names) < 2:
+        return False
+    bench = search.bench
+    base = bench.fit.predictor.predict(bench.null.x)
+    first, second = (
+        bench.nuisances.root(bench.fit.white(bench.fit.predictor.predict(bench.null.x, (effect,)) - base))
+        for effect in hypothesis.effects
+    )
+    return abs(cosine(first, second)) > SAME_SHAPE
 
 
 def separations_of(search) -> dict[tuple[str, str], float]:

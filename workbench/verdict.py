@@ -17,6 +17,7 @@ SURE = 0.9  # probability from which something is named
 NAMED = 0.6  # share of what is missing that names must carry to be printed
 LIKELY_TWIN = 0.01  # of the probability of the leader, for an effect that the data cannot tell from it
 LIKELY = 0.03  # the same for one that they can
+SAME_SHAPE = 0.9  # cosine of two signatures from which one is nearly a multiple of the other
 TWINS = 3.0  # expected log-Bayes factor [nats] below which two effects cannot be told apart
 LARGEST_GROUP = 4  # names; with more the data tell nothing
 POWER_NEEDED = 0.5  # share of unknown discrepancies of ten u that must be noticed before a name is believed
@@ -112,12 +113,14 @@ class Signs:
     power: to notice an unknown discrepancy of ten u
     left: fitted and held-out rows agree on something that the leading explanation leaves over
     left_by_nothing: the same for the model as it is
+    bendable: the two effects of the leading pair have nearly the same shape; together they follow any smooth curve
     """
 
     alarm: bool
     power: float
     left: bool = False
     left_by_nothing: bool = False
+    bendable: bool = False
 
 
 def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) -> Verdict:
@@ -137,6 +140,8 @@ def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) ->
     if kind == PARTIAL:
         return Verdict(PARTIAL, (max(p.rest, key=p.rest.get),), shares[PARTIAL] / something)
     named = _of_pairs(p, something) if kind == PAIR else _of_singles(p, twins, something)
+    if named.kind == PAIR and signs.bendable:
+        return Verdict(PARTIAL, (max(leaders(p), key=lambda n: p.singles.get(n, 0.0)),), named.probability)
     return Verdict(PARTIAL, leaders(p), named.probability) if signs.left else named
 
 

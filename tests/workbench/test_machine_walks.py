@@ -2,7 +2,7 @@
 noise.
 
 The truth is the field of the very machine, solved at every angle and current that is read, on another mesh and with
-another reading of the steel's curve than the model has.
+another reading of the steel's curve than the model has. Tolerances, instruments and correlated noise are drawn.
 """
 
 from __future__ import annotations
@@ -11,20 +11,20 @@ from dataclasses import dataclass
 
 import pytest
 
-from benchmarks.virtual_benches.machine_bench import Grid, MachineBench
+from benchmarks.virtual_benches.machine_bench import Grid, measured_in_full_field
+from benchmarks.virtual_benches.machine_bench import MachineBench as Truth
 from effects.library import library
 from geometry.half_cell import MeshDensity
-from units import DEGREE
 from workbench.campaign import read_campaign
 from workbench.comparison import compare
 from workbench.diagnosis import diagnose
 from workbench.findings import Comparison, Diagnosis
 from workbench.ledger import ACCEPTED
 from workbench.model import Model
-from workbench.models.machine import MachineBench as BenchModel
+from workbench.models.machine import MachineBench
 from workbench.models.machine_build import MeshPlan
+from workbench.table import Campaign
 from workbench.walk import Added, add_effect
-from benchmarks.virtual_benches.machine_bench import measured_in_full_field
 
 GRID = Grid(6.0, 4.5, (6.0, 30.0, 54.0), (60.0,), 69.0, (-60.0, 60.0))
 # What is added to the fine base comes from coarse meshes; the leading effects are solved again at their size.
@@ -33,8 +33,72 @@ PLAN = MeshPlan(
     loaded=MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5),
 )
 NAMES = (
-    "magnet_temperature", "end_leakage", "weak_magnet", "static_eccentricity", "slot_opening", "lost_turns",
-    "phase_imbalance", "steel_saturation", "voltage_gain", "torque_gain", "torque_offset", "current_gain",
-    "encoder_zero",
+    "magnet_temperature", "end_leakage", "weak_magnet", "lost_turns", "phase_imbalance", "steel_saturation",
+    "voltage_gain", "torque_gain", "torque_offset", "current_gain", "encoder_zero",
 )  # fmt: skip
 LIBRARY = {name: cls for name, cls in library().items() if name in NAMES}
+NAMED = ("effect", "group")
+# Effect: size in SI, and the tables one of which must fail
+HIDDEN = {
+    "magnet_temperature": (45.0, {"back_emf"}),
+    "weak_magnet": (0.15, {"cogging", "back_emf"}),
+    "lost_turns": (1.0, {"back_emf", "flux_linkage", "phase_resistance"}),
+    "end_leakage": (0.06, {"back_emf", "flux_linkage", "locked_rotor"}),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    effect: str
+    comparison: Comparison
+    diagnosis: Diagnosis
+    added: Added
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory) -> MachineBench:
+    """The model; its field solutions are made by the first campaign and kept for the others."""
+    return MachineBench(PLAN, tmp_path_factory.mktemp("fields"))
+
+
+def opened(base: MachineBench, hidden: dict[str, float], seed: int, folder) -> tuple[Model, Campaign]:
+    campaign = read_campaign(measured_in_full_field(Truth(grid=GRID), hidden, seed).write(folder / "campaign"))
+    return Model(base, base.design(campaign.device)), campaign
+
+
+@pytest.fixture(scope="module", params=enumerate(HIDDEN, 2), ids=HIDDEN)
+def walked(request, base, tmp_path_factory) -> Walk:
+    seed, effect = request.param
+    folder = tmp_path_factory.mktemp(effect)
+    model, campaign = opened(base, {effect: HIDDEN[effect][0]}, seed, folder)
+    comparison, found = compare(model, campaign, LIBRARY), diagnose(model, campaign, LIBRARY)
+    return Walk(effect, comparison, found, add_effect(model, campaign, LIBRARY, effect, folder))
+
+
+def test_compare_finds_the_failing_channel(walked):
+    failing = walked.comparison.failing
+    errors = {s.channel: s.chi2_per_n_nominal for s in walked.comparison.scoreboard}
+    assert failing.split(".")[0] in HIDDEN[walked.effect][1]
+    assert errors[failing] > 10.0
+
+
+def test_diagnose_names_the_effect_or_its_group(walked):
+    assert walked.diagnosis.verdict in NAMED, walked.diagnosis.verdict
+    assert walked.effect in walked.diagnosis.names
+
+
+def test_add_brings_the_held_out_error_to_the_noise(walked):
+    start, step = walked.added.ledger.steps[0], walked.added.ledger.steps[-1]
+    assert step.decision == ACCEPTED
+    assert step.held_out_chi2_per_n <= 1.2
+    assert walked.added.diagnosis.verdict == "nothing_missing"
+
+
+def test_the_size_that_was_hidden_is_found(walked):
+    """Within five standard deviations of its posterior."""
+    hidden, found = HIDDEN[walked.effect][0], next(iter(walked.added.step.parameters.values()))
+    assert abs(found.value - hidden) < 5 * found.std
+
+
+def test_nothing_is_missing_where_nothing_is_hidden(base, tmp_path):
+    assert diagnose(*opened(base, {}, 1, tmp_path), LIBRARY).verdict == "nothing_missing"

@@ -66,6 +66,8 @@ def test_each_verdict():
     assert said(sure, Signs(True, 1.0, left=True)) == ("partial", ("a",))
     assert said(sure, Signs(False, 1.0, left_by_nothing=True)) == ("none_of_these", ())
     assert said(Posterior(0.0, {"a": 0.1}, {("a", "b"): 0.9}, 0.0, {})) == ("pair", ("a", "b"))
+    bent = Posterior(0.0, {"a": 0.02, "b": 0.08}, {("a", "b"): 0.9}, 0.0, {})
+    assert said(bent, Signs(True, 1.0, bendable=True)) == ("partial", ("b",))
     assert said(Posterior(0.0, {"a": 0.1}, {}, 0.9, {})) == ("none_of_these", ())
     assert said(Posterior(0.0, {"a": 0.1}, {}, 0.0, {"a": 0.9})) == ("partial", ("a",))
     assert said(singles(a=0.2, b=0.2, c=0.2, d=0.2, e=0.2)) == ("cannot_tell", ())

@@ -68,12 +68,14 @@ class MachineBench:
     """The bench model of a machine. ``prepared`` makes one that answers at once for the rows of some tables.
 
     plan: meshes;  cache: folder for field solutions, None for none
+    surrogate: that answers;  about_drawing: where that is about another design, the one that it was made from
     """
 
     plan: MeshPlan = MeshPlan()
     cache: Path | None = CACHE
     surrogate: Surrogate | None = None
     builder: SurrogateBuilder | None = None
+    about_drawing: Surrogate | None = None
     name: str = field(default="machine", init=False)
 
     # ---- the device ---------------------------------------------------------------------------------------------
@@ -114,7 +116,8 @@ class MachineBench:
     ) -> MachineBench:
         """The same bench with its surrogate about ``design`` for the loaded rows of the tables."""
         builder = SurrogateBuilder(design, self.plan, self.cache)
-        return replace(self, surrogate=builder.build(loaded_states(tables), progress), builder=builder)
+        built = builder.build(loaded_states(tables), progress)
+        return replace(self, surrogate=built, builder=builder, about_drawing=built)
 
     def respond(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns at true conditions, SI; from the surrogate."""
@@ -130,7 +133,7 @@ class MachineBench:
 
     def recentred(self, design: MachineAsBuilt) -> MachineBench:
         """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing."""
-        return replace(self, surrogate=self.builder.about(self.surrogate, design))
+        return replace(self, surrogate=self.builder.about(self.about_drawing, design))
 
     def numerical(self, kind: str) -> dict[str, float]:
         """Standard uncertainty of the responses of a kind that the mesh leaves, SI."""

@@ -17,7 +17,7 @@ ANGLES = np.linspace(0.0, 2 * np.pi, 50, endpoint=False)
 
 
 def prepared():
-    return replace(BENCH, surrogate=surrogate(), builder=builder())
+    return replace(BENCH, surrogate=surrogate(), builder=builder(), about_drawing=surrogate())
 
 
 def test_device():
@@ -102,6 +102,14 @@ def test_exact_is_the_surrogate_at_the_drawing():
     at = {"angle_mech": ANGLES}
     exact = prepared().exact(drawn(), "cogging", at)["torque"]
     assert_allclose(exact, prepared().respond(drawn(), "cogging", at)["torque"], atol=1e-9)
+
+
+def test_exact_at_one_design_after_another():
+    """Solved about a machine with a smaller gap, then about the drawing: the drawing's own answer comes back."""
+    there_and_back = prepared().recentred(drawn().with_machine(airgap=0.46e-3)).recentred(drawn())
+    at = {"angle_mech": ANGLES}
+    found = there_and_back.respond(drawn(), "cogging", at)["torque"]
+    assert_allclose(found, prepared().respond(drawn(), "cogging", at)["torque"], atol=1e-9)
 
 
 def test_sentences():
