@@ -35,6 +35,7 @@ CACHE = Path("results") / "cache"
 LABORATORY = 22.0  # degC, at which a device table states its remanence when it does not say
 _MAGNET_MEMORY = 61  # rows; a magnet warms over minutes, what its reading does from row to row is noise
 _ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
+_AROUND = round(2 * np.pi / _ANGLE_GRID)
 _TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
 
 _DIMENSIONS = (
@@ -281,7 +282,7 @@ def loaded_states(tables: Sequence[Table]) -> tuple[LoadedState, ...]:
         if table.kind not in ("locked_rotor", "flux_linkage"):
             continue
         for angle, currents in zip(table.conditions["angle_mech"], _currents(table.conditions)):
-            near = round(angle / _ANGLE_GRID) * _ANGLE_GRID
+            near = round(angle / _ANGLE_GRID) % _AROUND * _ANGLE_GRID
             found[LoadedState(near, tuple(map(_few_digits, currents)))] = None
             if table.kind == "flux_linkage":
                 found[LoadedState(near, (0.0, 0.0, 0.0))] = None

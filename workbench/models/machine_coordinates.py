@@ -56,7 +56,7 @@ STATOR_SHIFT = tuple(Coordinate(("stator_shift",), 1e-7, 0.1 * MILLIMETRE, k, ST
 ROTOR_SHIFT = tuple(Coordinate(("rotor_shift",), 1e-7, 0.1 * MILLIMETRE, k, ROTOR) for k in (0, 1))
 SHIFTS = (STATOR_SHIFT, ROTOR_SHIFT)
 ARC = Coordinate(("machine", "magnet_arc_fraction"), 1e-4, -0.06)
-LESS_ARC = (-0.06, -0.13)  # where neighbouring magnets touch a smaller arc is another mesh: secants at two sizes
+LESS_ARC = (-0.03, -0.08, -0.13)  # where neighbouring magnets touch a smaller arc is another mesh: secants
 
 
 def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:

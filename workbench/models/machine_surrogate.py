@@ -2,16 +2,17 @@
 
     S(p) = S_0 + sum_j J_j p_j + sum_j C_j p_j^2 / 2 + mixed terms of the two components of an eccentricity
 
-over the coordinates p of ``machine_coordinates``. Without current S are Fourier coefficients over the revolution; with
-current S belongs to one state, and is expanded in its rotor angle and currents as well. S_0 is of a fine mesh, what is
-added to it of a coarser one.
+and a cubic term for the arc of touching magnets, a tenth less of which turns cogging round. The coordinates p are those
+of ``machine_coordinates``. Without current S are Fourier coefficients over the revolution; with current S belongs to
+one state, and is expanded in its rotor angle and currents as well. S_0 is of a fine mesh, the rest of coarser ones.
+About another design, with S_0 from field solutions there, the rest is the difference of the expansion between the two.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Mapping, Sequence
+from functools import cached_property, lru_cache
+from typing import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from workbench.models.machine_coordinates import ARC, LESS_ARC, SHIFTS, Coordina
 from workbench.models.machine_expansion import Changes, arc_name, mixed_name
 
 _TABLE = 4096  # angles of a revolution that are interpolated between by cubics; 68 to a period of order 60
+_REMEMBERED = 16  # designs
 _FARTHEST_ANGLE = 3 * DEGREE  # from a solved state that its expansion is used for
 _FARTHEST_CURRENT = 0.12  # relative
 
@@ -69,21 +71,21 @@ class Surrogate:
         return smooth_coordinates(self.nominal) + arc
 
     @cached_property
-    def _idle_terms(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _idle_terms(self) -> Terms:
         return _terms(self.coordinates, self.idle, self._projection(self.nominal.turns), self.no_load.shape[1])
 
     @cached_property
-    def _loaded_terms(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _loaded_terms(self) -> Terms:
         swapped = Changes(*(_swap(part) for part in (self.loaded.base, self.loaded.linear, self.loaded.secant)))
         return _terms(self.coordinates, swapped, self._projection(self.nominal.turns), len(self.states.base))
 
     def position(self, design: MachineAsBuilt) -> np.ndarray:
-        """Coordinates of a design, from the origin on."""
-        return np.array([c.read(design) for c in self.coordinates]) - self._origin
+        """Coordinates of a design, from the drawing on."""
+        return np.array([c.read(design) for c in self.coordinates]) - self._drawn
 
     @cached_property
-    def _origin(self) -> np.ndarray:
-        return np.array([c.read(self._centre) for c in self.coordinates])
+    def _drawn(self) -> np.ndarray:
+        return np.array([c.read(self.nominal) for c in self.coordinates])
 
     @property
     def _centre(self) -> MachineAsBuilt:
@@ -102,13 +104,26 @@ class Surrogate:
     def spectrum(self, design: MachineAsBuilt) -> np.ndarray:
         """Fourier coefficients over the revolution of torque and phase flux linkages per metre (4, orders)."""
         base = self._projection(design.turns) @ self.no_load
-        return base + self._added(self._idle_terms, self.position(design))
+        return base + self._idle_added(design)
 
-    def _added(self, terms: tuple[np.ndarray, np.ndarray, np.ndarray], p: np.ndarray) -> np.ndarray:
-        linear, square, mixed = terms
+    @cached_property
+    def _idle_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
+        return self._from_origin(self._idle_terms)
+
+    @cached_property
+    def _loaded_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
+        return self._from_origin(self._loaded_terms)
+
+    def _from_origin(self, terms: Terms) -> Callable[[MachineAsBuilt], np.ndarray]:
+        """What is added for a design to the values at the origin; tables ask for one design in turn."""
+        at_origin = self._added(terms, self._centre)
+        return lru_cache(maxsize=_REMEMBERED)(lambda design: self._added(terms, design) - at_origin)
+
+    def _added(self, terms: Terms, design: MachineAsBuilt) -> np.ndarray:
+        p = self.position(design)
         moved = np.flatnonzero(p)
-        value = np.tensordot(p[moved], linear[moved], 1) + np.tensordot(p[moved] ** 2 / 2, square[moved], 1)
-        for (x, y), form in zip(self._shift_places, mixed):
+        value = sum(np.tensordot(p[moved] ** k, form[moved], 1) for k, form in enumerate(terms.powers, 1))
+        for (x, y), form in zip(self._shift_places, terms.mixed):
             if p[x] and p[y]:
                 value = value + p[x] * p[y] * form
         return value
@@ -137,7 +152,7 @@ class Surrogate:
         solved = self._ampere_turns(self._centre.turns, centre * (1 + scale)[:, None])
         rest = self._ampere_turns(design.turns, currents) - solved
         sample = sample + np.einsum("nc,ncq->nq", rest, states.coils[which])
-        added = self._added(self._loaded_terms, self.position(design))
+        added = self._loaded_added(design)
         return sample @ self._projection(design.turns).T + added[:, which].T
 
     def _ampere_turns(self, turns: Sequence[float], currents: np.ndarray) -> np.ndarray:
@@ -170,37 +185,43 @@ def _swap(part):
     return part.T
 
 
-def _terms(
-    coordinates: Sequence[Coordinate], changes: Changes, projection: np.ndarray, length: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """First and second derivatives (j, 4, n), and the mixed ones of the two shifts (2, 4, n)."""
-    linear, square = [], []
-    for c in coordinates:
-        first, second = _of_coordinate(c, changes)
-        linear.append(_cut(projection @ first, length))
-        square.append(_cut(projection @ second, length))
+@dataclass(frozen=True, eq=False)
+class Terms:
+    """powers: coefficients of the first, second and third power of every coordinate (3, j, 4, n)
+
+    mixed: second derivatives by the two components of both shifts (2, 4, n)
+    """
+
+    powers: np.ndarray
+    mixed: np.ndarray
+
+
+def _terms(coordinates: Sequence[Coordinate], changes: Changes, projection: np.ndarray, length: int) -> Terms:
+    powers = [[_cut(projection @ form, length) for form in _of_coordinate(c, changes)] for c in coordinates]
     mixed = [_cut(projection @ _mixed(x, y, changes), length) for x, y in SHIFTS]
-    return np.array(linear), np.array(square), np.array(mixed)
+    return Terms(np.array(powers).swapaxes(0, 1), np.array(mixed))
 
 
-def _of_coordinate(c: Coordinate, changes: Changes) -> tuple[np.ndarray, np.ndarray]:
-    if c.name not in changes.linear:  # less arc of touching magnets: a parabola through two secants
-        (a, b), (at_a, at_b) = LESS_ARC, (changes.secant[arc_name(change)] for change in LESS_ARC)
-        half = (at_b / b - at_a / a) / (b - a)
-        return at_a / a - half * a, 2 * half
+def _of_coordinate(c: Coordinate, changes: Changes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coefficients of the first three powers."""
+    if c.name not in changes.linear:  # less arc of touching magnets: a cubic through three secants
+        inverse = np.linalg.inv(np.array(LESS_ARC)[:, None] ** np.arange(1, 4))
+        first, second, third = np.tensordot(inverse, [changes.secant[arc_name(change)] for change in LESS_ARC], 1)
+        return first, second, third
     first = changes.linear[c.name]
+    none = np.zeros_like(first)
     if c.name not in changes.secant:
-        return first, np.zeros_like(first)
-    return first, 2 * (changes.secant[c.name] - first * c.size) / c.size**2
+        return first, none, none
+    return first, (changes.secant[c.name] - first * c.size) / c.size**2, none
 
 
 def _mixed(x: Coordinate, y: Coordinate, changes: Changes) -> np.ndarray:
     """d2/dxdy from the secant between the two directions."""
     if mixed_name(x) not in changes.secant:
         return np.zeros_like(changes.linear[x.name])
-    (first_x, square_x), (first_y, square_y) = _of_coordinate(x, changes), _of_coordinate(y, changes)
+    (first_x, square_x, _), (first_y, square_y, _) = _of_coordinate(x, changes), _of_coordinate(y, changes)
     h = x.size / np.sqrt(2)
-    return (changes.secant[mixed_name(x)] - h * (first_x + first_y)) / h**2 - (square_x + square_y) / 2
+    return (changes.secant[mixed_name(x)] - h * (first_x + first_y)) / h**2 - square_x - square_y
 
 
 def _cut(rows: np.ndarray, length: int) -> np.ndarray:

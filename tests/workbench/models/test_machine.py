@@ -1,6 +1,7 @@
 """The machine bench: reading the device, signs of the answers, sentences for what is wrong."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from numpy.testing import assert_allclose
 from benchmarks.virtual_benches.machine_bench import DEVICE
 from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
 from workbench.errors import WorkbenchError
-from workbench.models.machine import MachineBench
+from workbench.models.machine import MachineBench, loaded_states
 from workbench.table import Tolerance
 
 BENCH = MachineBench(cache=None)
@@ -110,6 +111,12 @@ def test_exact_at_one_design_after_another():
     at = {"angle_mech": ANGLES}
     found = there_and_back.respond(drawn(), "cogging", at)["torque"]
     assert_allclose(found, prepared().respond(drawn(), "cogging", at)["torque"], atol=1e-9)
+
+
+def test_a_state_just_before_a_revolution_is_the_one_at_its_start():
+    currents = {f"i_{x}": np.array([30.0, 30.0]) for x in "abc"}
+    table = SimpleNamespace(kind="locked_rotor", conditions={"angle_mech": np.radians([359.848, 0.1]), **currents})
+    assert [state.angle for state in loaded_states([table])] == [0.0]
 
 
 def test_sentences():

@@ -32,6 +32,7 @@ CHANGES = {
     "air gap": drawn().with_machine(airgap=0.54e-3),
     "slot opening": drawn().with_machine(slot_opening=2.2e-3),
     "magnet arc": drawn().with_machine(magnet_arc_fraction=0.93),
+    "magnet arc, hardly": drawn().with_machine(magnet_arc_fraction=0.985),
     "saturation": replace(drawn(), saturation_scale=0.97),
     "grade": replace(drawn(), field_scale=1.4),
     "stacking": replace(drawn(), stacking_factor=0.96),
