@@ -60,7 +60,7 @@ class _Problem:
             method="SLSQP",
             bounds=[(-_FARTHEST, _FARTHEST)] * 2,
             constraints=[allowed],
-            options={"ftol": _TOLERANCE, "maxiter": 30},
+            options={"ftol": _TOLERANCE, "maxiter": 12},
         )
         if not found.success:
             raise NoOptimumError(
