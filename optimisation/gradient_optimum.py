@@ -16,7 +16,7 @@ from optimisation.design import Design, DesignSolver, Judge, MachineFamily
 
 _FARTHEST = 0.35  # relative change of a dimension in one search
 _STEPS = np.full(2, 1e-4)  # relative changes for the derivatives
-_TOLERANCE = 1e-5  # of the torque between two steps, relative
+_TOLERANCE = 1e-4  # of torque and limit, relative; below it the search jams in the rounding of the field solutions
 _BINDS = 5e-3  # relative distance from the limit at which it still counts as binding
 
 
