@@ -9,6 +9,7 @@ import gmsh
 import numpy as np
 
 from geometry.machine import GeometryError
+from geometry.signal_handlers import kept_signal_handlers
 
 _FRONTAL_DELAUNAY = 6  # gmsh's number for the algorithm that gives the best-shaped triangles
 
@@ -88,7 +89,8 @@ def triangulate(drawing: Drawing) -> PlaneMesh:
 
 
 def _start_gmsh() -> None:
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    with kept_signal_handlers():
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
     for option, value in (
         ("General.Terminal", 0),
         ("General.NumThreads", 1),
