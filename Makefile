@@ -4,7 +4,7 @@ STUDY ?= motorcycle
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
 # One script pipeline/<stage>.py a stage; a stage whose inputs did not change says so and ends.
-STAGES := requirements linkage sweep optima limits fits match winding flux_map drive gearbox fields figures outcome
+STAGES := requirements linkage sweep optima limits fits match gearbox winding flux_map drive fields figures outcome
 STAGES += report
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
@@ -40,13 +40,13 @@ optima: sweep
 limits: $(SET_UP)
 fits: optima
 match: requirements linkage fits
-winding: match
+winding: gearbox
 flux_map: winding
 drive: flux_map
 gearbox: match
 fields: winding
 figures: fields limits
-outcome: drive gearbox
+outcome: drive
 report: figures outcome
 
 $(STAGES):

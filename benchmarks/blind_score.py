@@ -29,7 +29,7 @@ from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
 from benchmarks.virtual_benches.hiding import hide
 from effects.library import library
 from pipeline.checkpoint import Checkpoint
-from pipeline.parallel import default_workers, run_parallel
+from pipeline.parallel import Interrupted, default_workers, run_parallel
 from workbench.base_models import nominal_model
 from workbench.campaign import read_campaign
 from workbench.diagnosis import diagnose
@@ -164,9 +164,10 @@ def table_of(sets: dict[str, list[Metric]]) -> str:
 def _cell(m: Metric) -> str:
     if not m.n or np.isnan(m.value):
         return "no case"
-    interval = "" if m.low == m.high else f" [{m.low:.3f}, {m.high:.3f}]"
+    is_share = m.low != m.high
+    interval = f" [{m.low:.3f}, {m.high:.3f}], {round(m.value * m.n)} of {m.n}" if is_share else f", n = {m.n}"
     mark = "" if m.passed is None else (" met" if m.passed else " **missed**")
-    return f"{m.value:.3f}{interval}, n = {m.n},{mark}"
+    return f"{m.value:.3f}{interval},{mark}"
 
 
 def sets_of(cases: list[dict]) -> dict[str, list[Metric]]:
@@ -213,7 +214,8 @@ def _summary(sets: dict[str, list[Metric]], record: dict) -> str:
         "# Blind score of the diagnosis\n\n"
         f"{record['cases']} campaigns in {record['wall_s'] / 60:.0f} min on {record['machine']['processor']}; "
         "brackets are one-sided 95 % bounds (Clopper and Pearson). A hidden effect counts as visible when it adds "
-        "chi2 >= 20 beyond tolerances and instruments. Winding temperature and contact resistance are the same law and count as one.\n\n"
+        "chi2 >= 20 beyond tolerances and instruments, a truth outside the library when it keeps as much beside the best "
+        "effect. Winding temperature and contact resistance are the same law and count as one.\n\n"
         f"{table_of(sets)}\n\n"
         f"{record['answers_that_changed_on_repetition']} of {record['repeated']} repeated diagnoses differed.\n"
     )
@@ -227,10 +229,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--from", type=int, default=0, dest="skip", help="skip so many tuning seeds")
     chosen = parser.parse_args(arguments)
     benches = [bench for bench in chosen.bench or BENCHES if is_there(bench)]
-    if chosen.tune:
-        _tune(chosen, benches)
-    else:
-        _score(benches)
+    try:
+        _tune(chosen, benches) if chosen.tune else _score(benches)
+    except Interrupted as stopped:
+        raise SystemExit(str(stopped)) from None
 
 
 def _tune(chosen, benches: list[str]) -> None:

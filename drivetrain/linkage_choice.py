@@ -24,6 +24,13 @@ class ChoiceRule:
         raise NotImplementedError
 
 
+def _least(values: np.ndarray, allowed: np.ndarray, refusal: str) -> int:
+    """Index of the smallest allowed value; LinkageError with the refusal where none is allowed."""
+    if not allowed.any():
+        raise LinkageError(refusal)
+    return int(np.where(allowed, values, np.inf).argmin())
+
+
 @dataclass(frozen=True)
 class SmallestRatio(ChoiceRule):
     """Smallest ratio objective f1 among the points whose angles are good enough, f2 <= worst_quality [rad^2].
@@ -34,13 +41,13 @@ class SmallestRatio(ChoiceRule):
     worst_quality: float
 
     def pick(self, front):
-        good = np.flatnonzero(front.objectives[:, 1] <= self.worst_quality)
-        if not len(good):
-            raise LinkageError(
-                f"no linkage of the front has angles as good as f2 = {self.worst_quality:g}; the best reaches "
-                f"{front.objectives[:, 1].min():.3f}: allow more"
-            )
-        return int(good[np.argmin(front.objectives[good, 0])])
+        ratio, quality = front.objectives.T
+        return _least(
+            ratio,
+            quality <= self.worst_quality,
+            f"no linkage of the front has angles as good as f2 = {self.worst_quality:g}; the best reaches "
+            f"{quality.min():.3f}: allow more",
+        )
 
     @property
     def reason(self):
@@ -55,13 +62,12 @@ class BestAngles(ChoiceRule):
 
     def pick(self, front):
         ratio = front.linkages.motion(np.zeros(1)).transmission_ratio[:, 0]
-        good = np.flatnonzero(ratio <= self.largest_ratio)
-        if not len(good):
-            raise LinkageError(
-                f"no linkage of the front has a nominal ratio of {self.largest_ratio / MILLIMETRE:g} mm/rad or less; "
-                f"the smallest is {ratio.min() / MILLIMETRE:.1f} mm/rad: allow more"
-            )
-        return int(good[np.argmin(front.objectives[good, 1])])
+        return _least(
+            front.objectives[:, 1],
+            ratio <= self.largest_ratio,
+            f"no linkage of the front has a nominal ratio of {self.largest_ratio / MILLIMETRE:g} mm/rad or less; "
+            f"the smallest is {ratio.min() / MILLIMETRE:.1f} mm/rad: allow more",
+        )
 
     @property
     def reason(self):

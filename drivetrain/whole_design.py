@@ -1,23 +1,25 @@
 """Radius, slots, active length, transmission ratio and linkage chosen together instead of one after the other.
 
-Four objectives: mass, equivalent mass, damping reserve and copper loss on the road. The machine is its polynomials over
-the stator radius, the gearbox its scaling laws, as in the match; the constraints are those of the match.
+Four objectives: mass, equivalent mass, damping reserve and loss on the road. The machine is its polynomials over the
+stator radius, the gearbox its scaling laws, as in the match; the constraints are those of the match.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import inf
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from math import gamma, inf, pi, sqrt
 
 import numpy as np
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+from scipy.interpolate import CubicSpline
 from scipy.optimize import differential_evolution
 
-from drivetrain.match import Constraints, CostScales, CostWeights, CrossSection, evaluate_cost
+from drivetrain.match import Constraints, CopperLoading, CostScales, CostWeights, CrossSection, evaluate_cost
 from drivetrain.planetary import GearboxDesign, GearboxError
 
 OBJECTIVES = ("mass", "equivalent_mass", "damping_reserve", "road_loss")
@@ -26,6 +28,29 @@ _NO_COST = (CostScales(1.0, 1.0, 1.0), CostWeights(0.5, 0.0))
 _FEASIBLE = 1e-6  # relative; a limit exceeded by less is kept
 _PENALTY = 1e3  # above every cost
 _SEED, _GENERATIONS = 1, 150  # of the search for one objective
+
+
+@dataclass(frozen=True)
+class RoadSection(CrossSection):
+    """A cross-section with the iron and magnet loss that its turning rotor causes, P = h f + e f^2 + x f^1.5 [W/m].
+
+    idle_hysteresis h [W s/m], idle_eddy e, magnets included [W s^2/m], idle_excess x [W s^1.5/m]: of the whole machine
+    without current, over the electrical frequency f
+    """
+
+    idle_hysteresis: float
+    idle_eddy: float
+    idle_excess: float
+
+
+@dataclass(frozen=True)
+class RoadDemand:
+    """Working point on the road: RMS force [N] and velocity [m/s] at the wheel; copper; pole pairs of the machine."""
+
+    force_rms: float
+    velocity_rms: float
+    copper: CopperLoading
+    pole_pairs: int
 
 
 @dataclass(frozen=True)
@@ -59,7 +84,7 @@ class WholeProblem:
     slots; radii: range of the stator outer radius [m] for each; lengths: range of the active length [m]
     linkage_ratios: smallest and largest nominal ratio of the linkages that may be built [m/rad]
     constraints_of: as in ``match_over_radius``; gearbox: at any linkage ratio, which the design replaces
-    damping_of: section -> its ``RegenerativeDamping``; loss_of: (section, design) -> copper loss at the RMS force [W]
+    damping_of: section -> its ``RegenerativeDamping``; loss_of: (section, design) -> loss on the road [W]
     targets: largest mass and equivalent mass [kg]; a design must also have a damping reserve of 1
     """
 
@@ -74,7 +99,7 @@ class WholeProblem:
     loss_of: Callable[[CrossSection, WholeDesign], float]
     targets: tuple[float, float]
 
-    @property
+    @cached_property
     def ratios(self) -> tuple[float, float]:
         """Range of the transmission ratio [m/rad]: from the fastest rotor to stages of a ratio of 2."""
         section = self.section_at(self.slots[0], sum(self.radii[0]) / 2)
@@ -137,6 +162,64 @@ def _between(ends, share):
 
 def _share(ends, value):
     return (value - ends[0]) / (ends[1] - ends[0]) if ends[1] > ends[0] else 0.0
+
+
+def road_loss(section: RoadSection, design: WholeDesign, demand: RoadDemand) -> float:
+    """Copper loss of the RMS force and idle loss of the moving rotor [W].
+
+    P_cu = 6 N_c k_cp A_s (l + l_et) rho J^2,  J = J_nom F tau_t / (r l)
+    P_idle = l (h <f> + e <f^2> + x <f^1.5>),  f = p |v| / (2 pi tau_t)
+
+    The velocity is normally distributed, as on a random road without stops. The copper part alone is F^2 over the
+    damping, so that it would say nothing that the damping reserve does not; a small tau_t, which lowers it, turns the
+    rotor faster. Left out: gears, bearings, and the iron loss that the current adds.
+    """
+    torque = demand.force_rms * design.transmission_ratio
+    copper = demand.copper
+    density = copper.nominal_current_density * torque / (section.torque_per_length_nominal * design.active_length)
+    volume = 6 * section.coils_in_series * copper.packing * section.half_slot_area
+    heat = volume * (design.active_length + section.end_turn_length) * copper.resistivity * density**2
+    frequency = demand.pole_pairs * demand.velocity_rms / (2 * pi * design.transmission_ratio)
+    return heat + design.active_length * _idle_loss(section, frequency)
+
+
+_MEAN, _MEAN_15 = sqrt(2 / pi), 2**0.75 * gamma(1.25) / sqrt(pi)  # <|x|>, <|x|^1.5> of the standard normal distribution
+
+
+def _idle_loss(section, frequency_rms) -> float:
+    """Mean [W/m] over a normally distributed speed."""
+    linear, quadratic = section.idle_hysteresis * frequency_rms, section.idle_eddy * frequency_rms**2
+    return _MEAN * linear + quadratic + _MEAN_15 * section.idle_excess * frequency_rms**1.5
+
+
+class SectionTable:
+    """Cross-sections over the stator radius by cubic splines through samples: a search asks for 100,000 of them.
+
+    Sections from second-order polynomials come back to 1e-6, in a fortieth of the time.
+    section_at: (slots, stator outer radius [m]) -> section; slots; radii: range [m] for each
+    """
+
+    _SAMPLES = 33
+
+    def __init__(self, section_at: Callable, slots: tuple[int, ...], radii: tuple[tuple[float, float], ...]):
+        self._kind, self._splines, self._fixed = {}, {}, {}
+        for count, ends in zip(slots, radii, strict=True):
+            self._add(count, np.linspace(*ends, self._SAMPLES), section_at)
+
+    def _add(self, slots, radii, section_at):
+        found = [section_at(slots, radius) for radius in radii]
+        rows = [asdict(one) for one in found]
+        whole = [name for name, value in rows[0].items() if isinstance(value, int)]
+        self._fixed[slots] = {name: rows[0][name] for name in whole}
+        names = [name for name in rows[0] if name not in whole]
+        spline = CubicSpline(radii, [[row[name] for name in names] for row in rows])
+        self._kind[slots], self._splines[slots] = type(found[0]), (names, spline)
+
+    def __call__(self, slots: int, radius: float) -> CrossSection:
+        """The section of a slot count at a stator outer radius [m]."""
+        names, spline = self._splines[slots]
+        values = dict(zip(names, spline(radius).tolist(), strict=True))
+        return self._kind[slots](**self._fixed[slots], **values)
 
 
 class _Population(Problem):

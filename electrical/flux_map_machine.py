@@ -192,9 +192,10 @@ class FluxMapMachine:
 
     def _inside(self, i_d, i_q) -> np.ndarray:
         i = np.stack(np.broadcast_arrays(np.asarray(i_d, dtype=float), np.asarray(i_q, dtype=float)))
-        if np.any(np.abs(i - self._clip(i)) > self._slack(i)):  # NaN passes and stays NaN
+        clipped = self._clip(i)
+        if (np.abs(i - clipped) > self._slack(i)).any():  # NaN passes and stays NaN
             raise FluxMapMachineError(f"a current lies outside the map, {self._extent()}: solve a larger map")
-        return self._clip(i)
+        return clipped
 
     def _extent(self) -> str:
         return f"i_d {self.i_d[0]:.4g} to {self.i_d[-1]:.4g} A, i_q {self.i_q[0]:.4g} to {self.i_q[-1]:.4g} A"

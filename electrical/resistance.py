@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-COPPER_RESISTIVITY_20 = 1.68e-8  # ohm m at 20 degC, thesis below eq. 3.82
-COPPER_TEMPERATURE_COEFFICIENT = 0.00393  # 1/K at 20 degC, IEC 60028 (annealed copper)
+from materials.conductor import COPPER
+
+COPPER_RESISTIVITY_20 = COPPER.reference_resistivity  # ohm m at 20 degC, thesis below eq. 3.82
 COPPER_VALID_CELSIUS = (-100.0, 250.0)  # the linear law is used inside this range only
 
 
@@ -20,7 +21,7 @@ def copper_resistivity(temperature_celsius: float = 20.0) -> float:
             f"copper temperature must lie between {low:g} and {high:g} degC for the linear law; "
             f"found {temperature_celsius:g} degC"
         )
-    return COPPER_RESISTIVITY_20 * (1 + COPPER_TEMPERATURE_COEFFICIENT * (temperature_celsius - 20.0))
+    return COPPER.resistivity(temperature_celsius)
 
 
 def phase_resistance(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Callable
 
+from benchmarks.virtual_benches.hiding import Catalogue, hide
 from effects.base import Effect
 from effects.library import effects_of_file, package_effects
 from workbench.base_models import nominal_model
@@ -85,10 +87,25 @@ def show(told: Told, out: Path) -> None:
     print(ledger_sentence(told.ledger))
     print(comparison_sentence(told.after))
     own = told.own_step
-    before, after = (next(f for f in c.fits if f.channel == told.channel) for c in (told.before, told.after))
-    channels.channel_fit(before).savefig(out / "residual.png", dpi=DPI)
-    channels.before_and_after(before, after, own.effect).savefig(out / "before_and_after.png", dpi=DPI)
-    waterfall(told.ledger).savefig(out / "falling_error.png", dpi=DPI)
+    draw(told.before, told.after, told.channel, own.effect, told.ledger, out)
     write_comparison_report(out / "comparison.html", told.before)
     write_diagnosis_report(out / "diagnosis.html", told.verdict)
-    write_ledger_report(out / "ledger.html", told.ledger)
+
+
+def draw(before: Comparison, after: Comparison, channel: str, added: str, ledger: Ledger, out: Path) -> None:
+    """The three pictures of a story and the page of its ledger."""
+    one, other = (next(f for f in c.fits if f.channel == channel) for c in (before, after))
+    channels.channel_fit(one).savefig(out / "residual.png", dpi=DPI)
+    channels.before_and_after(one, other, added).savefig(out / "before_and_after.png", dpi=DPI)
+    waterfall(ledger).savefig(out / "falling_error.png", dpi=DPI)
+    write_ledger_report(out / "ledger.html", ledger)
+
+
+def hidden(catalogue: Callable[[], Catalogue], seed: int, outside: str) -> Callable[[Path], Path]:
+    """Writes the campaign of a virtual bench with something that no effect of the library describes."""
+    return lambda folder: hide(catalogue(), "outside", seed, wanted=(outside,))[0].write(folder)
+
+
+def folder_of_results(name: str) -> Path:
+    """Where a story writes: the first word of the command line, else results/examples/ and its name."""
+    return Path(sys.argv[1] if len(sys.argv) > 1 else f"results/examples/{name}")

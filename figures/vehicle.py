@@ -19,10 +19,10 @@ _FLAT = 1e-9  # m, a road lower than this is not drawn
 
 
 @styled
-def time_histories(histories: Mapping[str, object], *, until: float | None = None) -> Figure:
+def time_histories(histories: Mapping[str, object], *, span: tuple[float, float] | None = None) -> Figure:
     """Road, stroke, actuator force and velocity, and load of the actuated tyre over time.
 
-    histories: ``RideHistory`` by label, of one scenario; until: last time shown [s], the end when None
+    histories: ``RideHistory`` by label, of one scenario; span: first and last time shown [s], all of it when None
     """
     panels = (
         ("road / mm", lambda h: h.road.T / MILLIMETRE),
@@ -32,18 +32,19 @@ def time_histories(histories: Mapping[str, object], *, until: float | None = Non
         ("tyre load / kN", lambda h: h.tyre_loads[-1] / _KILONEWTON),
     )
     any_history = next(iter(histories.values()))
+    span = span or (0.0, any_history.time[-1])
     panels = panels[1:] if np.abs(any_history.road).max() < _FLAT else panels
     figure = new_figure(1.7 * len(panels))
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (label, values) in zip(axes, panels, strict=True):
         axis.set(ylabel=label)
         if label.startswith("road"):
-            _draw_road(axis, any_history)
+            _draw_road(axis, any_history, span)
         else:
             for number, (name, history) in enumerate(histories.items()):
-                thin = _thinned(history.time)
-                axis.plot(history.time[thin], values(history)[thin], color=SERIES[number], label=name, linewidth=1.1)
-    axes[-1].set(xlabel="time / s", xlim=(0, until or any_history.time[-1]))
+                shown = _shown(history.time, span)
+                axis.plot(history.time[shown], values(history)[shown], color=SERIES[number], label=name, linewidth=1.1)
+    axes[-1].set(xlabel="time / s", xlim=span)
     show_grid(*axes)
     figure.align_ylabels(axes)
     handles, names = axes[-1].get_legend_handles_labels()
@@ -51,12 +52,17 @@ def time_histories(histories: Mapping[str, object], *, until: float | None = Non
     return figure
 
 
-def _draw_road(axis, history) -> None:
+def _draw_road(axis, history, span) -> None:
     names = ("under the wheel",) if len(history.road) == 1 else ("under the front wheel", "under the rear wheel")
-    thin = _thinned(history.time)
+    shown = _shown(history.time, span)
     for heights, name, look in zip(history.road, names, ("-", "--")[: len(names)], strict=True):
-        axis.plot(history.time[thin], heights[thin] / MILLIMETRE, look, color=GREY, linewidth=1.1, label=name)
+        axis.plot(history.time[shown], heights[shown] / MILLIMETRE, look, color=GREY, linewidth=1.1, label=name)
     axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, borderaxespad=0.1)
+
+
+def _shown(time: np.ndarray, span: tuple[float, float]) -> slice:
+    first, last = np.searchsorted(time, span)
+    return slice(first, last + 1, max(1, (last - first) // _MOST_POINTS))
 
 
 def _thinned(time: np.ndarray) -> slice:

@@ -16,7 +16,7 @@ AXES = {
     "mass_kg": "mass / kg",
     "equivalent_mass_kg": "equivalent inertia / kg",
     "damping_reserve": "damping reserve (1 = required)",
-    "road_loss_W": "copper loss on the road / W",
+    "road_loss_W": "loss on the road / W",
 }
 
 

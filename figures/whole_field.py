@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from figures.style import degrees
 from geometry.cross_section import CrossSection
+from geometry.gap import GapHalf
 from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, refine_order
 from magnetostatics.model import FieldSolution, OperatingPoint
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
@@ -166,7 +167,7 @@ def _nodes_in_space(section: CrossSection, cells: np.ndarray, angle: float, rest
     """
     corners = section.mesh.p.copy()
     moving = np.unique(section.mesh.t[:, rotor_cells(section)])
-    corners[:, moving] = _turned_rotor(corners[:, moving], angle, rest, section.machine)
+    corners[:, moving] = _turned_rotor(corners[:, moving], angle, rest, section.rotor_gap)
     points = np.empty((2, cells.max() + 1))
     points[:, : corners.shape[1]] = corners
     for middle, (start, end) in zip(cells[3:], ((0, 1), (1, 2), (2, 0)), strict=True):
@@ -174,10 +175,9 @@ def _nodes_in_space(section: CrossSection, cells: np.ndarray, angle: float, rest
     return points
 
 
-def _turned_rotor(points: np.ndarray, angle: float, rest: float, machine) -> np.ndarray:
+def _turned_rotor(points: np.ndarray, angle: float, rest: float, gap: GapHalf) -> np.ndarray:
     radius = np.hypot(*points)
-    height = (radius - machine.rotor_outer_radius) / (machine.mid_gap_radius - machine.rotor_outer_radius)
-    direction = np.arctan2(points[1], points[0]) + angle - rest * np.clip(height, 0.0, 1.0)
+    direction = np.arctan2(points[1], points[0]) + angle - rest * np.clip(1 - gap.height(points), 0.0, 1.0)
     return radius * np.stack([np.cos(direction), np.sin(direction)])
 
 

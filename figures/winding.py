@@ -60,6 +60,9 @@ def torque_speed(envelopes: dict, chosen: str, required: tuple[RequiredPoint, ..
     return figure
 
 
+_HEADROOM = 1.05  # above the largest force, for the marker there
+
+
 @styled
 def force_velocity(
     operating, transmission_ratio: float, *, title: str, required: tuple[WheelPoint, ...] = (), limits=None
@@ -81,7 +84,8 @@ def force_velocity(
         _mark_demands(axis, required)
         axis.set_title(f"peak {name}" + (f", limit {limit:.3g} {unit}" if limit is not None else ""), loc="left")
         axis.set_xlabel("velocity at the wheel / (m/s)")
-    axes[0].set_ylabel("force at the wheel / kN")
+    highest = max([force.max(), *(point.force for point in required)]) / 1e3
+    axes[0].set(ylabel="force at the wheel / kN", ylim=(0, _HEADROOM * highest))
     letter(axes)
     figure.suptitle(f"{title}, transmission ratio {transmission_ratio / MILLIMETRE:.3g} mm/rad")
     if required:

@@ -9,13 +9,13 @@ fatigue rating.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import ceil, floor
 
 import numpy as np
 
 from gearbox.bodies import Construction, inertia_at_carrier, total_mass
-from gearbox.errors import GearError
+from gearbox.errors import GearError, TooWeakError
 from gearbox.involute import ISO_53_A, BasicRack
 from gearbox.planetary_set import PlanetarySet, equally_spaced, planetary_set, share_a_factor
 from gearbox.rating import Rules, StageLoad, rate_stage, static_ratings, survives
@@ -160,7 +160,7 @@ class Found:
 def search(request: GearRequest, keep: int = 10) -> Found:
     """The ``keep`` best gearboxes of a request, different in tooth numbers or module.
 
-    Raises GearError with the constraint to relax when there is none.
+    Raises GearError with the constraint to relax when there is none, TooWeakError when teeth fit but break.
     """
     gears, formed = _sets_that_fit(request)
     triples = np.unique(np.stack([gears.sun.module * 1e6, *gears.teeth]), axis=1).shape[1]
@@ -171,6 +171,25 @@ def search(request: GearRequest, keep: int = 10) -> Found:
         trains, tuple(cost for *_, cost in best), tuple(bool(shared[k]) for k, *_ in best), formed,
         len(gears.centre_distance), triples,
     )  # fmt: skip
+
+
+SHARES = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5)  # of the wanted safety factors, tried in this order
+
+
+def strongest(request: GearRequest, keep: int = 10) -> tuple[Found, str | None]:
+    """(``Found``, weakness): the best gearboxes at the wanted safety factors, or at the largest of ``SHARES`` of them.
+
+    weakness: None, or the sentence on what is too weak and what to change; the wanted factors then do not hold.
+    Raises TooWeakError when not even the smallest share is reached, GearError when no teeth fit at all.
+    """
+    refusals = []
+    for share in SHARES:
+        safety = Safety(**{kind: share * value for kind, value in asdict(request.safety).items()})
+        try:
+            return search(replace(request, safety=safety), keep), str(refusals[0]) if refusals else None
+        except TooWeakError as error:
+            refusals.append(error)
+    raise refusals[0]
 
 
 def tooth_numbers(request: GearRequest, module: float) -> list[tuple[int, int, int]]:
@@ -279,7 +298,7 @@ def _cheapest(gears, request, keep):
     static = [_static_steps(gears, load, request) for load in loads]
     usable = np.logical_and.reduce([steps <= request.width.range(gears)[1] for steps in static])
     if not usable.any():
-        raise GearError(_too_weak(gears, request, loads[0]))
+        raise TooWeakError(_too_weak(gears, request, loads[0]))
     bound = np.where(usable, _cost(gears, static, request), np.inf)
     order, best, names = np.argsort(bound, kind="stable"), [], _teeth_names(gears)
     for start in range(0, int(usable.sum()), _BATCH):
@@ -289,7 +308,7 @@ def _cheapest(gears, request, keep):
             break
         best = _best_teeth(best + _rated(gears, batch, [s[batch] for s in static], request), names, keep)
     if not best:
-        raise GearError(_too_weak(gears, request, loads[0]))
+        raise TooWeakError(_too_weak(gears, request, loads[0]))
     return best
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
 from statistics import fmean
-from typing import Callable, Protocol
+from typing import Callable, Protocol, Sequence
 
 import numpy as np
 
@@ -96,7 +96,36 @@ class DesignSolver:
     def design(self, machine: Machine) -> Design:
         """The judged machine. Raises as ``Judge.judge``."""
         check_machine(machine)
-        model = self._moved(machine) or self._meshed(machine)
+        return self._judged(machine, self._moved(machine) or self._meshed(machine))
+
+    def designs(self, machines: Sequence[Machine]) -> list[Design | None]:
+        """Many judged machines in the order given, on as few meshes as reach them all; None where none can be built.
+
+        Each mesh is that of the machine with the most others in its reach, and these are solved from it outwards.
+        """
+        left = dict(enumerate(machines))
+        found: dict[int, Design | None] = {number: None for number in left}
+        while left:
+            base = _most_central(list(left.values()))
+            try:
+                found |= self._around(base, left)
+            except GeometryError:
+                found |= {number: None for number, machine in left.items() if machine == base}
+            left = {number: machine for number, machine in left.items() if machine != base and found[number] is None}
+        return list(found.values())
+
+    def _around(self, base: Machine, machines: dict[int, Machine]) -> dict[int, Design]:
+        """Those of the machines that the mesh of one of them can be moved onto."""
+        check_machine(base)
+        found, model = {}, self._meshed(base)
+        for number in sorted(machines, key=lambda k: _distance(machines[k], base)):
+            machine = machines[number]
+            moved = model if machine == base else self._moved(machine)
+            if moved is not None:
+                found[number] = self._judged(machine, moved)
+        return found
+
+    def _judged(self, machine: Machine, model: FieldModel) -> Design:
         states, probes, seen, solutions = self.judge.states(machine), probe_reader(model), [], []
         for state, start in zip(states, self._starts(machine) or [None] * len(states), strict=True):
             solution = model.solve(state, start=start or (solutions[-1] if solutions else None))
@@ -177,13 +206,27 @@ def _distance(machine: Machine, base: Machine) -> float:
     return max(abs(getattr(machine, name) / getattr(base, name) - 1) / share for name, share in _FARTHEST.items())
 
 
+def _most_central(machines: list[Machine]) -> Machine:
+    """The machine with the most others in the reach of its mesh; of equals the one closest to them."""
+
+    def rank(base: Machine) -> tuple[int, float]:
+        near = [_distance(machine, base) for machine in machines if _is_near(machine, base)]
+        return -len(near), sum(near)
+
+    return min(machines, key=rank)
+
+
 @dataclass(frozen=True)
 class Design:
-    """What the optimisation knows of one design; torque in Nm/m (mean over the states), flux densities in T (worst)."""
+    """What the optimisation knows of one design; torque in Nm/m (mean over the states), flux densities in T (worst).
+
+    torque: by the consistent fluxes on the mid-gap circle. On the meshes of a sweep it is within 0.13 % of a mesh of
+    three times as many edges, the ring average ``torque_arkkio`` within 0.4 % (40 designs of 9 and 12 slots).
+    """
 
     machine: Machine
     torque: float
-    torque_maxwell: float
+    torque_arkkio: float
     tooth_aligned: float
     tooth_worst: float
     back_iron_worst: float
@@ -197,8 +240,8 @@ def _look(solution: FieldSolution, flux: dict[str, float]) -> dict[str, float]:
     section = solution.model.section
     teeth = {k % section.teeth for k in aligned_teeth(section.machine, solution.point.angle)}
     return {
-        "torque": arkkio_torque(solution),
-        "torque_maxwell": maxwell_torque(solution),
+        "torque": maxwell_torque(solution),
+        "torque_arkkio": arkkio_torque(solution),
         "aligned": max((flux[f"tooth_{k}"] for k in teeth), default=nan),
         "tooth": max(value for name, value in flux.items() if name.startswith("tooth")),
         "back_iron": max(value for name, value in flux.items() if name.startswith("back_iron")),
@@ -214,7 +257,7 @@ def _summary(machine: Machine, area: float, reading: SaturationReading, seen: li
     return Design(
         machine=machine,
         torque=fmean(state["torque"] for state in seen),
-        torque_maxwell=fmean(state["torque_maxwell"] for state in seen),
+        torque_arkkio=fmean(state["torque_arkkio"] for state in seen),
         tooth_aligned=aligned,
         tooth_worst=tooth,
         back_iron_worst=back_iron,

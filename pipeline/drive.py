@@ -1,6 +1,6 @@
 """The wound machine on its flux map: windings with saturation, currents and voltages in the force-velocity plane.
 
-Reads the study, ``flux_map.nc``, ``match.json`` and ``winding.json``; writes ``windings_field.csv`` (base speed, powers
+Reads the study, ``flux_map.nc``, ``gearbox.json`` and ``winding.json``; writes ``windings_field.csv`` (base speed, powers
 and torque of neighbouring windings from the flux map beside those of constant parameters), ``drive.json`` (the winding
 that the flux map would choose) and figures (thesis Fig. 3.27).
 """
@@ -26,11 +26,11 @@ _SPEEDS, _TORQUES = 121, 81
 
 def stage_of(study) -> Stage:
     """The drive of a study."""
-    from pipeline import flux_map, match, winding
+    from pipeline import flux_map, gearbox, winding
 
     folder = results_folder(study.study.id)
     values = fed(study).subset("requirements", "winding_selection", "sweep", "winding")
-    files = tuple(folder / name for name in (flux_map.MAP, flux_map.ENVELOPE, match.OUTPUT, winding.OUTPUT))
+    files = tuple(folder / name for name in (flux_map.MAP, flux_map.ENVELOPE, gearbox.OUTPUT, winding.OUTPUT))
     code = ("units", "electrical", "figures.style", "figures.flux_map", "figures.winding", "pipeline.drive")
     return Stage("drive", folder, values, files, code, (WINDINGS, OUTPUT, *FIGURES.values()))
 
@@ -182,13 +182,12 @@ def main(name: str) -> None:
     def work(run):
         from figures.style import save_png
         from pipeline.flux_map import read_flux_map
-        from pipeline.match import read_match
+        from pipeline.gearbox import read_ratio
         from pipeline.winding import choose, read_per_turn_machine
         from study.convert import to_winding_limits, to_winding_requirement
-        from units import MILLIMETRE
 
         data, choice = read_flux_map(study), choose(study, read_per_turn_machine(study))
-        ratio = read_match(study)["transmission_ratio_mm_per_rad"] * MILLIMETRE
+        ratio = read_ratio(study)
         pairs = [(one, on_the_map(study, data, one)) for one in neighbours(choice, data)]
         requirement, limits = to_winding_requirement(study, ratio), to_winding_limits(study)
         outcome = _outcome(pairs, choice.chosen, requirement, limits.phase_current_rms)

@@ -33,7 +33,7 @@ FILES = {name: f"figures/{name}.png" for name in NAMES}
 
 def stage_of(study) -> Stage:
     """The figures of a study."""
-    from pipeline import fields, fits, limits, match, optima, sweep, winding
+    from pipeline import fields, fits, gearbox, limits, match, optima, sweep, winding
 
     folder = results_folder(study.study.id)
     inputs = [
@@ -43,6 +43,7 @@ def stage_of(study) -> Stage:
         fits.OUTPUT,
         match.TABLE,
         match.OUTPUT,
+        gearbox.OUTPUT,
         winding.TABLE,
         winding.OUTPUT,
     ]
@@ -155,14 +156,13 @@ def _windings(study):
     import numpy as np
     from electrical.synchronous_machine import DriveLimits, operating_map, torque_speed_envelope
     from figures.winding import RequiredPoint, WheelPoint, force_velocity, torque_speed
-    from pipeline.match import read_match
+    from pipeline.gearbox import read_ratio
     from pipeline.winding import choose, read_per_turn_machine
     from study.convert import to_winding_limits, to_winding_requirement
-    from units import MILLIMETRE
 
     machine = read_per_turn_machine(study)
     choice, limits = choose(study, machine), to_winding_limits(study)
-    ratio = read_match(study)["transmission_ratio_mm_per_rad"] * MILLIMETRE
+    ratio = read_ratio(study)
     required = to_winding_requirement(study, ratio)
     shown = {f"{w.turns} turns, {w.strands} wires": w for w in _neighbours(choice)}
     speeds = np.linspace(0, limits.maximum_speed, 241)

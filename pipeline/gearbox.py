@@ -22,7 +22,6 @@ FIGURES = {
     "gear_safety": "figures/gear_safety.png",
 }
 _KEPT = 12  # sets of the table
-_SHARES = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5)  # of the wanted safety factors, tried in this order
 
 
 def stage_of(study) -> Stage:
@@ -98,29 +97,6 @@ def request_of(study, load):
     )
 
 
-def strongest(request):
-    """(``Found``, weakness): the best sets at the wanted safety factors, or at the largest share of them in reach.
-
-    weakness: None, or the sentence on what is too weak and what to change; the requirement then does not hold.
-    Raises GearError when not even half of them is reached, or when no teeth fit at all.
-    """
-    from dataclasses import asdict, replace
-
-    from gearbox.errors import GearError
-    from gearbox.search import Safety, search
-
-    refusals = []
-    for share in _SHARES:
-        safety = Safety(**{kind: share * value for kind, value in asdict(request.safety).items()})
-        try:
-            found = search(replace(request, safety=safety), _KEPT)
-        except GearError as error:
-            refusals.append(error)
-            continue
-        return found, str(refusals[0]) if refusals else None
-    raise refusals[0]
-
-
 def printed_train(study, request):
     """The gear set that the study states, as a ``GearTrain`` of the same construction; None where it states none."""
     from study.convert_gearbox import to_printed_gears
@@ -162,10 +138,15 @@ _KINDS = ("flank", "root", "static_flank", "static_root")
 
 
 def described(train, load, rules, linkage_ratio: float) -> dict:
-    """``train_summary`` with the inertia at the wheel, for a linkage ratio [m/rad]."""
+    """``train_summary`` with the inertia at the wheel, for a linkage ratio [m/rad], and the budget of the first sun."""
+    from dataclasses import asdict
+
+    from gearbox.rating import pitting_budget
     from gearbox.summary import train_summary
 
-    found = train_summary(train, load, rules)
+    found, first = train_summary(train, load, rules), train.stages[0]
+    budget = pitting_budget(first.gears, first.face_width, load, rules)
+    found["pitting_budget"] = {**asdict(budget), "safety": budget.safety}
     return {**found, "equivalent_mass_kg": found["inertia_slow_shaft_kg_m2"] / linkage_ratio**2}
 
 
@@ -253,6 +234,13 @@ def chosen_train(study):
     return train, printed_train(study, request), load, request
 
 
+def read_ratio(study) -> float:
+    """Transmission ratio tau_t in the nominal position [m/rad] of a finished stage, with the teeth as they are."""
+    from units import MILLIMETRE
+
+    return read_result(study, OUTPUT)["transmission_ratio_mm_per_rad"] * MILLIMETRE
+
+
 def main(name: str) -> None:
     """Search the gears of a study."""
     own = read_study(name)
@@ -261,11 +249,12 @@ def main(name: str) -> None:
     def work(run):
         from figures.style import save_png
         from gearbox.errors import GearError
+        from gearbox.search import strongest
 
         try:
             load = load_of(study)
             request = request_of(study, load)
-            (found, weakness), printed = strongest(request), printed_train(study, request)
+            (found, weakness), printed = strongest(request, _KEPT), printed_train(study, request)
         except GearError as error:
             raise StageError(f"no gearbox: {error}") from None
         outcome = _outcome(study, found, weakness, printed, load, request)

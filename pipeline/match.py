@@ -37,13 +37,14 @@ def stage_of(study) -> Stage:
 
 @dataclass(frozen=True)
 class Matcher:
-    """Everything a match needs of a study, SI."""
+    """Everything a match needs of a study, SI; demands: requirements, limits and copper loading."""
 
     study: object
     fits: dict
     gearbox: object
     scales: object
     weights: object
+    demands: tuple
 
     @classmethod
     def of(cls, study) -> Matcher:
@@ -57,6 +58,11 @@ class Matcher:
             convert.to_gearbox_design(study),
             convert.to_cost_scales(study.match),
             convert.to_cost_weights(study.match),
+            (
+                convert.to_actuator_requirements(study.requirements),
+                convert.to_match_limits(study.match),
+                convert.to_copper_loading(study),
+            ),
         )
 
     def section(self, slots: int, overload: str, radius: float):
@@ -107,13 +113,9 @@ class Matcher:
     def constraints(self, section):
         """Enforced and reported constraints as the study asks for them."""
         from drivetrain import match
-        from study import convert
 
         choose = match.damping_enforced if self.study.match.enforce_damping else match.damping_reported
-        requirements = convert.to_actuator_requirements(self.study.requirements)
-        return choose(
-            section, requirements, convert.to_match_limits(self.study.match), convert.to_copper_loading(self.study)
-        )
+        return choose(section, *self.demands)
 
     def over_radius(self, slots: int, overload: str):
         """``RadiusMatches`` over the range of the fits."""

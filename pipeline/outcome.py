@@ -20,7 +20,6 @@ OUTPUT = "outcome.json"
 SECTION = {"axial_section": "figures/axial_section.png"}
 RIDE = {"outcome_points": "figures/outcome_points.png", "outcome_histories": "figures/outcome_histories.png"}
 _LIMIT_SPEEDS = 61  # points of the force-speed limit
-_SHOWN = 0.8  # s of the worst case
 
 
 def figures_of(study) -> dict[str, str]:
@@ -49,7 +48,7 @@ def design_of(study):
     """``ActuatorDesign`` from match, winding, flux map and gearbox; study: fed."""
     from drivetrain.capability import ActuatorDesign
     from pipeline.flux_map import read_flux_map
-    from pipeline.gearbox import OUTPUT as GEARBOX
+    from pipeline.gearbox import OUTPUT as GEARBOX, read_ratio
     from pipeline.match import read_match
     from pipeline.winding import read_per_turn_machine, read_winding
     from study.convert import to_wire, to_winding_limits
@@ -69,7 +68,7 @@ def design_of(study):
         nominal_density=study.sweep.j_nominal_rms_A_per_mm2 * AMPERE_PER_SQUARE_MILLIMETRE,
         overload_density=limits.overload_current_density,
         dc_voltage=limits.dc_voltage,
-        transmission_ratio=gears["transmission_ratio_mm_per_rad"] * MILLIMETRE,
+        transmission_ratio=read_ratio(study),
         stator_outer_radius=found["stator_outer_radius_mm"] * MILLIMETRE,
         rotor_outer_radius=found["rotor_outer_radius_mm"] * MILLIMETRE,
         density=study.match.steel_density_kg_per_m3,
@@ -234,8 +233,10 @@ def actuator_of(study, design):
 
 def worst_case(study) -> tuple[str, str, str]:
     """(part, scenario, damping) that set the peak force."""
+    from vehicle.requirements import RANDOM_ROAD
+
     scenario, damping = read_result(study, "requirements.json")["scenarios"]["force_peak_N"].rsplit(", ", 1)
-    part = "road" if scenario == "random road" else "overload"
+    part = "road" if scenario.startswith(RANDOM_ROAD) else "overload"
     return part, scenario, damping.removesuffix(" damping")
 
 
@@ -244,34 +245,29 @@ def driven(study, actuator):
     from dataclasses import replace
 
     from pipeline.requirements import run_named, runs_of_part
-    from vehicle.requirements import summaries
-    from vehicle.ride import simulate
+    from vehicle.indices import summary
+    from vehicle.ride import simulate_and_keep
 
     part, scenario, damping = worst_case(study)
     worst = next(run for run in run_named(study, part, scenario) if run.damping.name == damping)
-    pair = dict(zip(("ideal", "designed"), simulate([worst, replace(worst, actuator=actuator)]), strict=True))
-    road = runs_of_part(study, "road")
-    together = summaries([*road, *(replace(run, actuator=actuator) for run in road)])
-    return pair, {"ideal": together[: len(road)], "designed": together[len(road) :]}
+    pair, road = [worst, replace(worst, actuator=actuator)], runs_of_part(study, "road")
+    runs = [*pair, *road, *(replace(run, actuator=actuator) for run in road)]
+    together = simulate_and_keep(lambda h: (summary(h), h if any(h.run is one for one in pair) else None), runs)
+    summaries = [found for found, _ in together[2:]]
+    histories = dict(zip(("ideal", "designed"), (history for _, history in together[:2]), strict=True))
+    return histories, {"ideal": summaries[: len(road)], "designed": summaries[len(road) :]}
 
 
 def ride_table(road: dict) -> list[dict]:
     """Means over the seeds of each damping, ideal and designed actuator beside each other."""
-    import numpy as np
+    from pipeline.requirements import mean_of_seeds
 
-    columns = {
-        "comfort_rms_m_per_s2": ("comfort_rms", 1.0),
-        "road_holding_rms": ("road_holding_rms", 1.0),
-        "stroke_peak_mm": ("stroke_peak", 1e3),
-        "force_rms_N": ("force_rms", 1.0),
-        "power_mean_W": ("power_mean", 1.0),
-    }
+    columns = ("comfort_rms_m_per_s2", "road_holding_rms", "stroke_peak_mm", "force_rms_N", "power_mean_W")
     rows = []
     for damping in dict.fromkeys(run.damping for run in road["ideal"]):
         for name, runs in road.items():
             own = [run for run in runs if run.damping == damping]
-            values = {k: s * float(np.mean([getattr(run, a) for run in own])) for k, (a, s) in columns.items()}
-            rows.append({"damping": damping, "actuator": name, **values})
+            rows.append({"damping": damping, "actuator": name, **mean_of_seeds(own, columns)})
     return rows
 
 
@@ -288,7 +284,7 @@ def worst_table(study, pair: dict) -> list[dict]:
                 "actuator": name,
                 "force_peak_N": abs(one.at_force_peak.force),
                 "velocity_peak_m_per_s": abs(one.velocity_peak),
-                "stroke_peak_mm": 1e3 * one.stroke_peak,
+                "stroke_peak_mm": 1e3 * abs(one.stroke_peak),
                 "tyre_load_min_N": float(history.tyre_loads[-1].min()),
                 "tyre_load_max_N": float(history.tyre_loads[-1].max()),
                 "time_saturated_ms": 1e3 * saturated,
@@ -310,6 +306,7 @@ def _draw(study, design, layout, pair, actuator):
     """Yield (name, Figure)."""
     from figures import vehicle as draw
     from figures.gearbox import axial_section
+    from pipeline.requirements import span_shown
     from units import MILLIMETRE
 
     title = f"{design.active_length / MILLIMETRE:.1f} mm of active length, {design.mass:.1f} kg"
@@ -319,8 +316,7 @@ def _draw(study, design, layout, pair, actuator):
     required = study.requirements
     points = [("required peak force", required.force_peak_N, required.velocity_at_force_peak_m_per_s)]
     yield "outcome_points", draw.force_velocity_cloud(pair, limit=actuator.limit, required=points)
-    until = min(_SHOWN, pair["ideal"].time[-1]) if worst_case(study)[0] == "overload" else 6.0
-    yield "outcome_histories", draw.time_histories(pair, until=until)
+    yield "outcome_histories", draw.time_histories(pair, span=span_shown(worst_case(study)[0], pair.values()))
 
 
 def main(name: str) -> None:

@@ -213,7 +213,7 @@ class _Page:
         return Section(
             "Winding",
             (
-                f"{self.winding['reason']}",
+                f"{self.winding['reason']} Decision: {self.winding['length']['reason']}",
                 Table(near.drop(columns=["chosen"]), caption, marked=marked),
                 self.picture("torque_speed", "Largest torque and power of neighbouring windings over the speed."),
                 self.picture(
@@ -255,9 +255,9 @@ class _Page:
             self.polynomials(),
             self.matching(),
             self.matched(),
+            chain.gearbox(),
             self.wound(),
             chain.drive(),
-            chain.gearbox(),
             chain.ride(),
         )
         return tuple(section for section in all_of_them if section is not None)

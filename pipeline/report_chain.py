@@ -56,7 +56,8 @@ class ChainSections:
             return Section("Requirements", ("As stated in the study file.", Table(_frame(rows), "At the wheel.")))
         found, given = read_result(self.study, "requirements.json"), self.study.requirements
         for row, key in zip(rows, values, strict=True):
-            row |= {"stated": getattr(given, key) if given is not None else None, "set by": found["scenarios"][key]}
+            row |= {"stated": getattr(given, key)} if given is not None else {}
+            row["set by"] = found["scenarios"][key]
         return Section(
             "Requirements from the vehicle",
             (
@@ -74,11 +75,11 @@ class ChainSections:
 
     def _runs_text(self, found: dict) -> str:
         runs, modes = found["runs"], ", ".join(f"{f:.2f}" for f in found["natural_frequencies_Hz"])
+        over = f" and {runs['overload']} over obstacles and manoeuvres" if runs["overload"] else ""
         return (
-            f"{runs['road']} runs on the random road and {runs['overload']} over obstacles and manoeuvres, each with "
-            f"maximum, minimum and mixed damping, none above the regenerative damping of "
-            f"{self.study.ride.maximum_regenerative_damping_kNs_per_m:g} kNs/m. Undamped natural frequencies of the "
-            f"vehicle: {modes} Hz. The energy balance of every run closes to "
+            f"{runs['road']} runs on the random road{over}, each with maximum, minimum and mixed damping, none above "
+            f"the regenerative damping of {self.study.ride.maximum_regenerative_damping_kNs_per_m:g} kNs/m. Undamped "
+            f"natural frequencies of the vehicle: {modes} Hz. The energy balance of every run closes to "
             f"{100 * found['largest_energy_error']:.2f} %. The RMS values are those of the damping with "
             f"the largest RMS force; the peaks come from {found['peaks_from']}."
         )
@@ -217,6 +218,7 @@ class ChainSections:
                 self.picture("gear_end_view", "Stage 1 along its axis."),
                 Table(_frame(_stages(found)), "The chosen gears and, where there are any, those of the study file."),
                 self.picture("gear_safety", "Safety factors; lines: what is wanted, dotted where only reported."),
+                Table(_frame(_budgets(found)), _BUDGET),
                 Table(sets, "The best sets of teeth, smallest safety factors of all gears and stages.", marked=(0,)),
             ),
         )
@@ -273,13 +275,14 @@ class ChainSections:
         if not self.outcome["ride"]:
             return None
         ideal, designed = self.outcome["worst"]
+        held = designed["time_saturated_ms"]
+        limit = f"its limit holds it back for {held:.0f} ms" if held >= 1 else "its limit is not reached"
         text = (
             f"The designed actuator in the vehicle: its force-speed limit, {designed_mass(self.outcome):.1f} kg of "
             f"equivalent inertia and {self.study.assembly.viscous_friction_Ns_per_m:g} Ns/m of friction in the place "
-            f"of the ideal one. In the worst case ({self.outcome['worst_case']}) it holds back for "
-            f"{designed['time_saturated_ms']:.0f} ms: {designed['force_peak_N']:.0f} instead of "
-            f"{ideal['force_peak_N']:.0f} N, and the largest tyre load becomes {designed['tyre_load_max_N']:.0f} "
-            f"instead of {ideal['tyre_load_max_N']:.0f} N."
+            f"of the ideal one. In the worst case ({self.outcome['worst_case']}) {limit}; the largest force of the "
+            f"machine is {designed['force_peak_N']:.0f} instead of {ideal['force_peak_N']:.0f} N, the largest tyre "
+            f"load {designed['tyre_load_max_N']:.0f} instead of {ideal['tyre_load_max_N']:.0f} N."
         )
         return Section(
             "The vehicle with the designed actuator",
@@ -323,6 +326,21 @@ def _stages(found: dict) -> list[dict]:
             keys += [f"profile_shift_{gear}" for gear in ("sun", "planet", "ring")]
             rows.append({"gears": f"{name}, stage {stage['stage']}", **{key: stage[key] for key in keys}})
     return rows
+
+
+_BUDGET = (
+    "Pitting safety of the sun of stage 1, factor by factor: of the RMS torque all the time with every other factor at "
+    "one, what the load factors, the oil film and the spectrum take, and their product."
+)
+
+
+def _budgets(found: dict) -> list[dict]:
+    names = {"bare": "RMS torque alone", "loads": "load factors", "film": "oil film", "spectrum": "spectrum"}
+    return [
+        {"gears": gears, **{said: found[gears]["pitting_budget"][key] for key, said in names.items()},
+         "safety": found[gears]["pitting_budget"]["safety"]}
+        for gears in ("chosen", "stated") if found[gears] is not None
+    ]  # fmt: skip
 
 
 def _checks(rows: list[dict]):

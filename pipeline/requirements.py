@@ -99,10 +99,10 @@ def required_of(study, parts: dict[str, list]):
 
 def as_section(required) -> dict[str, float]:
     """The keys of [requirements], magnitudes in drawing units."""
-    from study.key_units import QUANTITIES, split_unit
+    from study.key_units import split_unit
     from study.schema import RequirementsSection
 
-    factors = {unit: factor for row in QUANTITIES for unit, factor in row.items()}
+    factors = _factors()
     names = {key: split_unit(key) for key in RequirementsSection.model_fields}
     return {key: abs(getattr(required, name).value) / factors[unit] for key, (name, unit) in names.items()}
 
@@ -138,23 +138,33 @@ def _frequencies(study) -> list[float]:
 
 def _ride_of_damping(runs: list) -> list[dict]:
     """Means over the seeds on the random road, one row a damping (thesis Table 3.4)."""
-    import numpy as np
+    columns = ("comfort_rms_m_per_s2", "road_holding_rms", "stroke_peak_mm", "force_rms_N", "velocity_rms_m_per_s",
+               "power_rms_W", "power_mean_W")  # fmt: skip
+    dampings = dict.fromkeys(run.damping for run in runs)
+    return [
+        {"damping": damping, **mean_of_seeds([run for run in runs if run.damping == damping], columns)}
+        for damping in dampings
+    ]
 
-    columns = {
-        "comfort_rms_m_per_s2": "comfort_rms",
-        "road_holding_rms": "road_holding_rms",
-        "stroke_peak_mm": "stroke_peak",
-        "force_rms_N": "force_rms",
-        "velocity_rms_m_per_s": "velocity_rms",
-        "power_rms_W": "power_rms",
-        "power_mean_W": "power_mean",
-    }
-    rows = []
-    for damping in dict.fromkeys(run.damping for run in runs):
-        own = [run for run in runs if run.damping == damping]
-        values = {key: float(np.mean([getattr(run, name) for run in own])) for key, name in columns.items()}
-        rows.append({"damping": damping, **values, "stroke_peak_mm": values["stroke_peak_mm"] * 1e3})
-    return rows
+
+def mean_of_seeds(runs: list, columns) -> dict[str, float]:
+    """Means over runs, in drawing units; magnitudes, since the sign of a peak differs from seed to seed."""
+    import numpy as np
+    from study.key_units import split_unit
+
+    found = {}
+    for column in columns:
+        name, unit = split_unit(column)
+        values = np.abs([getattr(run, name) for run in runs])
+        found[column] = float(values.mean() / _factors()[unit])
+    return found
+
+
+def _factors() -> dict[str, float]:
+    """SI value of every unit that a key may end in."""
+    from study.key_units import QUANTITIES
+
+    return {"": 1.0} | {unit: factor for row in QUANTITIES for unit, factor in row.items()}
 
 
 def _table(parts: dict[str, list]):
@@ -173,40 +183,57 @@ def run_named(study, part: str, scenario: str) -> list:
     return [run for run in runs_of_part(study, part) if run.scenario.name == scenario]
 
 
-def _histories(study, damping: str):
+def _simulated(study, parts, required) -> dict[str, list]:
+    """Histories that are kept or drawn, in one go: "nominal" over the seeds, "road" and "worst" with each damping."""
+    from vehicle.ride import simulate
+
+    road, damping = runs_of_part(study, "road"), nominal_damping(required)
+    wanted = {
+        "nominal": [run for run in road if run.damping.name == damping],
+        "road": road[:3],
+        "worst": run_named(study, *_worst(parts, required)),
+    }
+    found = iter(simulate([run for runs in wanted.values() for run in runs]))
+    return {name: [next(found) for _ in runs] for name, runs in wanted.items()}
+
+
+def _histories(study, nominal: list, damping: str):
     """Force, velocity and stroke of the actuator on the random road, (seed, time)."""
     import numpy as np
     import xarray as xr
-    from vehicle.ride import simulate
 
-    found = simulate([run for run in runs_of_part(study, "road") if run.damping.name == damping])
     columns = {"force_N": "actuator_force", "velocity_m_per_s": "velocity", "stroke_m": "stroke"}
-    data = {key: (("seed", "time_s"), np.array([getattr(h, name) for h in found])) for key, name in columns.items()}
+    data = {key: (("seed", "time_s"), np.array([getattr(h, name) for h in nominal])) for key, name in columns.items()}
     seeds = list(study.ride.road_seeds)
-    return xr.Dataset(data, {"seed": seeds, "time_s": found[0].time}, {"damping": damping})
+    return xr.Dataset(data, {"seed": seeds, "time_s": nominal[0].time}, {"damping": damping})
 
 
-def _draw(study, required, parts):
+def _draw(study, required, parts, kept: dict[str, list]):
     """Yield (name, Figure)."""
     from figures import vehicle as draw
-    from vehicle.ride import simulate
 
-    road = runs_of_part(study, "road")[:3]
-    histories = {run.damping.name: history for run, history in zip(road, simulate(road), strict=True)}
-    yield "ride_road", draw.time_histories(histories, until=min(_SHOWN_ROAD, study.ride.road_duration_s))
-    part, scenario = _worst(parts, required)
-    worst = run_named(study, part, scenario)[:3]
-    histories = {run.damping.name: history for run, history in zip(worst, simulate(worst), strict=True)}
-    until = min(_SHOWN_OBSTACLE if part == "overload" else _SHOWN_ROAD, worst[0].scenario.duration)
-    yield "ride_worst", draw.time_histories(histories, until=until)
+    road, worst = ({one.run.damping.name: one for one in kept[name]} for name in ("road", "worst"))
+    yield "ride_road", draw.time_histories(road, span=(0.0, min(_SHOWN_ROAD, study.ride.road_duration_s)))
+    yield "ride_worst", draw.time_histories(worst, span=span_shown(_worst(parts, required)[0], kept["worst"]))
     points = [
         ("peak force", required.force_peak.value, required.velocity_at_force_peak.value),
         ("peak power", required.force_at_power_peak.value, required.velocity_at_power_peak.value),
     ]
-    yield "ride_points", draw.force_velocity_cloud(histories, required=points)
+    yield "ride_points", draw.force_velocity_cloud(worst, required=points)
     yield "requirements", draw.requirement_bars(_bars(study, required), reference="study file")
     if study.obstacles is not None:
         yield "ride_obstacles", _obstacle_figure(study, parts["overload"], required)
+
+
+def span_shown(part: str, histories) -> tuple[float, float]:
+    """First and last time [s] that are drawn: an obstacle from its start, a road around the largest force of all."""
+    import numpy as np
+
+    time, force = next(iter(histories)).time, np.max([np.abs(one.actuator_force) for one in histories], axis=0)
+    if part == "overload":
+        return 0.0, min(_SHOWN_OBSTACLE, time[-1])
+    last = min(max(time[force.argmax()] + _SHOWN_ROAD / 2, _SHOWN_ROAD), time[-1])
+    return max(last - _SHOWN_ROAD, 0.0), last
 
 
 def _worst(parts, required) -> tuple[str, str]:
@@ -276,7 +303,7 @@ def main(name: str) -> None:
             results = _run(study, run.checkpoint())
             parts = summaries_of(results)
             required = required_of(study, parts)
-            histories = _histories(study, nominal_damping(required))
+            kept = _simulated(study, parts, required)
         except VehicleError as error:
             raise StageError(f"no requirements: {error}") from None
         outcome = _outcome(study, required, parts)
@@ -285,8 +312,9 @@ def main(name: str) -> None:
         run.note(runs=outcome["runs"], largest_energy_error=outcome["largest_energy_error"])
         run.write_text(OUTPUT, json.dumps(outcome, indent=2) + "\n")
         run.write(RUNS, lambda path: _table(parts).to_csv(path, index=False))
+        histories = _histories(study, kept["nominal"], nominal_damping(required))
         run.write(HISTORIES, lambda path: histories.to_netcdf(path))
-        for figure_name, figure in _draw(study, required, parts):
+        for figure_name, figure in _draw(study, required, parts, kept):
             run.write(figures_of(study)[figure_name], lambda path, figure=figure: save_png(figure, path))
 
     stage_of(study).run(work)

@@ -1,22 +1,25 @@
 """Map of torque and flux densities over back-iron width and rotor radius, for every slot count and stator diameter.
 
-Reads the study, writes ``design_map.nc``. One task is one rotor radius with all its back-iron widths.
+Reads the study, writes ``design_map.nc``. One task is a few neighbouring rotor radii with all back-iron widths.
 """
 
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 
 from pipeline.stage import Stage, command, results_folder
 from study.read import read_study
 
 OUTPUT = "design_map.nc"
+_RADII_TOGETHER = 5  # of a fine sweep one mesh reaches about so many
 _TOLERANCE = 1e-3  # of Newton's method: torque is within 0.03 % of the converged one
 VARIABLES = {
     "torque_Nm_per_m": "torque",
-    "torque_maxwell_Nm_per_m": "torque_maxwell",
+    "torque_arkkio_Nm_per_m": "torque_arkkio",
     "tooth_aligned_T": "tooth_aligned",
     "tooth_worst_T": "tooth_worst",
     "back_iron_worst_T": "back_iron_worst",
@@ -42,11 +45,8 @@ def steel_files(study) -> tuple[Path, ...]:
     return (steel_file(study.materials.steel, study.path.parent),)
 
 
-def solve_column(task: dict) -> list[list[float]]:
-    """All back-iron widths at one rotor radius: one row of ``VARIABLES`` per width, NaN where no machine can be built.
-
-    The widths are taken from the middle outwards, so that one mesh can be moved onto most of them.
-    """
+def solve_block(task: dict) -> list[list[list[float]]]:
+    """All back-iron widths at some rotor radii: [radius][width] -> ``VARIABLES``, NaN where no machine can be built."""
     from math import nan
 
     from geometry.machine import GeometryError
@@ -54,16 +54,20 @@ def solve_column(task: dict) -> list[list[float]]:
     from units import MILLIMETRE
 
     judge, family = _tools(task["study"])
-    solver, widths = DesignSolver(judge), task["back_iron_widths_mm"]
-    radii = task["stator_diameter_mm"] / 2 * MILLIMETRE, task["rotor_outer_radius_mm"] * MILLIMETRE
-    rows = {}
-    for number in sorted(range(len(widths)), key=lambda k: abs(k - len(widths) // 2)):
-        try:
-            design = solver.design(family.machine(task["slots"], radii[0], widths[number] * MILLIMETRE, radii[1]))
-            rows[number] = [getattr(design, name) for name in VARIABLES.values()]
-        except GeometryError:
-            rows[number] = [nan] * len(VARIABLES)
-    return [rows[number] for number in range(len(widths))]
+    outer, machines = task["stator_diameter_mm"] / 2 * MILLIMETRE, {}
+    for place in product(task["rotor_outer_radii_mm"], task["back_iron_widths_mm"]):
+        with suppress(GeometryError):
+            machines[place] = family.machine(task["slots"], outer, place[1] * MILLIMETRE, place[0] * MILLIMETRE)
+    designs = dict(zip(machines, DesignSolver(judge).designs(list(machines.values()))))
+    nothing = [nan] * len(VARIABLES)
+    return [
+        [_row(designs[radius, width]) if designs.get((radius, width)) else nothing for width in task["back_iron_widths_mm"]]
+        for radius in task["rotor_outer_radii_mm"]
+    ]
+
+
+def _row(design) -> list[float]:
+    return [getattr(design, name) for name in VARIABLES.values()]
 
 
 @lru_cache(maxsize=1)
@@ -86,30 +90,29 @@ def grid(study, diameter: float):
 
 
 def tasks_of(study) -> dict[str, dict]:
-    """Every column of the sweep by its name."""
+    """Every block of the sweep by its name."""
     tasks = {}
-    for slots in study.sweep.slots:
-        for diameter in study.sweep.stator_diameters_mm:
-            widths, radii = grid(study, diameter)
-            for index, radius in enumerate(radii):
-                tasks[f"{slots} slots, {diameter:g} mm, radius {index}"] = {
-                    "study": str(study.path.resolve()),
-                    "slots": slots,
-                    "stator_diameter_mm": diameter,
-                    "rotor_outer_radius_mm": float(radius),
-                    "back_iron_widths_mm": widths.tolist(),
-                }
+    for slots, diameter in product(study.sweep.slots, study.sweep.stator_diameters_mm):
+        widths, radii = grid(study, diameter)
+        for first in range(0, len(radii), _RADII_TOGETHER):
+            tasks[f"{slots} slots, {diameter:g} mm, radii from {first}"] = {
+                "study": str(study.path.resolve()),
+                "slots": slots,
+                "stator_diameter_mm": diameter,
+                "rotor_outer_radii_mm": radii[first : first + _RADII_TOGETHER].tolist(),
+                "back_iron_widths_mm": widths.tolist(),
+            }
     return tasks
 
 
-def dataset_of(study, columns: dict[str, list]):
-    """The labelled map from the columns of ``tasks_of``."""
+def dataset_of(study, blocks: dict[str, list]):
+    """The labelled map from the blocks of ``tasks_of``."""
     import numpy as np
     import xarray as xr
 
     s = study.sweep
     shape = len(s.slots), len(s.stator_diameters_mm), s.rotor_radius_steps, s.back_iron_steps, len(VARIABLES)
-    values = np.array(list(columns.values())).reshape(shape).swapaxes(2, 3)
+    values = np.concatenate(list(blocks.values())).reshape(shape).swapaxes(2, 3)
     grids = [grid(study, diameter) for diameter in s.stator_diameters_mm]
     dims = ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
     data = {name: (dims, values[..., k]) for k, name in enumerate(VARIABLES)}
@@ -140,8 +143,8 @@ def main(name: str) -> None:
         from study.read import check_study
 
         check_study(study)
-        columns = run_parallel(solve_column, tasks_of(study), default_workers(), run.checkpoint(), "sweep")
-        dataset = dataset_of(study, columns)
+        blocks = run_parallel(solve_block, tasks_of(study), default_workers(), run.checkpoint(), "sweep")
+        dataset = dataset_of(study, blocks)
         run.note(designs=int(dataset.torque_Nm_per_m.size), not_buildable=int(dataset.torque_Nm_per_m.isnull().sum()))
         run.write(OUTPUT, dataset.to_netcdf)
 

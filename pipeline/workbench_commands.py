@@ -76,8 +76,27 @@ def _library(options):
     for file in options.effects_from:
         if not Path(file).exists():
             raise WorkbenchError(f"--effects-from {file}: there is no such file.")
-        print(f"importing effects from {file}: this runs the file", file=sys.stderr)
+        print(f"importing effects from {file}: this runs the file", file=sys.stderr, flush=True)
+        _must_hold_an_effect(file)
     return library(options.effects_from)
+
+
+def _must_hold_an_effect(file: str) -> None:
+    """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
+    from effects.library import effects_of_file
+    from workbench.errors import WorkbenchError
+
+    path, found = Path(file), {}
+    for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
+        try:
+            found |= effects_of_file(own)
+        except Exception as error:  # whatever the user's own file raises
+            raise WorkbenchError(f"{own}: cannot be imported: {type(error).__name__}: {error}.") from None
+    if not found:
+        raise WorkbenchError(
+            f"{file}: holds no effect; one is a frozen dataclass derived from effects.base, with a title and a "
+            "parameter."
+        )
 
 
 def _set_up(options):
@@ -250,7 +269,7 @@ def _print_comparison(c, out: Path) -> None:
 
 
 def _print_diagnosis(d, out: Path) -> None:
-    from workbench.report.sentences import verdict_sentence
+    from workbench.report.sentences import conclusions, verdict_sentence
 
     print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
     for r in d.ranking[:8]:
@@ -266,7 +285,7 @@ def _print_diagnosis(d, out: Path) -> None:
     print(f"nothing missing {d.p_nothing_missing:.3f}, none of these {d.p_none_of_these:.3f}")
     for option in d.next_measurements[:3]:
         print(f"next: {option.words} ({option.gain_nats:.1f} nats)")
-    print(f"\n{verdict_sentence(d)}\nresults in {out}")
+    print("", verdict_sentence(d), *conclusions(d), f"results in {out}", sep="\n")
 
 
 def _print_ledger(ledger) -> None:

@@ -105,7 +105,7 @@ class MaterialsSection(Section):
     """Steel, magnet and copper."""
 
     steel: Annotated[str, Field(min_length=1)]
-    loss_grade: Optional[str] = None  # whose iron-loss data stand in for the steel's, for `make losses`
+    loss_grade: Optional[str] = None  # whose iron-loss data stand in for the steel's: losses, optimise
     remanence_T: Annotated[float, Quantity("remanence of the magnets B_r", 0.05, 2)]
     recoil_permeability: Annotated[float, Quantity("relative recoil permeability of the magnets", 1, 2)]
     copper_resistivity_Ohm_m: Annotated[float, Quantity("copper resistivity at its reference temperature", 1e-8, 1e-7)]

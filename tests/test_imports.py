@@ -11,7 +11,7 @@ ALLOWED = {
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
     "optimisation": {"magnetostatics", "materials", "geometry"},
-    "electrical": set(),
+    "electrical": {"materials"},
     "losses": {"magnetostatics", "materials", "geometry", "electrical"},
     "drivetrain": {"electrical"},
     "gearbox": set(),

@@ -18,7 +18,11 @@ from vehicle.road import IsoRoad, Obstacle, ObstacleShape
 
 def road_scenarios(roughness: float, speed: float, duration: float, seeds: Sequence[int]) -> list[Scenario]:
     """A random road at cruise speed, once a seed; roughness G_r [m cycle], speed [m/s], duration [s]."""
-    return [Scenario("random road", speed, duration, IsoRoad(roughness, seed)) for seed in seeds]
+    return [Scenario(f"{RANDOM_ROAD}{_SEED}{seed}", speed, duration, IsoRoad(roughness, seed)) for seed in seeds]
+
+
+RANDOM_ROAD = "random road"  # begins the name of every scenario of ``road_scenarios``
+_SEED = ", seed "
 
 
 def obstacle_scenarios(
@@ -102,11 +106,11 @@ def requirements(
 
 
 def _nominal_point(runs: Sequence[RideSummary]) -> dict[str, Required]:
-    ordered = sorted(runs, key=_name)
-    groups = [list(group) for _, group in groupby(ordered, key=_name)]
+    ordered = sorted(runs, key=_name_of_all_seeds)
+    groups = [list(group) for _, group in groupby(ordered, key=_name_of_all_seeds)]
     worst = max(groups, key=lambda group: np.mean([run.force_rms for run in group]))
     names = ("force_rms", "velocity_rms", "power_rms")
-    note = f"{_name(worst[0])}, mean of {len(worst)}" if len(worst) > 1 else _name(worst[0])
+    note = _name_of_all_seeds(worst[0]) + (f", mean of {len(worst)}" if len(worst) > 1 else "")
     return {name: Required(float(np.mean([getattr(run, name) for run in worst])), note) for name in names}
 
 
@@ -134,3 +138,7 @@ _PEAKS = (
 
 def _name(run: RideSummary) -> str:
     return f"{run.scenario}, {run.damping} damping"
+
+
+def _name_of_all_seeds(run: RideSummary) -> str:
+    return f"{run.scenario.partition(_SEED)[0]}, {run.damping} damping"

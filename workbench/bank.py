@@ -73,11 +73,23 @@ def signature(effect: Effect, change) -> Signature:
     k = len(parameters_of(effect))
     z, width, shape = grid(k)
     s, possible = _changes(effect, z, change)
-    on_grid = s.reshape((len(s),) + shape)
-    tangents = np.array([np.gradient(on_grid, width, axis=1 + a).reshape(s.shape) for a in range(k)])
+    tangents = np.array([_tangent(s, possible, shape, a, width) for a in range(k)])
     masses = np.log(student.cdf(z + width / 2, TAILS) - student.cdf(z - width / 2, TAILS)).sum(axis=1)
     masses = np.where(possible, masses, -np.inf)
     return Signature(effect, z, s, tangents, masses - logsumexp(masses), width)
+
+
+def _tangent(s: np.ndarray, possible: np.ndarray, shape: tuple[int, ...], axis: int, width: float) -> np.ndarray:
+    """ds/dz along one axis (n, K): the mean slope to the neighbours, of those only that have an answer."""
+    on_grid = np.moveaxis(s.reshape((len(s),) + shape), 1 + axis, -1)
+    known = np.moveaxis(possible.reshape(shape), axis, -1)
+    both = known[..., 1:] & known[..., :-1]
+    slopes, total = np.where(both, np.diff(on_grid, axis=-1) / width, 0.0), np.zeros_like(on_grid)
+    count = np.zeros(known.shape)
+    for side in (slice(None, -1), slice(1, None)):
+        total[..., side] += slopes
+        count[..., side] += both
+    return np.moveaxis(total / np.maximum(count, 1.0), -1, 1 + axis).reshape(s.shape)
 
 
 def _changes(effect: Effect, z: np.ndarray, change) -> tuple[np.ndarray, np.ndarray]:

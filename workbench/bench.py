@@ -11,7 +11,7 @@ import numpy as np
 from effects.base import Effect
 from workbench.campaign import columns_of_systematics
 from workbench.errors import WorkbenchError
-from workbench.fit import Fit, Problem, fitted
+from workbench.fit import Fit, Problem, fitted, linearised
 from workbench.linear import Nuisances
 from workbench.model import Model
 from workbench.noise import Noise, Whitener, measured_noise, noise_on_rows, whitener
@@ -23,6 +23,7 @@ from workbench.table import Campaign, Table
 MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is said
 SHARPENINGS = 3  # times a fit is repeated with a base model expanded about its result
 SHARP = 0.3  # change of the objective [nats] that is none
+PULLED = 6.0  # standard deviations of a tolerance from where it is declared, which chance does not explain
 CONDITION_STEP = 1e-3  # of the range of a condition, to see how its own uncertainty acts
 
 
@@ -45,15 +46,20 @@ class Bench:
     complaints: tuple[str, ...] = field(default=())
 
     @cached_property
+    def centre(self) -> Fit:
+        """Where effects are compared by linear algebra and where their fits start."""
+        return linearised(self.fit, self.fit.start) if _far(self.fit, self.null) else self.null
+
+    @cached_property
     def nuisances(self) -> Nuisances:
-        """Of the rows to fit, at the null."""
-        return Nuisances(self.null.jacobian)
+        """Of the rows to fit, at the centre."""
+        return Nuisances(self.centre.jacobian)
 
     @cached_property
     def residual(self) -> np.ndarray:
         """Whitened residual of the rows to fit, carried back to x = 0 by the derivatives: N(0, 1 + J J^T) when all
         is well."""
-        return extrapolated(self.null)
+        return extrapolated(self.centre)
 
 
 def extrapolated(fit: Fit) -> np.ndarray:
@@ -70,7 +76,7 @@ def bench_of(
         WorkbenchError: the campaign has nothing that may be fitted, or declares what the model does not know.
     """
     tables = tuple(thinned(table, most_rows) for table in campaign.tables)
-    predictor = predictor_of(model, campaign, library, stacked(tables), progress)
+    predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = replace(predictor.stack, u=_with_conditions(predictor))
     noise = measured_noise(stack, predictor.predict(predictor.start))
     white = _with_numerical(whitener(stack, noise), stack, predictor.model)
@@ -80,10 +86,20 @@ def bench_of(
     fit = _problem(predictor, stack, noise, white, chosen)
     hidden = [~mask for mask in chosen]
     held_out = _problem(predictor, stack, noise, white, hidden) if any(m.any() for m in hidden) else None
+    drawn = fit
     fit, null = sharpened(fit, fitted(fit, (), predictor.start, np.zeros(0)))
+    fit = drawn if _far(fit, null) else fit
     held_out = None if held_out is None else replace(held_out, predictor=fit.predictor.on(held_out.stack))
     complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise)
     return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, complaints)
+
+
+def _far(fit: Problem, null: Fit) -> bool:
+    """Whether something that is missing has pulled a tolerance so far that an expansion about there is of no use: with
+    the effect in the model the device is near the drawing again."""
+    if not hasattr(fit.predictor.model.base, "recentred"):
+        return False
+    return bool(np.abs(null.x - fit.start).max(initial=0.0) > PULLED)
 
 
 def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from workbench.noise import matched_rows
-from workbench.table import Campaign, Table
+from workbench.table import Campaign, Response, Table
 
 LOUD = 4.0  # standard errors from which a check speaks
 COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
+FREQUENCIES = 8  # of a sweep that says something about causality
+NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
 CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
 
 
@@ -16,7 +18,7 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     """One sentence for each thing that no device can do, or that an instrument does."""
     found: list[str] = []
     for table in campaign.tables:
-        for check in (_repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _reversal):
+        for check in _OF_A_TABLE:
             found += check(table)
     return tuple(found + _constants(campaign))
 
@@ -25,14 +27,19 @@ def _repeats_agree(table: Table) -> list[str]:
     stations = matched_rows(table)
     found = []
     for r in table.responses.values() if stations is not None else ():
-        z = (r.values[stations] - r.values[stations].mean(axis=1, keepdims=True)) / r.random[stations]
-        size = float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
+        z, size = _scatter(r, stations)
         shift = z.mean(axis=0) * np.sqrt(len(stations))
         if size > 3:
             found.append(f"{table.file}: repeats of {r.name} disagree by {size:.1f} times the declared uncertainty")
         elif np.abs(shift).max() > 3 * LOUD * max(size, 1):
             found.append(f"{table.file}: one repeat of {r.name} is shifted as a whole against the others")
     return found
+
+
+def _scatter(r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
+    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size."""
+    z = (r.values[stations] - r.values[stations].mean(axis=1, keepdims=True)) / r.random[stations]
+    return z, float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
 
 
 def _clipping(table: Table) -> list[str]:
@@ -120,6 +127,66 @@ def _impedance(table: Table) -> list[str]:
     )
 
 
+def _causality(table: Table) -> list[str]:
+    """Kramers-Kronig: one set of real coefficients makes both parts of the impedance of a causal linear device.
+
+        Z = c + j w m + k / (j w) + sum over tau of a_tau / (1 + j w tau)
+
+    with relaxation times over the measured band, fitted to each scan of frequencies (Boukamp, J. Electrochem. Soc. 142
+    (1995) 1885). A wave through a spring or a drift between points leaves more than noise.
+    """
+    if table.kind != "impedance" or not {"re", "im"} <= set(table.responses) or "frequency" not in table.conditions:
+        return []
+    stations = matched_rows(table)
+    noise = 1.0 if stations is None else max(1.0, *(_scatter(table.responses[n], stations)[1] for n in ("re", "im")))
+    worst = max((_not_causal(table, rows) for rows in _sweeps(table)), default=1.0) / noise
+    if worst < NOT_CAUSAL:
+        return []
+    return [
+        f"{table.file}: real and imaginary part miss a causal linear device by {worst:.2g} times their uncertainty: "
+        "drift between the frequencies, the phase of a sensor, or friction and backlash"
+    ]
+
+
+def _sweeps(table: Table) -> list[np.ndarray]:
+    """Rows that differ in frequency and repeat only, where there are enough frequencies."""
+    others = [np.round(v, 9) for n, v in table.conditions.items() if n != "frequency"]
+    keys = np.column_stack([np.zeros(table.rows), *others])
+    number = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
+    sets = [np.flatnonzero(number == value) for value in range(number.max() + 1)]
+    return [rows for rows in sets if len(np.unique(table.conditions["frequency"][rows])) >= FREQUENCIES]
+
+
+def _not_causal(table: Table, rows: np.ndarray) -> float:
+    """Rms of what a causal linear device leaves of one sweep, over the uncertainty."""
+    omega = 2 * np.pi * table.conditions["frequency"][rows]
+    re, im = (table.responses[name] for name in ("re", "im"))
+    count = max(3, len(np.unique(omega)) // 2)
+    relaxations = 1 / (1 + 1j * omega[:, None] * np.geomspace(0.3 / omega.max(), 3.0 / omega.min(), count))
+    device = np.column_stack([np.ones(len(omega)), 1j * omega, 1 / (1j * omega), relaxations])
+    u = np.concatenate([re.random[rows], im.random[rows]])
+    design = np.vstack([device.real, device.imag]) / u[:, None]
+    measured = np.concatenate([re.values[rows], im.values[rows]]) / u
+    left = measured - design @ np.linalg.lstsq(design, measured, rcond=1e-10)[0]
+    return float(np.sqrt(left @ left / (len(left) - design.shape[1])))
+
+
+def _loop(table: Table) -> list[str]:
+    """The work of a closed loop of force over displacement is not negative: no device gives energy in every turn."""
+    if table.kind != "force_loop" or "force" not in table.responses or "displacement" not in table.conditions:
+        return []
+    force, place = table.responses["force"], table.conditions["displacement"]
+    number = np.unique(np.column_stack([table.scan, table.repeat]), axis=0, return_inverse=True)[1].ravel()
+    found = []
+    for value in range(number.max() + 1):
+        rows = np.flatnonzero(number == value)
+        way = 0.5 * (np.roll(place[rows], -1) - np.roll(place[rows], 1))
+        work, u = np.sum(force.values[rows] * way), np.sqrt(np.sum((force.random[rows] * way) ** 2))
+        if work < -LOUD * u:
+            found.append(f"{table.file}: a closed loop gives {-work:.3g} J instead of taking it: sign of a sensor")
+    return found[:1]
+
+
 def _reversal(table: Table) -> list[str]:
     """The power taken at constant velocity is not negative."""
     if table.kind != "damping_velocity" or not {"velocity"} <= set(table.conditions) or "force" not in table.responses:
@@ -151,3 +218,8 @@ def _constants(campaign: Campaign) -> list[str]:
             f"force constant from the forces is {k_t:.4g}, from the voltage {k_e:.4g}: a gain, or losses in the circuit"
         ]
     return []
+
+
+_OF_A_TABLE = (
+    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
+)  # fmt: skip

@@ -51,7 +51,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
     titles = {p.signature.name: p.signature.effect.title for p in screen.prepared}
     matches = nearest(screen, bench.residual)
     held = [s for s in scores if s.held_out_chi2_per_n is not None]
-    spectra, maps = [views.order_spectrum(v) for v in every], [views.regime_map(v) for v in every]
+    maps = [views.regime_map(v) for v in every]
     return Comparison(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
@@ -63,10 +63,10 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
         pulls=pulls,
         fits=tuple(views.channel_fit(v) for v in every),
         regimes=tuple(m for m in maps if m is not None),
-        orders=tuple(s for s in spectra if s is not None),
+        orders=tuple(s for v in every for s in views.order_spectra(v)),
         scalings=tuple(s for v in every for s in views.scalings(v)),
         parities=tuple(p for v in every for p in views.parities(v)),
-        sequences=tuple(views.sequence(v) for v in every),
+        sequences=tuple(s for v in every for s in views.sequences(v)),
         whiteness=tuple(views.whiteness(v) for v in every),
         signatures=tuple(SignatureMatch(n, titles[n], c) for n, c in matches.items()),
         checks=checks_of(bench.campaign),
@@ -87,7 +87,10 @@ def scoreboard(bench: Bench) -> tuple[ChannelScore, ...]:
         white = whitener(stack, noise)
     squares = white(stack.y - fitted) ** 2
     before = white(stack.y - nominal) ** 2
-    scores = [_score(stack, c, squares, before, fitted, white.sigma / noise.inflation) for c in stack.channels]
+    scores = [
+        replace(_score(stack, c, squares, before, fitted, white.sigma / noise.inflation), noise_dof=float(known.dof))
+        for c, known in zip(stack.channels, noise.channels)
+    ]
     excess = np.array([max(s.chi2_per_n - 1.0, 0.0) * s.n for s in scores])
     shares = excess / excess.sum() if excess.sum() > 0 else excess
     return tuple(replace(s, excess_share=float(share)) for s, share in zip(scores, shares))

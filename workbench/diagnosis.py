@@ -10,16 +10,17 @@ import numpy as np
 from scipy.special import logsumexp
 
 from effects.base import Effect
-from workbench.agreement import SOMETHING_LEFT, agreement, repeats_itself
+from workbench.agreement import repeats_itself
 from workbench.bank import Prepared, signature
 from workbench.bench import Bench, bench_of, extrapolated
 from workbench.calibration import Screen, abstention_power, alarm_threshold
 from workbench.errors import WorkbenchError
 from workbench.findings import Diagnosis
 from workbench.fit import Problem, misfit
-from workbench.hypotheses import Hypothesis, Rival, exact, fitted_rows, held_out, pair, rival, single, with_law_error
+from workbench.hypotheses import Hypothesis, Rival, exact, fitted_rows, held_out, held_residual, pair, rival, single
 from workbench.linear import Nuisances
 from workbench.model import Model
+from workbench.priors import NOTHING, ONE_EFFECT, TWO_EFFECTS
 from workbench.rivals import unknown_function
 from workbench.table import Campaign
 from workbench.verdict import Evidences
@@ -29,6 +30,7 @@ AT_LEAST = 4  # effects that are fitted, however far behind
 CLOSE = 25.0  # nats behind the best, within which an effect is worth a non-linear fit
 PAIR_GAIN = 2.0  # nats that an effect must promise before it is looked at more closely
 PAIRS = 16  # pairs that are fitted
+OUT_OF_REACH = 8.0  # nats that a promise may lie behind the most probable hypothesis, one in 3000
 SHARE = (
     0.25  # of what an effect takes off chi2 of the fitted rows, the least it must take off that of the held-out rows
 )
@@ -102,8 +104,8 @@ def candidates(bench: Bench, library: Mapping[str, type[Effect]]) -> tuple[Effec
 def screen_of(bench: Bench, effects: tuple[Effect, ...], progress: Progress) -> tuple[Screen, dict[str, str]]:
     """Signatures of all effects, and why some could not be had."""
     problem = bench.fit
-    base = problem.predictor.predict(bench.null.x)
-    change = lambda effect: problem.white(problem.predictor.predict(bench.null.x, (effect,)) - base)  # noqa: E731
+    base = problem.predictor.predict(bench.centre.x)
+    change = lambda effect: problem.white(problem.predictor.predict(bench.centre.x, (effect,)) - base)  # noqa: E731
     prepared, failed = [], {}
     for effect in effects:
         progress(f"signature of {effect.name()}")
@@ -152,7 +154,8 @@ def _refined(bench, screen, screened, failed, progress) -> dict[str, Hypothesis]
             found[name] = _best_variant(bench, [p for p in screen.prepared if p.signature.name == name])
         except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
             failed[name] = str(error)
-    worth = [n for n in found if found[n].log_evidence > bench.null.log_evidence + PAIR_GAIN]
+    far = bench.centre is not bench.null  # the null is exact, the fits are those of an expansion far from it
+    worth = [n for n in found if far or found[n].log_evidence > bench.null.log_evidence + PAIR_GAIN]
     for name in sorted(worth, key=lambda n: -found[n].log_evidence)[:EXACT]:
         found[name] = exact(found[name])
     return found
@@ -185,16 +188,9 @@ def _behind(screened, singles, null) -> dict[str, float]:
 def _is_in_held_out_rows(bench: Bench, found: Rival, beside: Hypothesis | None) -> bool:
     """Whether an unknown function repeats itself; what only one scan shows is a drift, not a property of the device.
 
-    beside: the effect that it stands beside; then fitted and held-out rows must agree that something is left at all
+    beside: the effect that it stands beside
     """
-    if bench.held_out is None:
-        return True
-    if beside is None:
-        return repeats_itself(bench, found.explained, bench.held_out.residual(bench.null.x))
-    held, _ = with_law_error(bench, beside.effects, beside.fit.x, held_out(bench, beside))
-    residual = held.residual(beside.fit.x, beside.effects)
-    left = agreement(bench, beside.fit.residual, residual) > SOMETHING_LEFT
-    return left and repeats_itself(bench, found.explained, residual)
+    return bench.held_out is None or repeats_itself(bench, found.explained, held_residual(bench, beside))
 
 
 def _pairs(bench, screen, singles: Mapping[str, Hypothesis], progress) -> dict[tuple[str, str], Hypothesis]:
@@ -203,9 +199,10 @@ def _pairs(bench, screen, singles: Mapping[str, Hypothesis], progress) -> dict[t
     promised = sorted(promises.values(), key=lambda o: (-o[0], o[3]))
     tried: set[tuple[str, str]] = set()
     found: dict[tuple[str, str], Hypothesis] = {}
-    for _, leader, prepared, names, z in promised:
+    least = _least_promise(bench, screen, singles)
+    for promise, leader, prepared, names, z in promised:
         key = tuple(sorted(names))
-        if key in tried or len(tried) == PAIRS:
+        if key in tried or len(tried) == PAIRS or promise < least:
             continue
         tried.add(key)
         progress(f"fitting {key[0]} with {key[1]}")
@@ -215,7 +212,16 @@ def _pairs(bench, screen, singles: Mapping[str, Hypothesis], progress) -> dict[t
             continue
         if _second_helps(bench, leader, fit):
             found[key] = fit
+            least = max(least, fit.log_evidence - OUT_OF_REACH)
     return found
+
+
+def _least_promise(bench: Bench, screen: Screen, singles: Mapping[str, Hypothesis]) -> float:
+    """ln evidence of a pair below which it is out of the question beside nothing and single effects."""
+    effects = max(len(screen.names), 1)
+    best = max((h.log_evidence for h in singles.values()), default=-np.inf) + np.log(ONE_EFFECT / effects)
+    share = np.log(TWO_EFFECTS / max(effects * (effects - 1) // 2, 1))
+    return max(best, bench.null.log_evidence + np.log(NOTHING)) - share - OUT_OF_REACH
 
 
 def _checked(bench: Bench, found: Hypothesis) -> float:
@@ -256,12 +262,13 @@ def _shown(bench: Bench, gain: float, fitted_fall: float, held_fall: float) -> b
 
 
 def _promises(bench: Bench, screen: Screen, singles: Mapping[str, Hypothesis]) -> dict[tuple[str, str], tuple]:
-    """What each pair promises; where both effects were fitted alone, the more modest of both promises."""
+    """What each pair promises; where both effects were fitted alone, the larger of both promises: beside the wrong one
+    of two effects the right one looks odd."""
     found: dict[tuple[str, str], tuple] = {}
     for leader in singles.values():
         for option in _seconds(bench, leader, screen):
             key = tuple(sorted(option[3]))
-            if key not in found or option[0] < found[key][0]:
+            if key not in found or option[0] > found[key][0]:
                 found[key] = option
     return found
 

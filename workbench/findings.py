@@ -27,7 +27,7 @@ class ChannelScore:
 
     excess_share: share of this channel in the sum of chi2 - n over all channels that exceed it
     noise_floor: rms error that noise alone leaves [unit];  u_val: rms of sqrt(u_D^2 + u_num^2) [unit]
-    held_out_chi2_per_n: None where nothing is held out
+    held_out_chi2_per_n: None where nothing is held out;  noise_dof: degrees of freedom of the size of the noise
     """
 
     channel: str
@@ -42,6 +42,7 @@ class ChannelScore:
     noise_floor: float
     u_val: float
     excess_share: float
+    noise_dof: float | None = None
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,7 @@ class OrderSpectrum:
     """V3: residual amplitude of every order per revolution [unit], (k,).
 
     floor: amplitude that noise alone stays below in 99 of 100 spectra;  classes: family of each order, from ORDER_CLASSES
+    part: of a channel that was turned both ways, what is "the same both ways" or "opposite both ways"; empty otherwise
     """
 
     channel: str
@@ -109,6 +111,11 @@ class OrderSpectrum:
     amplitude: np.ndarray
     floor: np.ndarray
     classes: tuple[str, ...]
+    part: str = ""
+
+    @property
+    def title(self) -> str:
+        return f"{self.channel}, {self.part}" if self.part else self.channel
 
 
 ORDER_CLASSES = ("native", "rotor", "stator", "emf", "other_emf", "encoder", "current", "imbalance", "other")
@@ -325,7 +332,8 @@ class Diagnosis:
 class LedgerStep:
     """One row of the ledger. step 0 is the model before any effect; decision: "start", "accepted" or "refused".
 
-    rms_error, noise_floor: per channel [unit of the channel]
+    rms_error, noise_floor: per channel [unit of the channel];  rms_error_percent: of the rms of the readings
+    held_out_rms_error: of the rows that no fit has seen, channels without such rows left out [unit of the channel]
     """
 
     step: int
@@ -341,6 +349,8 @@ class LedgerStep:
     units: Mapping[str, str]
     verdict: str = ""
     reason: str = ""
+    rms_error_percent: Mapping[str, float] = field(default_factory=dict)
+    held_out_rms_error: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -136,6 +136,12 @@ def fitted(
     return search.result(p, slopes)
 
 
+def linearised(problem: Problem, x: np.ndarray) -> Fit:
+    """What a fit without effects would be if it ended at nuisances x."""
+    search = _Search(problem, (), len(x))
+    return search.result(np.asarray(x, dtype=float), search.nuisance_slopes(x, np.zeros(0)))
+
+
 @dataclass
 class _Search:
     problem: Problem

@@ -12,6 +12,7 @@ from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.bank import Prepared
 from workbench.bench import Bench, extrapolated, sharpened
+from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.fit import FAR, Fit, Problem, fitted, prior_cost, with_parameters
 from workbench.linear import Nuisances
@@ -22,8 +23,9 @@ REACH = 4.0  # standard deviations to either side over which a posterior is inte
 PLACES = 17
 LAW_LENGTH = 1.0  # over which the error of a law changes, of the standard deviation of a condition
 LAW_LANDMARKS = 24
-# What a fit cannot know: effects too small to be seen, heavy tails. On virtual benches whose truth follows other laws
-# (seeds that are never scored) the scatter of fitted sizes about the true ones was 1.2 times what the fits said.
+# What a fit cannot know: effects too small to be seen, heavy tails, errors of laws. On 89 virtual benches whose truth
+# follows other laws (seeds that are never scored) 90 % intervals held the true size in 0.83 of all cases without it, in
+# 0.91 with it; the scatter of fitted sizes about the true ones was 1.17 times what the fits said.
 WIDENING = 1.2
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
@@ -74,15 +76,29 @@ def _law(problem: Problem, number: int, changes: Sequence[np.ndarray]) -> LawErr
 
 
 def single(bench: Bench, prepared: Prepared) -> list[Hypothesis]:
-    """Fits of one effect (variant) from the best places of its grid, distinct maxima only, best first."""
+    """Fits of one effect (variant) from the best places of its grid, distinct maxima only, best first.
+
+    Raises:
+        WorkbenchError: the model has no answer at any of these places.
+    """
     found: list[Hypothesis] = []
+    no_answer = None
     for z in prepared.best(bench.residual):
-        effect = prepared.signature.effect
-        problem, log_det = with_law_error(bench, with_parameters((effect,), z), bench.null.x)
-        hypothesis = hypothesis_from(problem, log_det, (effect,), bench.null.x, z)
+        try:
+            hypothesis = _from_start(bench, prepared.signature.effect, z)
+        except WorkbenchError as error:  # no steady state at this start; another may have one
+            no_answer = error
+            continue
         if all(np.max(np.abs(hypothesis.fit.z - have.fit.z)) > 0.3 for have in found):
             found.append(hypothesis)
+    if not found and no_answer is not None:
+        raise no_answer
     return sorted(found, key=lambda h: h.fit.objective)
+
+
+def _from_start(bench: Bench, effect: Effect, z: np.ndarray) -> Hypothesis:
+    problem, log_det = with_law_error(bench, with_parameters((effect,), z), bench.centre.x)
+    return hypothesis_from(problem, log_det, (effect,), bench.centre.x, z)
 
 
 def exact(hypothesis: Hypothesis) -> Hypothesis:
@@ -102,6 +118,15 @@ def fitted_rows(bench: Bench, hypothesis: Hypothesis) -> Problem:
 def held_out(bench: Bench, hypothesis: Hypothesis) -> Problem:
     """The rows that are held out, answered by the base model of the hypothesis."""
     return replace(bench.held_out, predictor=hypothesis.problem.predictor.on(bench.held_out.stack))
+
+
+def held_residual(bench: Bench, hypothesis: Hypothesis | None) -> np.ndarray:
+    """Whitened residual of the rows that are held out, errors of laws integrated out; None: of the model as it is."""
+    if hypothesis is None:
+        return bench.held_out.residual(bench.null.x)
+    x, effects = hypothesis.fit.x, hypothesis.effects
+    part, _ = with_law_error(bench, effects, x, held_out(bench, hypothesis))
+    return part.residual(x, effects)
 
 
 def pair(bench: Bench, first: Hypothesis, second: Effect, z: np.ndarray, alone: Hypothesis | None) -> Hypothesis:

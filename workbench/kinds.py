@@ -35,7 +35,7 @@ KINDS: dict[str, Kind] = {
     "impedance": Kind(("re", "im"), ("frequency", "amplitude", "shunt"), cost=2.0),
     "force_loop": Kind(("force",), ("displacement", "velocity"), cost=2.0),
     "dq_operation": Kind(("v_d", "v_q", "torque"), ("i_d", "i_q", "speed")),
-    "dq_supply": Kind(("current", "power"), ("v_ll", "torque", "speed")),
+    "dq_supply": Kind(("current", "power"), ("torque", "v_ll", "speed")),
     "generic": Kind(()),
 }
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Protocol, Sequence
+from typing import Iterator, Protocol, Sequence
 
 import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from workbench.errors import WorkbenchError
 from workbench.model import Model
 from workbench.nuisance import EffectParameters, Nuisance
 from workbench.stack import Stack
@@ -29,13 +30,16 @@ class Predictor(Protocol):
 @dataclass(frozen=True, eq=False)
 class DirectPredictor:
     """Asks the model itself. x: first what the campaign declares, then the parameters of effects the model has, both
-    from
-    where they stand now."""
+    from where they stand now.
+
+    origin: x where a fit starts, zero where it is not given
+    """
 
     model: Model
     nuisances: tuple[Nuisance, ...]
     stack: Stack
     calls: list[int] = field(default_factory=lambda: [0])
+    origin: np.ndarray | None = None
 
     @property
     def fitted(self) -> tuple[EffectParameters, ...]:
@@ -48,8 +52,27 @@ class DirectPredictor:
 
     @property
     def start(self) -> np.ndarray:
-        """x of the nominal device with the effects as they stand in the model (m,)."""
-        return np.zeros(len(self.names))
+        """x of the nominal device with the effects as they stand in the model, or the origin that was given (m,)."""
+        return np.zeros(len(self.names)) if self.origin is None else self.origin
+
+    def answering(self) -> DirectPredictor:
+        """This, or where the nominal device has no answer in some row, the same from an origin that has one: one
+        tolerance away.
+
+        Raises:
+            WorkbenchError: of the nominal device, if there is no such place.
+        """
+        try:
+            self.predict(self.start)
+            return self
+        except WorkbenchError as no_answer:
+            for x in _near(len(self.names)):
+                try:
+                    self.predict(x)
+                except WorkbenchError:
+                    continue
+                return replace(self, origin=x)
+            raise no_answer
 
     def model_at(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> Model:
         """The model with the nuisances and effects at their values."""
@@ -70,6 +93,14 @@ class DirectPredictor:
     def on(self, stack: Stack) -> DirectPredictor:
         """The same for other rows."""
         return replace(self, stack=stack)
+
+
+def _near(m: int) -> Iterator[np.ndarray]:
+    """One of m standard normal numbers moved to either side, the smallest moves first."""
+    for size in (1.0, 2.0, 3.0):
+        for k in range(m):
+            for sign in (1.0, -1.0):
+                yield sign * size * np.eye(m)[k]
 
 
 def jacobian(predictor: Predictor, x: np.ndarray, effects: Sequence[Effect] = (), base: np.ndarray | None = None):

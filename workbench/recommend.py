@@ -2,10 +2,9 @@
 
     U(m) = sum over i < j of p_i p_j [ D_ij(data + m) - D_ij(data) ],   D at most CAP nats
 
-over the hypotheses "nothing", the leading effects at their fitted sizes and the unknown function at its mean; D_ij
-is the
-smaller of both expected log-Bayes factors. Everything is a quadratic form of sums over rows, so that a new row is
-one more outer product.
+over the hypotheses "nothing", the leading effects as fitted and the unknown function at its mean; D_ij is the smaller
+of both expected log-Bayes factors. Everything is a quadratic form of sums over rows, so that a new row is one more
+outer product.
 """
 
 from __future__ import annotations
@@ -77,38 +76,70 @@ class _Forms:
 
 
 def _expected(seen: np.ndarray, true: tuple[int, ...], other: tuple[int, ...]) -> np.ndarray:
-    """1/2 (|W|^2 - part that the other one can take) from products of what the nuisances leave (..., k, k)."""
-    if not true:
-        return np.zeros(seen.shape[:-2])
-    own = seen[..., true[0], true[0]]
-    if not other:
-        return 0.5 * own
-    with_other = seen[..., true[0], list(other)][..., None]
-    block = seen[..., list(other), :][..., list(other)]
-    block = block + 1e-9 * (1 + np.trace(block, axis1=-2, axis2=-1))[..., None, None] * np.eye(len(other))
-    return 0.5 * np.maximum(
-        own - (np.swapaxes(with_other, -1, -2) @ np.linalg.solve(block, with_other))[..., 0, 0], 0.0
-    )
+    """Expected log-Bayes factor [nats] of one hypothesis over another, both as fitted, from products of what the
+    nuisances leave (..., k, k).
+
+        D = 1/2 min over v of |W_true - W_other - T v|^2 + |v|^2
+
+    W: change of the readings;  T: slopes of the other hypothesis over its standard normal parameters v, which can
+    follow only as far as their prior lets them
+    """
+    difference = np.zeros(seen.shape[-1])
+    difference[list(true[:1])] += 1.0
+    difference[list(other[:1])] -= 1.0
+    products = seen @ difference
+    size = products @ difference
+    slopes = list(other[1:])
+    if not slopes:
+        return 0.5 * np.maximum(size, 0.0)
+    along = products[..., slopes][..., None]
+    block = seen[..., slopes, :][..., slopes] + np.eye(len(slopes))
+    followed = (np.swapaxes(along, -1, -2) @ np.linalg.solve(block, along))[..., 0, 0]
+    return 0.5 * np.maximum(size - followed, 0.0)
 
 
 def next_measurements(search, p: Posterior) -> tuple[NextMeasurement, ...]:
     """The best few measurements, most nats for their cost first; empty where nothing was fitted."""
-    leaders = sorted(search.singles, key=lambda n: (-p.singles[n], n))[:LEADERS]
-    if not leaders:
+    weighing = _weighing(search, p)
+    if weighing is None:
         return ()
-    bench: Bench = search.bench
-    hypotheses = [search.singles[n] for n in leaders]
-    forms, columns = _forms(bench, hypotheses, p), _Columns(bench, hypotheses)
-    have = columns.of_fit(search.unknown.whitened)
-    gram = have.T @ have
     found = []
-    for option in options_of(bench, search.unknown.raw):
+    for option in options_of(search.bench, search.unknown.raw):
         try:
-            found.append(_best_rows(option, forms, columns, gram))
+            found.append(_best_rows(option, *weighing))
         except WorkbenchError:
             continue  # the model cannot answer there
     ranked = sorted(found, key=lambda m: (-m.gain_nats / m.cost, m.words))
     return tuple(m for m in ranked if m.gain_nats > 0)[:LISTED]
+
+
+def gains_of(search, p: Posterior, options: Sequence[Option]) -> np.ndarray:
+    """U [nats] of each option with all its rows (options,); zero where nothing was fitted or there is no answer."""
+    weighing = _weighing(search, p)
+    return np.array([_gain_of_all(option, *weighing) if weighing else 0.0 for option in options])
+
+
+def _weighing(search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
+    """What the leading hypotheses are weighed with, and the sums over the rows that were fitted."""
+    leaders = sorted(search.singles, key=lambda n: (-p.singles[n], n))[:LEADERS]
+    if not leaders:
+        return None
+    bench: Bench = search.bench
+    hypotheses = [search.singles[n] for n in leaders]
+    forms, columns = _forms(bench, hypotheses, p), _Columns(bench, hypotheses)
+    try:
+        have = columns.of_fit(search.unknown.whitened)
+    except WorkbenchError:  # a leader that has no answer without the tolerances that were fitted with it
+        return None
+    return forms, columns, have.T @ have
+
+
+def _gain_of_all(option: Option, forms: _Forms, columns: _Columns, gram: np.ndarray) -> float:
+    try:
+        values, _ = columns.of_option(option)
+    except WorkbenchError:
+        return 0.0
+    return float(forms.utility(gram + values.T @ values) - forms.utility(gram))
 
 
 def _forms(bench: Bench, hypotheses, p: Posterior) -> _Forms:
@@ -118,7 +149,8 @@ def _forms(bench: Bench, hypotheses, p: Posterior) -> _Forms:
         blocks.append(tuple(range(place, place + 1 + len(h.fit.z))))
         place += 1 + len(h.fit.z)
     blocks.append((place,))
-    weights = np.array([p.nothing, *(p.singles[h.names[0]] for h in hypotheses), p.unknown]).clip(FLOOR)
+    weights = np.array([p.nothing, *(p.singles[h.names[0]] for h in hypotheses)]).clip(FLOOR)
+    weights = np.append(weights, p.unknown)  # whose readings elsewhere nobody knows: no floor
     return _Forms(m, tuple(blocks), weights / weights.sum())
 
 
@@ -189,15 +221,14 @@ def _listed(option: Option, chosen: list[int]) -> dict[str, list[float]]:
 
 
 def options_of(bench: Bench, unknown: np.ndarray) -> list[Option]:
-    """What could be measured: all the base model proposes, or every table again and with one condition stretched.
+    """What could be measured: every table again and with one condition stretched, and all that the base model proposes.
 
     unknown: expected unknown function on the rows to fit, of their uncertainty (n,)
     """
-    base = bench.model.base
-    if hasattr(base, "options"):
-        return list(base.options(bench.model.design, bench.campaign))
-    tables = range(len(bench.fit.stack.tables))
-    return [option for number in tables for option in _options_of_table(bench, number, unknown)]
+    base, tables = bench.model.base, range(len(bench.fit.stack.tables))
+    again = [option for number in tables for option in _options_of_table(bench, number, unknown)]
+    proposed = base.options(bench.model.design, bench.campaign) if hasattr(base, "options") else ()
+    return [*again, *proposed]
 
 
 def _options_of_table(bench: Bench, number: int, unknown: np.ndarray) -> list[Option]:

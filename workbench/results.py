@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
-from typing import Callable, Mapping
+from typing import Callable, Mapping, Sequence
 
 import numpy as np
 
+from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.agreement import NOTHING_LEFT, agreement
+from workbench.agreement import NOTHING_LEFT, agreement, left_over
 from workbench.bench import Bench
-from workbench.calibration import FALSE_ALARM_RATE, Screen, detection_limit
+from workbench.calibration import FALSE_ALARM_RATE, Screen, detection_limit, plain_shares
+from workbench.errors import WorkbenchError
 from workbench.findings import ChannelFit, DetectionLimit, Diagnosis, Ranked, Separation, SizePosterior
 from workbench.fit import Problem
-from workbench.hypotheses import Hypothesis, density_of, estimates, fitted_rows, held_out, with_law_error
+from workbench.hypotheses import Hypothesis, Rival, density_of, estimates, fitted_rows, held_out, held_residual, rival
 from workbench.linear import cosine
 from workbench.recommend import next_measurements
 from workbench.verdict import (
@@ -37,6 +40,11 @@ from workbench.views import channel_fit, channel_views, describe
 
 QUIET = 0.30  # probability of "nothing is missing" from which there is no alarm
 CLEARLY = 0.20  # probability of "nothing is missing" that is an alarm by itself: two effects may hide one another
+# What is left of less than this share of an effect's own change is put down to its law: laws of friction, iron loss and
+# saturation are good to a few percent.
+LAW_GOOD_TO = 0.05
+VISIBLE = 9.0  # chi2 of an effect that is seen at all: three standard deviations
+EXPLAINS = 5.0  # nats over nothing from which the leader explains a part: the odds of one effect of 25 are even at 3.6
 NEAREST = 5  # signatures that are named beside an unknown residual
 
 
@@ -55,6 +63,8 @@ def diagnosis_of(
     alarm = (loud > threshold and probabilities.nothing < QUIET) or probabilities.nothing < CLEARLY
     signs = Signs(alarm, power[max(power)], *_signs(search, probabilities))
     said = verdict(probabilities, twins, signs)
+    if said.kind == NOTHING_MISSING:
+        said = replace(said, probability=_nothing_plain(search, probabilities))
     return Diagnosis(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
@@ -83,6 +93,14 @@ def diagnosis_of(
     )
 
 
+def _nothing_plain(search, p: Posterior) -> float:
+    """Probability that nothing is missing that these data would show plainly: the verdict cannot speak of smaller
+    things."""
+    effects, unknown = plain_shares(search.screen, search.bench.residual)
+    singles = sum(share * effects[name] for name, share in p.singles.items())
+    return 1.0 - singles - unknown * p.unknown - sum(p.pairs.values()) - sum(p.rest.values())
+
+
 def _not_tried(failed: Mapping[str, str]) -> tuple[str, ...]:
     """One sentence for each reason why effects were not tried."""
     reasons: dict[str, list[str]] = {}
@@ -101,7 +119,7 @@ def ranking(search, p: Posterior) -> tuple[Ranked, ...]:
     bench = search.bench
     before = chi2_per_n(bench.fit, bench.null.x)
     held_before = chi2_per_n(bench.held_out, bench.null.x) if bench.held_out else None
-    ranked = sorted(p.singles, key=lambda n: (-p.singles[n], n))
+    ranked = sorted(p.singles, key=lambda n: (-p.log((n,)), n))
     titles = {prepared.signature.name: prepared.signature.effect.title for prepared in search.screen.prepared}
     return tuple(_ranked(search, name, titles[name], p.singles[name], before, held_before) for name in ranked)
 
@@ -131,21 +149,37 @@ def alternatives(p: Posterior, said: Verdict, twins: Mapping[str, tuple[str, ...
     return out
 
 
-def _signs(search, p: Posterior) -> tuple[bool, bool, bool]:
-    """Whether the leading explanation leaves over what the held-out rows show, too, whether the model as it is
-    does, and whether the leader is a pair that can follow any curve."""
+def _signs(search, p: Posterior) -> tuple[bool, bool, bool, str, bool]:
+    """What ``Signs`` holds beside alarm and power, in its order."""
     bench = search.bench
-    if bench.held_out is None:
-        return False, False, False
-    held = bench.held_out.residual(bench.null.x)
-    left_by_nothing = agreement(bench, bench.null.residual, held) > NOTHING_LEFT
     hypothesis = search.named(leaders(p))
+    if bench.held_out is None or hypothesis is None:
+        return False, _is_left(search, None, search.unknown), False, "", False
+    beside = search.rest.get(hypothesis.names[0]) if len(hypothesis.names) == 1 else None
+    beside = beside or rival(hypothesis.problem, hypothesis.fit, search.screen.unknown)
+    odds = hypothesis.log_evidence - bench.null.log_evidence
+    return (
+        _is_left(search, hypothesis, beside),
+        _is_left(search, None, search.unknown),
+        _is_bendable(search, hypothesis),
+        _mended(search, hypothesis),
+        odds < EXPLAINS,
+    )
+
+
+def _is_left(search, hypothesis: Hypothesis | None, beside: Rival) -> bool:
+    """Whether fitted and held-out rows agree that a hypothesis (None: the model as it is) misses something, more than
+    what the laws of its effects may be wrong by."""
+    bench: Bench = search.bench
+    if bench.held_out is None:
+        return False
+    held = held_residual(bench, hypothesis)
+    left = left_over(bench, beside.explained, held)
     if hypothesis is None:
-        return False, left_by_nothing, False
-    x, effects = hypothesis.fit.x, hypothesis.effects
-    part, _ = with_law_error(bench, effects, x, held_out(bench, hypothesis))
-    left = agreement(bench, hypothesis.fit.residual, part.residual(x, effects)) > NOTHING_LEFT
-    return left, left_by_nothing, _is_bendable(search, hypothesis)
+        return left > 0 or agreement(bench, bench.null.residual, held) > NOTHING_LEFT
+    change = _change(bench, hypothesis.effects)
+    own = 0.0 if change is None else float(np.linalg.norm(bench.nuisances.root(change)))
+    return left > LAW_GOOD_TO * own or agreement(bench, hypothesis.fit.residual, held) > NOTHING_LEFT
 
 
 def _is_bendable(search, hypothesis: Hypothesis) -> bool:
@@ -153,26 +187,49 @@ def _is_bendable(search, hypothesis: Hypothesis) -> bool:
     if len(hypothesis.names) < 2:
         return False
     bench = search.bench
-    base = bench.fit.predictor.predict(bench.null.x)
-    first, second = (
-        bench.nuisances.root(bench.fit.white(bench.fit.predictor.predict(bench.null.x, (effect,)) - base))
-        for effect in hypothesis.effects
-    )
-    return abs(cosine(first, second)) > SAME_SHAPE
+    changes = [_change(bench, (effect,)) for effect in hypothesis.effects]
+    if any(change is None for change in changes):
+        return False
+    return abs(cosine(*(bench.nuisances.root(change) for change in changes))) > SAME_SHAPE
+
+
+def _mended(search, hypothesis: Hypothesis) -> str:
+    """The effect of a pair whose law may be wrong by as much as the other one adds in every channel; empty for none.
+
+    The other counts where its chi2 beyond the declared error is VISIBLE or more.
+    """
+    if len(hypothesis.names) < 2:
+        return ""
+    bench = search.bench
+    changes = [_change(bench, (effect,)) for effect in hypothesis.effects]
+    if any(change is None for change in changes):
+        return ""
+    squares = [bench.fit.squares(bench.nuisances.root(change)) for change in changes]
+    for own, other, effect in zip(squares, squares[::-1], hypothesis.effects):
+        law = effect.model_error**2
+        if law and np.sum(np.maximum(other - law * own, 0.0)) < VISIBLE:
+            return effect.name()
+    return ""
+
+
+def _change(bench: Bench, effects: Sequence[Effect]) -> np.ndarray | None:
+    """Whitened change of the rows to fit by effects beside the null (n,); None where the model has no answer there."""
+    predictor, x = bench.fit.predictor, bench.null.x
+    try:
+        return bench.fit.white(predictor.predict(x, effects) - predictor.predict(x))
+    except WorkbenchError:
+        return None
 
 
 def separations_of(search) -> dict[tuple[str, str], float]:
     """Expected log-Bayes factors between the effects that were fitted, both ways."""
     bench = search.bench
     m = len(bench.null.x)
-    base = bench.fit.predictor.predict(bench.null.x)
-    changes = {
-        n: bench.fit.white(bench.fit.predictor.predict(bench.null.x, h.effects) - base)
-        for n, h in search.singles.items()
-    }
+    changes = {name: _change(bench, h.effects) for name, h in search.singles.items()}
+    changes = {name: change for name, change in changes.items() if change is not None}
     return {
         (a, b): separation(search.singles[a], search.singles[b], m, changes)
-        for first in combinations(search.singles, 2)
+        for first in combinations(changes, 2)
         for a, b in (first, first[::-1])
     }
 

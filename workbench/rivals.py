@@ -72,6 +72,14 @@ class Unknown:
         """ln evidence of the unknown function over the null (R,)."""
         return logsumexp(self.log_evidences(nuisances, residuals), axis=0)
 
+    def expected_gain(self, choice: Choice) -> float:
+        """ln evidence over the null [nats] that a choice is expected to gain where it is true, tolerances known.
+
+        1/2 sum over the shapes of (a^2 e - ln(1 + a^2 e))
+        """
+        sizes = [choice.amplitude**2 * self.shapes[c][length].energy for c, length in choice.parts]
+        return 0.5 * float(sum(np.sum(e - np.log1p(e)) for e in sizes))
+
     def mean(
         self, nuisances: Nuisances, residual: np.ndarray, choice: Choice
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import log
 from typing import Mapping
 
@@ -17,7 +17,7 @@ SURE = 0.9  # probability from which something is named
 NAMED = 0.6  # share of what is missing that names must carry to be printed
 LIKELY_TWIN = 0.01  # of the probability of the leader, for an effect that the data cannot tell from it
 LIKELY = 0.03  # the same for one that they can
-SAME_SHAPE = 0.9  # cosine of two signatures from which one is nearly a multiple of the other
+SAME_SHAPE = 0.8  # cosine of two signatures from which the pair lives on their small difference
 TWINS = 3.0  # expected log-Bayes factor [nats] below which two effects cannot be told apart
 LARGEST_GROUP = 4  # names; with more the data tell nothing
 POWER_NEEDED = 0.5  # share of unknown discrepancies of ten u that must be noticed before a name is believed
@@ -41,13 +41,23 @@ class Evidences:
 
 @dataclass(frozen=True)
 class Posterior:
-    """Probabilities of all hypotheses; they add up to one."""
+    """Probabilities of all hypotheses; they add up to one.
+
+    logs: their logarithms for effects and pairs, by their names; small probabilities are zero, these keep their order
+    """
 
     nothing: float
     singles: Mapping[str, float]
     pairs: Mapping[Pair, float]
     unknown: float
     rest: Mapping[str, float]
+    logs: Mapping[tuple[str, ...], float] = field(default_factory=dict)
+
+    def log(self, names: tuple[str, ...]) -> float:
+        if names in self.logs:
+            return self.logs[names]
+        share = self.singles[names[0]] if len(names) == 1 else self.pairs[names]
+        return float(np.log(max(share, 1e-300)))
 
 
 @dataclass(frozen=True)
@@ -79,6 +89,8 @@ def posterior(evidences: Evidences) -> Posterior:
         share(weighed.pairs),
         float(np.exp(weighed.unknown - total)),
         share(weighed.rest),
+        {(n,): float(v - total) for n, v in weighed.singles.items()}
+        | {n: float(v - total) for n, v in weighed.pairs.items()},
     )
 
 
@@ -114,6 +126,8 @@ class Signs:
     left: fitted and held-out rows agree on something that the leading explanation leaves over
     left_by_nothing: the same for the model as it is
     bendable: the two effects of the leading pair have nearly the same shape; together they follow any smooth curve
+    mended: the effect of the leading pair whose law may be wrong by all that the other one adds; empty for none
+    idle: the leading explanation explains next to nothing
     """
 
     alarm: bool
@@ -121,6 +135,8 @@ class Signs:
     left: bool = False
     left_by_nothing: bool = False
     bendable: bool = False
+    mended: str = ""
+    idle: bool = False
 
 
 def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) -> Verdict:
@@ -136,17 +152,15 @@ def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) ->
     something = sum(shares.values())
     kind = max(shares, key=shares.get)
     if kind == NONE_OF_THESE:
-        return Verdict(NONE_OF_THESE, (), p.unknown / something)
-    if kind == PARTIAL:
-        return Verdict(PARTIAL, (max(p.rest, key=p.rest.get),), shares[PARTIAL] / something)
-    named = _of_pairs(p, something) if kind == PAIR else _of_singles(p, twins, something)
-    if named.kind == PAIR and signs.bendable:
-        return Verdict(PARTIAL, (max(leaders(p), key=lambda n: p.singles.get(n, 0.0)),), named.probability)
-    return Verdict(PARTIAL, leaders(p), named.probability) if signs.left else named
+        return Verdict(NONE_OF_THESE, (), max(p.unknown / something, SURE * signs.left))
+    if signs.left or kind == PARTIAL:
+        sure = max(shares[PARTIAL] / something, SURE * signs.left)
+        return Verdict(NONE_OF_THESE, (), sure) if signs.idle else Verdict(PARTIAL, leaders(p), sure)
+    return _of_pairs(p, twins, signs, something) if kind == PAIR else _of_singles(p, twins, something)
 
 
 def _quiet(p: Posterior, signs: Signs) -> Verdict:
-    if signs.left_by_nothing:
+    if signs.left_by_nothing:  # and no effect is probable enough for an alarm
         return Verdict(NONE_OF_THESE, (), SURE)
     return Verdict(NOTHING_MISSING if signs.power >= POWER_NEEDED else CANNOT_TELL, (), p.nothing)
 
@@ -163,11 +177,10 @@ def shares_of(p: Posterior) -> dict[str, float]:
 
 def leaders(p: Posterior) -> tuple[str, ...]:
     """Names of the most probable explanation that effects of the library give: one or two."""
-    single = max(p.singles, key=p.singles.get, default=None)
-    first = max(p.pairs, key=p.pairs.get, default=None)
-    if first is not None and sum(p.pairs.values()) > sum(p.singles.values()):
-        return first
-    return (single,) if single is not None else ()
+    singles, pairs = [(name,) for name in p.singles], list(p.pairs)
+    if pairs and (not singles or logsumexp([p.log(n) for n in pairs]) > logsumexp([p.log(n) for n in singles])):
+        return max(pairs, key=p.log)
+    return max(singles, key=p.log, default=())
 
 
 def _of_singles(p: Posterior, twins: Mapping[str, tuple[str, ...]], something: float) -> Verdict:
@@ -189,5 +202,16 @@ def _of_singles(p: Posterior, twins: Mapping[str, tuple[str, ...]], something: f
     return Verdict(EFFECT if len(names) == 1 else GROUP, tuple(names), share)
 
 
-def _of_pairs(p: Posterior, something: float) -> Verdict:
-    return Verdict(PAIR, max(p.pairs, key=p.pairs.get), sum(p.pairs.values()) / something)
+def _of_pairs(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs, something: float) -> Verdict:
+    """The leading pair, where no other pair but by twins is as likely; else the effect of it that is sure."""
+    best = max(p.pairs, key=p.pairs.get)
+    share = sum(p.pairs.values()) / something
+    if signs.mended:
+        return Verdict(EFFECT, (signs.mended,), share)
+    alike = [{name, *twins.get(name, ())} for name in best]
+    same = [q for q in p.pairs if all(any(name in names for name in q) for names in alike)]
+    if not signs.bendable and sum(p.pairs[q] for q in same) >= SURE * sum(p.pairs.values()):
+        return Verdict(PAIR, best, share)
+    common = {name: sum(v for q, v in p.pairs.items() if name in q) for name in best}
+    alone = {name: p.log((name,)) if name in p.singles else -np.inf for name in best}
+    return Verdict(PARTIAL, (max(best, key=lambda name: (common[name], alone[name])),), share)

@@ -43,6 +43,7 @@ SHOWN_ROWS = 2000  # of a channel in a picture
 # exponent -> law
 CURRENT_LAWS = {0: "cogging or friction", 1: "torque constant or gain", 2: "reluctance", 3: "saturation"}
 SPEED_LAWS = {0: "Coulomb friction or hysteresis", 1: "viscous or eddy", 2: "windage"}
+SHUNT_LAWS = {0: "friction or viscous", -1: "force constant or gain", -2: "resistance in series"}  # of shunt + internal
 IMPEDANCE_LAWS = {  # of the frequency; a force over a velocity
     "re": {-1: "Coulomb friction or hysteresis", 0: "viscous or circuit", 1: "quadratic drag"},
     "im": {-1: "stiffness", 1: "mass"},
@@ -195,23 +196,46 @@ def _cell_means(view: ChannelView, place: np.ndarray, cells: int):
     return np.where(empty, np.nan, mean), np.where(empty, np.nan, p_value), count
 
 
-def order_spectrum(view: ChannelView) -> OrderSpectrum | None:
-    """V3: amplitude of every mechanical order of the residual, where full turns were scanned."""
+def order_spectra(view: ChannelView) -> list[OrderSpectrum]:
+    """V3: amplitude of every mechanical order of the residual, where full turns were scanned.
+
+    Of a channel that was turned both ways the mean and half the difference of the two directions, each a spectrum: a
+    loss is opposite both ways and would cancel in the mean.
+    """
     angle = view.table.conditions.get("angle_mech")
     if angle is None or view.channel.size < 32:
-        return None
-    sets = [rows for rows in _scans(view.table) if np.ptp(angle[rows]) > 0.95 * 2 * np.pi and len(rows) >= 32]
-    if not sets:
-        return None
-    orders = np.arange(1, min(LARGEST_ORDER, min(len(rows) for rows in sets) // 2))
+        return []
+    turns = [rows for rows in _scans(view.table) if np.ptp(angle[rows]) > 0.95 * 2 * np.pi and len(rows) >= 32]
+    if not turns:
+        return []
+    orders = np.arange(1, min(LARGEST_ORDER, min(len(rows) for rows in turns) // 2))
     error = (view.measured - view.fitted) / view.scale
-    waves = [2 * np.mean(error[rows] * np.exp(-1j * np.outer(orders, angle[rows])), axis=1) for rows in sets]
-    readings = sum(len(rows) for rows in sets)
+    waves = np.array([2 * np.mean(error[rows] * np.exp(-1j * np.outer(orders, angle[rows])), axis=1) for rows in turns])
+    readings = sum(len(rows) for rows in turns)
     sigma = np.sqrt(np.mean(view.u**2)) / view.scale
     floor = np.full(len(orders), sigma * np.sqrt(4 * np.log(100) / readings))
-    return OrderSpectrum(
-        view.channel.name, view.channel.unit, orders, np.abs(np.mean(waves, axis=0)), floor, order_classes(view, orders)
-    )
+    classes = order_classes(view, orders)
+    return [
+        OrderSpectrum(view.channel.name, view.channel.unit, orders, np.abs(wave), floor, classes, part)
+        for part, wave in _by_direction(waves, np.array([_direction(view.table, rows) for rows in turns]))
+    ]
+
+
+def _by_direction(waves: np.ndarray, direction: np.ndarray) -> list[tuple[str, np.ndarray]]:
+    """Mean wave (k,) of all turns (turns, k), or both parts where there are turns in both directions."""
+    forward, backward = waves[direction > 0], waves[direction < 0]
+    if not len(forward) or not len(backward):
+        return [("", waves.mean(axis=0))]
+    there, back = forward.mean(axis=0), backward.mean(axis=0)
+    return [("the same both ways", 0.5 * (there + back)), ("opposite both ways", 0.5 * (there - back))]
+
+
+def _direction(table: Table, rows: np.ndarray) -> float:
+    """Of the turning in some rows: +1, -1, or 0 where the table does not say."""
+    for name in ("direction", "speed"):
+        if name in table.conditions:
+            return float(np.sign(np.mean(table.conditions[name][rows])))
+    return 0.0
 
 
 def order_classes(view: ChannelView, orders: np.ndarray) -> tuple[str, ...]:
@@ -236,8 +260,11 @@ def _order_class(order: int, slots: int, poles: int, kind: str) -> str:
 
 
 def _scans(table: Table) -> list[np.ndarray]:
-    key = table.scan * (table.repeat.max() + 1) + table.repeat
-    return [np.flatnonzero(key == value) for value in np.unique(key)]
+    """Rows of each scan of each repeat, apart for the two directions."""
+    direction = np.sign(table.conditions.get("direction", np.zeros(table.rows)))
+    keys = np.column_stack([table.scan, table.repeat, direction])
+    number = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
+    return [np.flatnonzero(number == value) for value in range(number.max() + 1)]
 
 
 def scalings(view: ChannelView) -> list[Scaling]:
@@ -250,7 +277,7 @@ def scalings(view: ChannelView) -> list[Scaling]:
 
 def _scaling(view: ChannelView, name: str) -> Scaling | None:
     """Slope of ln A against ln q over levels q; A^2: mean square of the error less that of the noise."""
-    sizes = np.abs(view.table.conditions[name])
+    sizes = np.abs(view.table.conditions[name]) + _in_series(view, name)
     levels = _levels(sizes[sizes > 0])
     error, rows = view.measured - view.fitted, []
     for level in levels:
@@ -293,7 +320,14 @@ def _meaning(view: ChannelView, name: str, low: float, high: float) -> str:
     return inside[0] if len(inside) == 1 else ""
 
 
+def _in_series(view: ChannelView, name: str) -> float:
+    """What stands in series with a shunt: laws go with the whole resistance of the circuit."""
+    return float(getattr(view.bench.model.design, "internal_resistance", 0.0)) if name == "shunt" else 0.0
+
+
 def _laws(view: ChannelView, name: str) -> dict[int, str]:
+    if name == "shunt":
+        return SHUNT_LAWS
     if view.table.kind == "impedance" and name == "frequency":
         return IMPEDANCE_LAWS.get(view.channel.response, {})
     if name.startswith("i_"):
@@ -338,22 +372,26 @@ def _unit_range(v: np.ndarray) -> np.ndarray:
     return (v - v.min()) / (np.ptp(v) or 1.0)
 
 
-def sequence(view: ChannelView) -> Sequence:
-    """V6: residual in the order of acquisition."""
-    x = np.linspace(-0.5, 0.5, view.channel.size)
-    found = float(x @ view.residual / (x @ x))
-    mixed = _permutations(view.whitened) @ x
-    larger = int(np.sum(np.abs(mixed) >= abs(x @ view.whitened)))
-    step = -(-view.channel.size // SHOWN_ROWS)
-    return Sequence(
-        view.channel.name,
-        Axis("sample"),
-        np.arange(view.channel.size, dtype=float)[::step],
-        view.residual[::step],
-        view.table.scan[::step],
-        found,
-        (1 + larger) / (SHUFFLES + 1),
-    )
+def sequences(view: ChannelView) -> list[Sequence]:
+    """V6: residual in the order of acquisition, and over time and temperatures where they vary."""
+    along = [name for name in view.varying if name == "time" or name.endswith("_T")]
+    sample = (Axis("sample"), np.arange(view.channel.size, dtype=float))
+    found = [sample]
+    for name in along:
+        axis, factor = axis_of(name)
+        found.append((axis, factor * view.table.conditions[name]))
+    return [_sequence(view, axis, x) for axis, x in found]
+
+
+def _sequence(view: ChannelView, axis: Axis, x: np.ndarray) -> Sequence:
+    """Residual over x with the straight trend from the smallest to the largest x."""
+    place = (x - x.mean()) / (np.ptp(x) or 1.0)
+    found = float(place @ view.residual / (place @ place or 1.0))
+    mixed = _permutations(view.whitened) @ place
+    larger = int(np.sum(np.abs(mixed) >= abs(place @ view.whitened)))
+    rows = slice(None, None, -(-view.channel.size // SHOWN_ROWS))
+    p_value = (1 + larger) / (SHUFFLES + 1)
+    return Sequence(view.channel.name, axis, x[rows], view.residual[rows], view.table.scan[rows], found, p_value)
 
 
 def _permutations(values: np.ndarray) -> np.ndarray:
@@ -415,8 +453,9 @@ def describe(bench: Bench, raw: np.ndarray) -> dict[str, object]:
 
 
 def _loud_orders(view: ChannelView) -> list[int]:
-    spectrum = order_spectrum(view)
-    if spectrum is None:
+    spectra = order_spectra(view)
+    if not spectra:
         return []
-    loud = np.flatnonzero(spectrum.amplitude > spectrum.floor)
-    return [int(spectrum.orders[k]) for k in loud[np.argsort(-spectrum.amplitude[loud])][:6]]
+    amplitude = np.max([spectrum.amplitude for spectrum in spectra], axis=0)
+    loud = np.flatnonzero(amplitude > spectra[0].floor)
+    return [int(spectra[0].orders[k]) for k in loud[np.argsort(-amplitude[loud])][:6]]

@@ -40,18 +40,22 @@ def add_effect(
     out: Path,
     seed: int | None = None,
     progress: Callable[[str], None] = lambda words: None,
+    before: Diagnosis | None = None,
 ) -> Added:
     """Tries an effect, writes the ledger row and, when accepted, the model file; compares and diagnoses again.
 
     out: folder of ``ledger.csv`` and ``model.toml``, which are the only files written
+    before: diagnosis of the model as it is, where it was made already; it holds on if the effect is refused
     """
     path = out / LEDGER
     ledger = read_ledger(path, campaign.id, model.base.name)
     trial = try_effect(model, campaign, library, name, len(ledger.steps) or 1, progress)
     if not ledger.steps:
         append(path, start_step(trial.before), campaign, model)
-    diagnosis = diagnose(trial.model, campaign, library, SEED if seed is None else seed, progress)
-    said = " ".join([diagnosis.verdict, *diagnosis.names])
+    diagnosis = before
+    if diagnosis is None or trial.step.decision == ACCEPTED:
+        diagnosis = diagnose(trial.model, campaign, library, SEED if seed is None else seed, progress)
+    said = ": ".join([diagnosis.verdict, *([", ".join(diagnosis.names)] if diagnosis.names else [])])
     step = replace(trial.step, verdict=said)
     append(path, step, campaign, trial.model)
     if step.decision == ACCEPTED:
@@ -81,17 +85,19 @@ def walk(
     seed: int | None = None,
     progress: Callable[[str], None] = lambda words: None,
 ) -> tuple[Ledger, Diagnosis]:
-    """Diagnoses, adds the first effect that is named, and so on until nothing is named or a step is refused.
+    """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
 
+    Of several names the one with the most evidence by itself is tried first.
     out: folder of ``ledger.csv`` and ``model.toml``
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
     for _ in range(MOST_STEPS):
-        if not diagnosis.names:
-            break
-        added = add_effect(model, campaign, library, diagnosis.names[0], out, seed, progress)
-        model, diagnosis = added.model, added.diagnosis
-        if added.step.decision != ACCEPTED:
+        for name in by_evidence(diagnosis):
+            added = add_effect(model, campaign, library, name, out, seed, progress, diagnosis)
+            if added.step.decision == ACCEPTED:
+                model, diagnosis = added.model, added.diagnosis
+                break
+        else:
             break
     path = out / LEDGER
     if not path.exists():
@@ -99,3 +105,9 @@ def walk(
             path, replace(start_step(bench_of(model, campaign, library)), verdict=diagnosis.verdict), campaign, model
         )
     return read_ledger(path, campaign.id, model.base.name), diagnosis
+
+
+def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """The names of a verdict, the one with the most evidence by itself first."""
+    alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
+    return tuple(sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0)))

@@ -45,13 +45,18 @@ def _instrument(field: str, state: State, size: float) -> State:
     return replace(state, **{field: getattr(state, field) + size})
 
 
-def _stribeck(state: State, size: float) -> State:
+def _stribeck(state: State, size: float, excess: float = 0.8, velocity: float = 0.06) -> State:
     d = state.damper
-    return replace(state, damper=replace(d, coulomb=d.coulomb + size, static_excess=0.8 * size, stribeck_velocity=0.06))
+    friction = replace(d, coulomb=d.coulomb + size, static_excess=excess * size, stribeck_velocity=velocity)
+    return replace(state, damper=friction)
 
 
-def _eddy(state: State, size: float) -> State:
-    return replace(state, damper=replace(state.damper, eddy=size, eddy_corner=0.25))
+def _eddy(state: State, size: float, corner: float = 0.25) -> State:
+    return replace(state, damper=replace(state.damper, eddy=size, eddy_corner=corner))
+
+
+def _hysteresis(state: State, size: float, distance: float) -> State:
+    return replace(state, damper=replace(state.damper, hysteresis=size, hysteresis_distance=distance))
 
 
 def _saturated(state: State, size: float) -> State:
@@ -87,6 +92,15 @@ class DamperBench:
         "speed_gain": Hidden(0.01, 0.08, partial(_instrument, "speed_gain"), signed=True),
         "force_drift": Hidden(0.2, 8.0, partial(_instrument, "force_drift"), signed=True),
         "sensor_lag": Hidden(1e-5, 1e-3, partial(_damper, "force_lag"), alone=True),
+    }
+    forms = {
+        "stribeck_friction": (
+            partial(_stribeck, excess=0.0),
+            partial(_stribeck, velocity=0.03),
+            partial(_stribeck, velocity=0.12),
+        ),
+        "eddy_drag": (partial(_eddy, corner=0.1), partial(_eddy, corner=1.0)),
+        "hysteresis_drag": (partial(_hysteresis, distance=3e-4), partial(_hysteresis, distance=3e-3)),
     }
     outside = {
         "cubic stiffness": Hidden(1e10, 1e10, partial(_damper, "cubic_stiffness")),

@@ -16,6 +16,8 @@ from benchmarks.virtual_benches.instruments import Noise, readings
 
 FREE = 1e4  # prior size of a free effect, in units of one standard deviation of all data
 SMALL = (0.3, 3.0)  # chi2 of the one small effect that is left out of every model
+SIZINGS = 30  # sizes that are tried until a chi2 is met
+CLOSE_TO = 0.2  # relative error of a chi2 that is wanted
 OUTSIDE = (30.0, 1000.0)  # chi2 that a truth outside the library keeps when the best single effect is fitted to it
 
 
@@ -67,6 +69,9 @@ class Catalogue(Protocol):
     def moved(self, setup: Setup, state: Any, name: str, z: float) -> Any:
         """The state with a tolerance or systematic of the setup moved by z standard deviations."""
 
+    # forms, where there are any: name of an effect -> further (state, size) -> state, of other second parameters
+    # settled(state) -> state, where there is one: called once the tolerances are drawn, before anything is hidden
+
     def simulate(self, setup: Setup, state: Any) -> list[dict[str, np.ndarray]]:
         """Responses of every table, one repeat, free of random error and of drift."""
 
@@ -98,14 +103,15 @@ class _Judge:
         return float(r @ left)
 
     def stacked(self, state: Any) -> np.ndarray:
-        """All responses over their uncertainty; fitted repeats count as a smaller uncertainty."""
+        """All responses over their uncertainty, freed of the correlation of their noise; fitted repeats count as a
+        smaller uncertainty."""
         weight = np.sqrt(max(self.setup.repeats - 1, 1)) / self.noise.scale
         tables = self.catalogue.simulate(self.setup, state)
         parts = []
         drifts = self.catalogue.drifts(state)
         for responses, u in zip(tables, self.declared):
             parts += [_drifted(responses[name], drifts.get(name, 0.0)) / u[name] * weight for name in responses]
-        return np.concatenate(parts)
+        return np.concatenate([_white(part, self.noise.correlation) for part in parts])
 
     def sensitivities(self, base: np.ndarray) -> np.ndarray:
         names = [*self.setup.tolerance, *self.setup.systematic]
@@ -113,10 +119,16 @@ class _Judge:
         return np.stack([self.stacked(state) - base for state in moved], axis=1)
 
     def signatures(self, base: np.ndarray) -> list[np.ndarray]:
-        """What each effect of the catalogue would do at its middle size, one column an effect."""
-        middle = {name: np.sqrt(hidden.low * hidden.high) for name, hidden in self.catalogue.effects.items()}
-        states = [hidden.apply(self.state, middle[name]) for name, hidden in self.catalogue.effects.items()]
-        return [(self.stacked(state) - base)[:, None] for state in states]
+        """What each effect of the catalogue would do at its middle size, (n, forms) an effect: where it has more
+        parameters than its size, in several forms that may be added up."""
+        further = getattr(self.catalogue, "forms", {})
+        return [
+            self._forms((hidden.apply, *further.get(name, ())), float(np.sqrt(hidden.low * hidden.high)), base)
+            for name, hidden in self.catalogue.effects.items()
+        ]
+
+    def _forms(self, forms: Sequence[Callable], size: float, base: np.ndarray) -> np.ndarray:
+        return np.stack([self.stacked(apply(self.state, size)) - base for apply in forms], axis=1)
 
 
 def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = ()) -> tuple[Bench, Answer]:
@@ -130,6 +142,8 @@ def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = 
     state = setup.state
     for name in [*setup.tolerance, *setup.systematic]:
         state = catalogue.moved(setup, state, name, float(rng.standard_normal()))
+    if hasattr(catalogue, "settled"):
+        state = catalogue.settled(state)
     judge = _Judge(catalogue, setup, state, noise)
     base = judge.stacked(state)
     sensitivities = judge.sensitivities(base)
@@ -142,7 +156,7 @@ def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = 
         return min(judge.visibility(changed, np.hstack([sensitivities, s]), base) for s in free)
 
     if group == "outside":
-        free = [FREE * s / np.linalg.norm(s) for s in judge.signatures(base)]
+        free = [FREE * s / np.linalg.norm(s, axis=0) for s in judge.signatures(base)]
         truth, answer = _outside(catalogue, seed, wanted, state, partial(strange, free=free), rng)
     else:
         truth, answer = _inside(catalogue, group, seed, wanted, state, seen, rng)
@@ -152,7 +166,8 @@ def hide(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = 
     def small(changed):
         return judge.visibility(changed, sensitivities, with_it)
 
-    truth = _sized(catalogue.outside[rng.choice(outside)], truth, _log_uniform(SMALL, rng), small)[0]
+    left_out, chi2 = _sized(catalogue.outside[rng.choice(outside)], truth, _log_uniform(SMALL, rng), small)
+    truth = left_out if chi2 < 2 * SMALL[1] else truth
     bench = measured(catalogue, setup, truth, noise, f"{catalogue.name}-{group}-{seed}", rng)
     return bench, answer
 
@@ -180,12 +195,25 @@ def _chosen(effects: Mapping[str, Hidden], count: int, rng: np.random.Generator)
 
 
 def _sized(hidden: Hidden, state, chi2: float, seen) -> tuple[Any, float]:
-    """The state with the thing in it, at about the wanted visibility; chi2 grows with the square of a small size."""
-    size = hidden.size(np.random.default_rng(0))
-    for _ in range(2):
-        size *= float(np.clip(np.sqrt(chi2 / max(seen(hidden.apply(state, size)), 1e-12)), 1e-3, 30.0))
-    changed = hidden.apply(state, size)
-    return changed, seen(changed)
+    """The state with the thing in it, and its visibility: the wanted one within CLOSE_TO, or where that is not met the
+    nearest that was tried.
+
+    chi2 grows with the square of a small size, but not where there is a threshold: between a size that is too small
+    and one that is too large the next is in the middle of their logarithms, unless the square lies between them.
+    """
+    place = np.log(hidden.size(np.random.default_rng(0)))
+    low, high, tried = -np.inf, np.inf, []
+    for _ in range(SIZINGS):
+        changed = hidden.apply(state, float(np.exp(place)))
+        found = max(seen(changed), 1e-12)
+        tried.append((abs(np.log(found / chi2)), len(tried), changed, found))
+        if tried[-1][0] < CLOSE_TO:
+            break
+        low, high = (place, high) if found < chi2 else (low, place)
+        place += float(np.clip(0.5 * np.log(chi2 / found), -3.5, 3.5))
+        if not low < place < high or len(tried) % 3 == 0 and np.isfinite(low + high):
+            place = 0.5 * (low + high)
+    return min(tried)[2:]
 
 
 def _log_uniform(between: tuple[float, float], rng: np.random.Generator) -> float:
@@ -209,6 +237,11 @@ def measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Be
         conditions = {key: np.tile(values, setup.repeats) for key, values in layout.conditions.items()}
         series.append(Series(layout.file, layout.kind, repeat, conditions, read, layout.u_random))
     return Bench(name, setup.device, setup.tolerance, setup.systematic, tuple(series))
+
+
+def _white(scan: np.ndarray, correlation: float) -> np.ndarray:
+    """One scan whose neighbours have noise of that correlation, as independent rows of the same noise."""
+    return np.append(scan[:1], (scan[1:] - correlation * scan[:-1]) / np.sqrt(1 - correlation**2))
 
 
 def _drifted(values: np.ndarray, drift: float) -> np.ndarray:

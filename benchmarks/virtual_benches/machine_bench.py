@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Callable, Mapping
@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.virtual_benches.case import Answer, Bench
 from benchmarks.virtual_benches.hiding import Hidden, Layout, Setup, hide, measured
 from benchmarks.virtual_benches.instruments import Noise
-from benchmarks.virtual_benches.machine_truth import FullField, expansion, with_strengths
+from benchmarks.virtual_benches.machine_truth import Expansion, FullField, with_strengths
 from effects.machine_design import MachineAsBuilt
 from units import DEGREE, RPM
 from workbench.models.machine import MachineBench as Model
@@ -84,6 +84,7 @@ class State:
     """The machine in truth and what its instruments and its rig do. Gains relative, angles in rad, the rest SI.
 
     places: numbers of the magnet, slot, coil and phase that a defect sits at;  direction: of a shift [rad]
+    sound: the machine with its tolerances before anything is hidden in it, None for the one as drawn
     """
 
     machine: MachineAsBuilt
@@ -101,6 +102,7 @@ class State:
     shunt_bend: float = 0.0  # of the current reading, relative per 100 A
     uneven_friction: float = 0.0  # changing once a revolution [Nm]
     heated: float = 0.0  # the resistance beyond its straight line at 80 K above 20 degC, relative
+    sound: MachineAsBuilt | None = None
 
 
 def _own(name: str, state: State, size: float) -> State:
@@ -198,8 +200,8 @@ class MachineBench:
         return Model(cache=None).design(DEVICE)
 
     @cached_property
-    def truth(self) -> Surrogate:
-        return expansion(self.drawn, self._states(), self.cache)
+    def truth(self) -> Expansion:
+        return Expansion(self.drawn, self._states(), self.cache)
 
     def setup(self, rng: np.random.Generator) -> Setup:
         places = tuple(int(rng.integers(n)) for n in (10, 12, 12, 3))
@@ -217,11 +219,18 @@ class MachineBench:
             return replace(state, machine=state.machine.with_machine(airgap=state.machine.machine.airgap * factor))
         return replace(state, machine=replace(state.machine, length=state.machine.length * factor))
 
+    def settled(self, state: State) -> State:
+        """With the tolerances as they are: what is hidden from here on is expanded about this machine."""
+        return replace(state, sound=state.machine)
+
     def simulate(self, setup: Setup, state: State) -> list[dict[str, np.ndarray]]:
         self.last = state
         if state in self.solved:
             return self.solved[state]
-        return _readings(state, _Expanded(self.truth, state.machine), self.grid)
+        return _readings(state, _Expanded(self._surrogate(state.sound)), self.grid)
+
+    def _surrogate(self, sound: MachineAsBuilt | None) -> Surrogate:
+        return self.truth.about_drawing if sound is None else self.truth.about(sound)
 
     def drifts(self, state: State) -> dict[str, float]:
         return {}
@@ -263,7 +272,6 @@ class _Expanded:
     """What ``FullField`` answers, from an expansion."""
 
     surrogate: Surrogate
-    machine: MachineAsBuilt = field(repr=False)
 
     def no_load(self, design: MachineAsBuilt, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         spectrum = averaged(self.surrogate.spectrum(design), design.skew)

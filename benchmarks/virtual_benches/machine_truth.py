@@ -23,7 +23,7 @@ from workbench.models.machine_surrogate import Surrogate, averaged, coefficients
 MESH = MeshDensity(gap_edges=480, gap_layers=3, across_iron=3.0)
 PLAN = MeshPlan(
     base=MeshDensity(gap_edges=960, gap_layers=4, across_iron=4.0),
-    idle=MeshDensity(gap_edges=240, gap_layers=3, across_iron=3.0),
+    idle=MeshDensity(gap_edges=420, gap_layers=3, across_iron=3.0),  # seven angles in a period of cogging
     loaded=MeshDensity(gap_edges=240, gap_layers=3),
 )
 CHORD_POINTS = 3  # put on every straight piece of the steel's curve
@@ -40,9 +40,19 @@ def chords(grade: str) -> SplineReluctivity:
     return SplineReluctivity.from_points(f"{grade} in chords", *dense)
 
 
-def expansion(nominal: MachineAsBuilt, states: Sequence[LoadedState], cache_folder: Path | None) -> Surrogate:
-    """The machine expanded about the drawing."""
-    return SurrogateBuilder(nominal, PLAN, cache_folder, chords).build(states)
+class Expansion:
+    """The machine expanded in everything that may be hidden in it, about any machine that is like the drawing.
+
+    cache_folder: for the field solutions about the drawing, None for none
+    """
+
+    def __init__(self, nominal: MachineAsBuilt, states: Sequence[LoadedState], cache_folder: Path | None):
+        self._builder = SurrogateBuilder(nominal, PLAN, cache_folder, chords)
+        self.about_drawing = self._builder.build(states)
+
+    def about(self, design: MachineAsBuilt) -> Surrogate:
+        """Solved at a design; what is hidden besides adds what it would add to the drawing."""
+        return self._builder.about(self.about_drawing, design)
 
 
 class FullField:

@@ -21,7 +21,7 @@ class IronLossResistance(DesignEffect):
     looks_like = "drag torque in proportion to speed, more electrical power than copper and shaft account for"
     remedy = ("no-load loss against speed", "drag with a dummy without magnets")
     designs = (DqMachine,)
-    model_error = 0.03
+    model_error = 0.1  # a hysteresis share of a tenth to a third of the loss changes its growth with speed as much
 
     conductance: float = parameter(
         0.0, "1/ohm", prior=LogNormal(5e-3, 1.0), low=0.0, high=0.5, source="100 to 1000 ohm for kilowatt machines"

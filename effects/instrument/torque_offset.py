@@ -18,4 +18,4 @@ class TorqueOffset(ReadingOffset):
     remedy = ("zero the cell unloaded, before and after",)
     readings = ("torque",)
 
-    offset: float = parameter(0.0, "Nm", prior=Normal(0.02), low=-5.0, high=5.0, source="0.1 to 1 % of full scale")
+    offset: float = parameter(0.0, "Nm", prior=Normal(0.1), low=-5.0, high=5.0, source="0.1 to 1 % of 10 to 50 Nm")

@@ -5,28 +5,17 @@ instruments have gains and offsets, its noise is correlated with heavy tails, on
 describes what it hides. The model says so, and the user writes the effect in ``my_effect.py``.
 """
 
-import sys
 from pathlib import Path
 
 from benchmarks.virtual_benches.damper_bench import DamperBench
-from benchmarks.virtual_benches.hiding import hide
-from examples.story import Story, show, tell
-
-SEED = 10004
-
-
-def bench(folder: Path) -> Path:
-    """The campaign as the laboratory hands it over."""
-    campaign, _ = hide(DamperBench(), "outside", SEED, wanted=("force constant over position",))
-    return campaign.write(folder)
-
+from examples.story import Story, folder_of_results, hidden, show, tell
 
 STORY = Story(
     title="A damper whose force constant falls towards the ends of the stroke",
-    bench=bench,
+    bench=hidden(DamperBench, seed=10004, outside="force constant over position"),
     wrong="stribeck_friction",
     own=Path(__file__).parent / "my_effect.py",
 )
 
 if __name__ == "__main__":
-    show(tell(STORY), Path(sys.argv[1] if len(sys.argv) > 1 else "results/examples/damper"))
+    show(tell(STORY), folder_of_results("damper"))

@@ -10,7 +10,7 @@ from scipy.stats import binom
 
 from benchmarks.blind_metrics import bounds, confusion, is_named, right, score, wrong_name
 from benchmarks.inverse_crime import committed
-from benchmarks.virtual_benches import damper_truth
+from benchmarks.virtual_benches import damper_bench, damper_truth, hiding
 from benchmarks.virtual_benches.case import Answer
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
@@ -213,3 +213,22 @@ def test_confusion_shares_add_to_one():
     assert table.sum(axis=1) == pytest.approx(1.0)
     row = [truth.startswith("coulomb") for truth in truths].index(True)
     assert table[row, verdicts.index("coulomb_friction")] == 0.75
+
+
+def test_a_truth_gets_the_visibility_that_is_told_also_where_it_has_a_threshold():
+    """chi2 = 1e4 (size - 1)^2 from size 1 on, as of a dead band: chi2 over the square of the size is no constant."""
+    band = hiding.Hidden(3.0, 3.0, lambda state, size: state + size)
+    for wanted in (0.4, 2.9, 500.0):
+        changed, chi2 = hiding._sized(band, 0.0, wanted, lambda size: 1e4 * max(size - 1.0, 0.0) ** 2)
+        assert chi2 == pytest.approx(wanted, rel=0.25) and chi2 == pytest.approx(1e4 * (changed - 1.0) ** 2)
+
+
+def test_what_a_second_parameter_of_an_effect_explains_is_not_foreign():
+    """Stribeck friction of another velocity is no truth outside the library: its signatures take it up."""
+    setup = DAMPER.setup(np.random.default_rng(4))
+    judge = hiding._Judge(DAMPER, setup, setup.state, Noise.ideal())
+    base = judge.stacked(setup.state)
+    taken = dict(zip(DAMPER.effects, judge.signatures(base)))["stribeck_friction"]
+    other = judge.stacked(damper_bench._stribeck(setup.state, 1.0, velocity=0.08)) - base
+    alone, all_forms = (other - s @ np.linalg.lstsq(s, other, rcond=None)[0] for s in (taken[:, :1], taken))
+    assert np.sum(all_forms**2) < 0.2 * np.sum(alone**2)

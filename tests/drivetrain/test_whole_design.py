@@ -1,12 +1,25 @@
 """All stages at once: the objectives are those of the match, and a search betters the match only where it may."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
+from math import pi
 
 import numpy as np
 import pytest
 
 from drivetrain.match import damping_constraint, damping_reported, match
-from drivetrain.whole_design import OBJECTIVES, WholeDesign, WholeProblem, front, improved, non_dominated, spread
+from drivetrain.whole_design import (
+    OBJECTIVES,
+    RoadDemand,
+    RoadSection,
+    SectionTable,
+    WholeDesign,
+    WholeProblem,
+    front,
+    improved,
+    non_dominated,
+    road_loss,
+    spread,
+)
 from units import MILLIMETRE
 
 MM = MILLIMETRE
@@ -86,3 +99,45 @@ def test_the_front_is_feasible_and_non_dominated(problem, staged):
         assert not ((costs <= one).all(axis=1) & (costs < one).any(axis=1)).any()
     assert len(spread(found, 4)) == 4 and len(non_dominated(found)) == len(found)
     assert len(OBJECTIVES) == costs.shape[1]
+
+
+# ---- loss on the road -----------------------------------------------------------------------------------------------
+
+
+def _road(thesis, **idle):
+    terms = {"idle_hysteresis": 0.0, "idle_eddy": 0.0, "idle_excess": 0.0} | idle
+    return RoadSection(**asdict(thesis.section), **terms)
+
+
+def test_copper_loss_on_the_road_is_the_squared_force_over_the_damping(thesis):
+    """A short-circuited winding takes F^2/c: the same copper, torque and ratio."""
+    design = WholeDesign(12, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
+    demand = RoadDemand(300.0, 0.1, thesis.loading, pole_pairs=5)
+    damping = damping_constraint(thesis.section, thesis.requirements, thesis.loading).capability(2.3 * MM, 36 * MM)
+    assert road_loss(_road(thesis), design, demand) == pytest.approx(300.0**2 / damping, rel=1e-6)
+
+
+def test_idle_loss_is_the_mean_over_a_normally_distributed_speed(thesis):
+    design = WholeDesign(12, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
+    demand = RoadDemand(0.0, 0.1, thesis.loading, pole_pairs=5)
+    section = _road(thesis, idle_hysteresis=0.4, idle_eddy=2e-3, idle_excess=1e-2)
+    x = np.linspace(-8, 8, 100001)  # velocity over its RMS value
+    f = 5 * 0.1 * np.abs(x) / (2.3 * MM) / (2 * pi)
+    density = np.exp(-(x**2) / 2) / np.sqrt(2 * pi)
+    mean = np.trapezoid(density * (0.4 * f + 2e-3 * f**2 + 1e-2 * f**1.5), x)
+    assert road_loss(section, design, demand) == pytest.approx(36 * MM * mean, rel=1e-6)
+
+
+def test_a_faster_rotor_trades_copper_loss_for_idle_loss(thesis):
+    """With idle loss the loss is no longer the inverse of the reserve: less ratio, more reserve, and yet more loss."""
+    section, demand = _road(thesis, idle_hysteresis=2.0), RoadDemand(300.0, 0.3, thesis.loading, pole_pairs=5)
+    slow, fast = (WholeDesign(12, 42.5 * MM, 36 * MM, ratio * MM, 0.170) for ratio in (2.3, 1.2))
+    assert road_loss(section, fast, demand) > road_loss(section, slow, demand)
+
+
+def test_the_table_of_sections_gives_back_the_sections(problem):
+    table = SectionTable(problem.section_at, problem.slots, problem.radii)
+    for radius in (35.0, 38.123, 44.4, 50.0):
+        found, wanted = table(12, radius * MM), problem.section_at(12, radius * MM)
+        assert asdict(found) == pytest.approx(asdict(wanted), rel=1e-6)
+        assert type(found) is type(wanted) and isinstance(found.slots, int)

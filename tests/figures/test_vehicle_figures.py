@@ -27,7 +27,7 @@ def history(gain=1.0, wheels=2, road=0.01):
 
 @pytest.mark.parametrize("wheels", [1, 2])
 def test_histories_show_every_quantity_with_its_unit(wheels, assert_readable):
-    figure = time_histories({"ideal": history(1.0, wheels), "saturated": history(0.8, wheels)}, until=1.5)
+    figure = time_histories({"ideal": history(1.0, wheels), "saturated": history(0.8, wheels)}, span=(0.0, 1.5))
     text = words(figure)
     for part in ("road / mm", "stroke / mm", "force / N", "velocity / (m/s)", "tyre load / kN", "time / s"):
         assert part in text

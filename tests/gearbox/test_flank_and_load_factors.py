@@ -18,7 +18,7 @@ from gearbox.flank import (
     velocity_factor,
     zone_factor,
 )
-from gearbox.involute import ISO_53_A, Gear, Mesh, centre_distance
+from gearbox.involute import ISO_53_A, BasicRack, Gear, Mesh, centre_distance
 from gearbox.load_factors import (
     Quality,
     helix_deviation,
@@ -27,7 +27,7 @@ from gearbox.load_factors import (
     profile_deviation,
     tooth_stiffness,
 )
-from gearbox.material import CASE_HARDENED_MQ
+from gearbox.material import CASE_HARDENED_FLANK, CASE_HARDENED_MQ
 from units import MILLIMETRE
 
 MM, MPA = MILLIMETRE, 1e6
@@ -43,6 +43,32 @@ def test_elasticity_and_zone_factor():
     """Z_E 189.8 sqrt(MPa), Z_H 2.495 at 20 degrees without shift: ISO 6336-2."""
     assert CASE_HARDENED_MQ.elasticity_factor / sqrt(MPA) == pytest.approx(189.8, abs=0.05)
     assert zone_factor(standard_pair(20, 40, MM)) == pytest.approx(2.495, abs=0.001)
+
+
+# ---- ISO/TR 6336-30:2017, example 1: helical pair of module 8 mm, 17 and 103 teeth, case-hardened ------------------
+
+
+@pytest.mark.parametrize(("cycles", "printed"), [(1.080e9, 0.910), (1.783e8, 0.962)])
+def test_life_factor_of_the_worked_example(cycles, printed):
+    assert CASE_HARDENED_FLANK.factor(cycles) == pytest.approx(printed, abs=5e-4)
+
+
+def test_film_factors_of_the_worked_example():
+    """320 mm^2/s at 40 degrees, 2.664 m/s; the permissible stress of the pinion is 1338.5 MPa with Z_NT and Z_R."""
+    oil = Lubrication(320e-6, 4e-6, 20e-6)
+    assert lubricant_factor(oil) == pytest.approx(1.0474, abs=1e-4)
+    assert velocity_factor(2.664) == pytest.approx(0.96911, abs=2e-5)
+    product = lubricant_factor(oil) * velocity_factor(2.664) * 0.96599 * CASE_HARDENED_FLANK.factor(1.080e9)
+    assert CASE_HARDENED_MQ.contact_limit * product / MPA == pytest.approx(1338.5, abs=0.5)
+
+
+def test_tooth_stiffness_of_the_worked_example():
+    """c' = 12.370 N/(mm um) is of the helical teeth: cos(15.8 degrees) times that of the virtual spur gears."""
+    rack = BasicRack(addendum=1.0, dedendum=1.4, fillet_radius=0.39, pressure_angle=np.radians(20))  # ISO 53, type D
+    gears = [Gear(z, x, 8 * MM, (z / 2 + 1 + x) * 8 * MM, rack) for z, x in ((18.905, 0.145), (114.543, 0.0))]
+    distance = centre_distance(18.905, 114.543, 0.145, 8 * MM, rack.pressure_angle)
+    single, _ = tooth_stiffness(Mesh(*gears, distance), 1e6)
+    assert single / 1e9 * np.cos(np.radians(15.8)) == pytest.approx(12.370, rel=1e-3)
 
 
 def test_textbook_contact_stress():

@@ -11,7 +11,7 @@ from gearbox.flank import contact_ratio_factor, contact_stress
 from gearbox.involute import Gear, Mesh
 from gearbox.load_factors import Quality
 from gearbox.planetary_set import PlanetarySet, planetary_set
-from gearbox.rating import StageLoad, load_cycles, rate_stage, static_ratings, sun_force, survives
+from gearbox.rating import StageLoad, load_cycles, pitting_budget, rate_stage, static_ratings, sun_force, survives
 from gearbox.spectrum import LoadSpectrum
 from units import DEGREE, MILLIMETRE
 
@@ -141,3 +141,17 @@ def test_the_printed_gear_set_under_the_printed_loads(printed, load, rules):
 def test_a_load_without_torque_is_refused(load):
     with pytest.raises(GearError, match="peak torque above 0"):
         StageLoad(load.spectrum, 0.0, 1.0)
+
+
+def test_where_the_pitting_safety_of_the_printed_gears_goes(printed, load, rules):
+    """The text after Table 3.11 prints 2.0: that is the RMS torque all the time with every other factor at one."""
+    budget = pitting_budget(printed, 12 * MM, load, rules)
+    assert budget.bare == pytest.approx(2.0, abs=0.05)
+    assert budget.safety == pytest.approx(float(rate_stage(printed, 12 * MM, load, rules).flank["sun"]), rel=1e-12)
+    assert budget.safety == pytest.approx(0.97, abs=0.01)
+    assert max(budget.loads, budget.film, budget.spectrum) < 1
+
+
+def test_a_steady_load_loses_nothing_to_its_spectrum(printed, load, rules):
+    steady = LoadSpectrum(np.array([50.0]), np.ones(1), np.array([0.5]), 2.7e6, 0.13)
+    assert pitting_budget(printed, 12 * MM, replace(load, spectrum=steady), rules).spectrum == pytest.approx(1.0)

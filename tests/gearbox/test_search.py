@@ -6,10 +6,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from gearbox.errors import GearError
+from gearbox.errors import GearError, TooWeakError
 from gearbox.planetary_set import equally_spaced, planetary_set
 from gearbox.rating import rate_stage
-from gearbox.search import PREFERRED_MODULES, ToothLimits, geometry_checks, search, tooth_numbers
+from gearbox.search import PREFERRED_MODULES, ToothLimits, geometry_checks, search, strongest, tooth_numbers
 from units import MILLIMETRE
 
 MM = MILLIMETRE
@@ -151,6 +151,30 @@ def test_a_life_beyond_the_teeth(request_of, load):
     heavy = replace(load, spectrum=load.spectrum.scaled(2.0, 1.0))
     with pytest.raises(GearError, match="too weak; .* a safety factor flank of"):
         search(request_of(load=heavy))
+
+
+def test_the_largest_share_of_the_safety_that_is_in_reach(request_of, load):
+    request = request_of(load=replace(load, spectrum=load.spectrum.scaled(1.6, 1.0)), modules=(0.75 * MM,))
+    found, weakness = strongest(request)
+    reached = min(
+        value / getattr(request.safety, kind)
+        for rating in found.best.rate(request.load, request.rules)
+        for kind, value in rating.least.items()
+    )
+    assert 0.799 <= reached < 0.9 and "too weak" in weakness and "is wanted" in weakness
+    with pytest.raises(TooWeakError):
+        search(replace(request, safety=replace(request.safety, flank=0.9 * request.safety.flank)))
+
+
+def test_what_is_strong_enough_has_no_weakness(request_of, found):
+    strong, weakness = strongest(request_of())
+    assert weakness is None and strong.costs == found.costs
+
+
+def test_not_even_half_of_the_safety(request_of, load):
+    heavy = replace(load, spectrum=load.spectrum.scaled(6.0, 1.0))
+    with pytest.raises(TooWeakError, match="too weak; .* where 1.1 is wanted"):
+        strongest(request_of(load=heavy, modules=(0.75 * MM,)))
 
 
 def test_a_contact_ratio_that_spur_teeth_do_not_have(request_of):

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 PROJECT = Path(__file__).resolve().parents[2]
-STAGES = "requirements linkage sweep optima limits fits match winding flux_map drive gearbox".split()
+STAGES = "requirements linkage sweep optima limits fits match gearbox winding flux_map drive".split()
 STAGES += "fields figures outcome report".split()
 SMALL = {
     'id = "motorcycle"': 'id = "small-test-study"',
@@ -93,7 +93,8 @@ def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     html = (FOLDER / "report.html").read_text(encoding="utf-8")
     titles = [re.sub(r"^\d+\. ", "", title) for title in re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)]
     assert titles[:3] == ["Outcome", "Requirements from the vehicle", "Linkage"]
-    assert titles[-2:] == ["Planetary gearbox", "The vehicle with the designed actuator"]
+    assert titles[-4:-2] == ["Planetary gearbox", "Winding"]  # whole teeth first: they decide about the length
+    assert titles[-1] == "The vehicle with the designed actuator"
     assert html.count("data:image/png;base64") == 15 + 5 + 3 + 3 + 3 + 3
     assert "regenerative damping 27.7 kNs/m is 12.3 kNs/m below the requirement" in html
 
@@ -119,6 +120,17 @@ def test_what_was_designed_goes_back_into_the_vehicle(study):
     assert {row["actuator"] for row in outcome["worst"]} == {"ideal", "designed"} and len(outcome["ride"]) == 6
     failing = {row["requirement"] for row in outcome["requirements"] if not row["holds"]}
     assert {row["requirement"] for row in outcome["remedies"]} == {one for one in failing if "gears" not in one}
+
+
+def test_the_length_makes_up_for_whole_turns_and_teeth(study):
+    """Where the linkage ratio is largest the peak force at rest is what is asked, by the flux map, to its rounding."""
+    outcome = json.loads((FOLDER / "outcome.json").read_text())
+    linkage = json.loads((FOLDER / "match.json.provenance.json").read_text())["values"]["linkage"]
+    (row,) = [row for row in outcome["requirements"] if row["requirement"] == "peak force at rest"]
+    at_largest = row["reached"] * linkage["ratio_nominal_mm_per_rad"] / linkage["ratio_max_mm_per_rad"]
+    assert 0.995 < at_largest / row["needed"] < 1.02
+    length = json.loads((FOLDER / "winding.json").read_text())["length"]
+    assert "set by the peak force" in length["reason"] and length["final_mm"] != pytest.approx(length["matched_mm"])
 
 
 def test_a_stage_without_its_input_says_what_to_run(study, tmp_path):

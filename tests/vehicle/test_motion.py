@@ -12,9 +12,17 @@ from vehicle.actuator import Actuator
 from vehicle.damping import DamperCurve, linear_damper
 from vehicle.errors import VehicleError
 from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyre
+from vehicle.motion import Motion
 from vehicle.ride import Run, Scenario, simulate
 from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
-from vehicle.thesis import CRUISE_SPEED, LONGITUDINAL_ACCELERATION, motorcycle, obstacle_shape, quarter_car
+from vehicle.thesis import (
+    CRUISE_SPEED,
+    LONGITUDINAL_ACCELERATION,
+    motorcycle,
+    motorcycle_damping,
+    obstacle_shape,
+    quarter_car,
+)
 
 pytestmark = pytest.mark.physics
 
@@ -84,6 +92,24 @@ def test_static_deflections():
     assert 1e3 * BIKE.front.static_spring_deflection == pytest.approx(68.4, abs=0.05)
     assert 1e3 * BIKE.rear.static_tyre_deflection == pytest.approx(8.1, abs=0.05)
     assert 1e3 * BIKE.front.static_tyre_deflection == pytest.approx(5.3, abs=0.05)
+
+
+@pytest.mark.parametrize("vehicle", [BIKE, FREE, quarter_car()], ids=["stops", "no stops", "car"])
+def test_the_acceleration_is_that_of_the_forces(vehicle):
+    """m a = F for each body from the forces at the axles, beyond the stops and in the air too (3.8)."""
+    count, curves = 2 + len(vehicle.axles), motorcycle_damping()
+    dampers = [*([curve] * 3 for curve in vehicle.passive_dampers), curves]
+    motion, draw = Motion(vehicle, dampers, np.zeros(3), np.zeros(3)), np.random.default_rng(3)
+    for _ in range(50):
+        state = draw.normal(size=(2, count, 3)) * np.array([0.1, 2.0])[:, None, None]
+        road = 0.05 * draw.normal(size=(count - 2, 3))
+        forces, change = motion.forces(state, road), motion.derivative(state, road)
+        pull, lever = forces.spring + forces.stop + forces.damper, np.cos(state[0, 1])
+        assert vehicle.sprung_mass * change[1, 0] == pytest.approx(-pull.sum(axis=0))
+        moment = -lever * (motion.position * pull).sum(axis=0)
+        assert vehicle.pitch_inertia * change[1, 1] == pytest.approx(moment, abs=1e-6)
+        assert motion.unsprung * change[1, 2:] == pytest.approx(pull - forces.tyre)
+    assert not motion.derivative(np.zeros((2, count, 3)), np.zeros((count - 2, 3))).any()
 
 
 def test_vehicle_at_rest_stays_at_rest():

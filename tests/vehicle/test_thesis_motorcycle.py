@@ -126,6 +126,14 @@ def test_worst_pothole_near_table_3_5(overload):
     assert all(run.road_holding_peak == pytest.approx(1.0) or run.road_holding_peak < -1 for run in runs)
 
 
+def test_a_peak_on_the_road_names_the_seed_that_set_it(cruise):
+    runs = sum(cruise, [])
+    found = requirements(MAXIMUM_REGENERATIVE_DAMPING, runs, runs).force_peak
+    (own,) = [run for run in runs if f"{run.scenario}, {run.damping} damping" == found.scenario]
+    assert own.at_force_peak.force == found.value and own.scenario.startswith("random road, seed ")
+    assert abs(found.value) == max(abs(run.at_force_peak.force) for run in runs)
+
+
 def test_without_overload_the_peaks_are_not_invented(cruise):
     found = requirements(MAXIMUM_REGENERATIVE_DAMPING, sum(cruise, []))
     assert found.force_peak is None and found.power_peak is None and found.force_rms is not None

@@ -86,3 +86,24 @@ def test_a_negative_real_part_is_no_passive_device():
     wrong = table("impedance", {"frequency": f}, {"re": 30.0 - 3 * f, "im": f}, 0.5)
     assert "negative" in said(wrong)
     assert "negative" not in said(table("impedance", {"frequency": f}, {"re": 30.0 + 0 * f, "im": f}, 0.5))
+
+
+def impedance(wrong=0.0):
+    """A mass, a spring and a damper with an eddy current; ``wrong`` is added to the real part alone, over frequency."""
+    f = np.geomspace(1, 40, 16)
+    w = 2 * np.pi * f
+    z = 80 + 5.6j * w + 2000 / (1j * w) + 300 / (1 + 1j * w / 60)
+    return table("impedance", {"frequency": f}, {"re": z.real + wrong * np.sin(6 * np.log(w)), "im": z.imag}, 1.0)
+
+
+def test_real_and_imaginary_part_belong_to_one_causal_device():
+    assert "causal" not in said(impedance())
+    assert "causal" in said(impedance(wrong=12.0))
+
+
+def test_a_loop_takes_work():
+    turn = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+    place = 0.01 * np.sin(turn)
+    forward, backward = (500 * place + sign * 3 * np.cos(turn) for sign in (+1, -1))
+    assert "gives" in said(table("force_loop", {"displacement": place}, {"force": backward}, 0.2))
+    assert "gives" not in said(table("force_loop", {"displacement": place}, {"force": forward}, 0.2))

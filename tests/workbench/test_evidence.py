@@ -12,6 +12,7 @@ from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, wri
 from workbench.bank import Prepared, signature
 from workbench.bench import SHARP, bench_of, sharpened
 from workbench.campaign import read_campaign
+from workbench.errors import WorkbenchError
 from workbench.fit import fitted
 from workbench.hypotheses import exact, hypothesis_from, single, with_unknown
 from workbench.linear import Nuisances
@@ -174,3 +175,45 @@ def test_an_effect_beside_the_unknown_function_counts_the_error_of_its_law_once(
     assert laws > 0.5 and half_log_det == pytest.approx(laws, abs=1e-6)
     again = fitted(problem, found.fit.effects, found.fit.x, found.fit.z).log_evidence - half_log_det
     assert again == pytest.approx(found.fit.log_evidence - laws, abs=1e-3)
+
+
+def test_tangents_do_not_reach_over_places_without_an_answer():
+    """A change z^2 along one axis, unknown above z = 1.5: the slope at the last place is that to its neighbour."""
+
+    def change(effect):
+        z = effect.parameters_z
+        if z > 1.5:
+            raise WorkbenchError("no steady state")
+        return np.array([z**2])
+
+    class Half(Bump):
+        def at(self, z):
+            found = super().at(z)
+            object.__setattr__(found, "parameters_z", float(z[0]))
+            return found
+
+    found = signature(Half(), change)
+    last = int(np.max(np.flatnonzero(np.isfinite(found.log_prior))))
+    z = found.z[:, 0]
+    assert found.tangents[0, 0, last] == pytest.approx(z[last] + z[last - 1])
+    assert np.allclose(found.tangents[0, 0, 1:last], 2 * z[1:last]) and not found.tangents[0, 0, last + 2 :].any()
+
+
+def test_a_start_without_an_answer_is_passed_over(bench, monkeypatch):
+    from workbench import hypotheses
+
+    known = prepared(bench, Hardening())
+    starts = [np.array([99.0]), *known.best(bench.residual)]
+    monkeypatch.setattr(Prepared, "best", lambda self, residual: starts)
+    real = hypotheses._from_start
+
+    def start(bench, effect, z):
+        if z[0] == 99.0:
+            raise WorkbenchError("no steady state")
+        return real(bench, effect, z)
+
+    monkeypatch.setattr(hypotheses, "_from_start", start)
+    assert single(bench, known)[0].fit.z[0] != 99.0
+    starts[1:] = []
+    with pytest.raises(WorkbenchError, match="no steady state"):
+        single(bench, known)

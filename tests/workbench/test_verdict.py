@@ -6,7 +6,7 @@ import pytest
 from tests.workbench.toy_bench import Bump, Hardening
 from workbench.fit import Fit
 from workbench.hypotheses import Hypothesis
-from workbench.verdict import Evidences, Posterior, Signs, posterior, separation, twins_of, verdict
+from workbench.verdict import Evidences, Posterior, Signs, leaders, posterior, separation, twins_of, verdict
 
 QUIET, LOUD = Signs(False, 1.0), Signs(True, 1.0)
 
@@ -71,3 +71,24 @@ def test_each_verdict():
     assert said(Posterior(0.0, {"a": 0.1}, {}, 0.9, {})) == ("none_of_these", ())
     assert said(Posterior(0.0, {"a": 0.1}, {}, 0.0, {"a": 0.9})) == ("partial", ("a",))
     assert said(singles(a=0.2, b=0.2, c=0.2, d=0.2, e=0.2)) == ("cannot_tell", ())
+
+
+def test_something_left_speaks_before_a_name_and_the_leader_is_named():
+    sure = singles(a=0.97, b=0.01)
+    assert said(sure, Signs(True, 1.0, left=True, idle=True)) == ("none_of_these", ())
+    other = Posterior(0.0, {"a": 0.3, "b": 0.01}, {}, 0.0, {"b": 0.69})
+    assert said(other) == ("partial", ("a",))  # the unknown function stands beside b, but a explains more by itself
+
+
+def test_a_pair_is_named_where_only_twins_can_replace_its_members():
+    unsure = Posterior(0.0, {"a": 0.0}, {("a", "b"): 0.6, ("a", "c"): 0.4}, 0.0, {})
+    assert said(unsure) == ("partial", ("a",))
+    assert said(unsure, twins={"b": ("c",)}) == ("pair", ("a", "b"))
+    assert said(unsure, Signs(True, 1.0, mended="b")) == ("effect", ("b",))
+
+
+def test_the_leader_is_known_where_all_probabilities_of_effects_vanish():
+    """2000 nats behind an effect beside the unknown function every single probability is zero to a computer."""
+    p = posterior(Evidences(0.0, {"a": 10.0, "b": 4000.0}, {("a", "c"): 12.0}, 0.0, {"a": 6000.0}))
+    assert p.singles["b"] == 0.0 and leaders(p) == ("b",)
+    assert said(p) == ("partial", ("b",))

@@ -1,13 +1,14 @@
 """The whole walk on the toy: compare, diagnose, add, refuse; the same to the digit; a user's effect from a folder."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from effects.library import effects_of_file, library, package_effects
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, Spring, SpringModel, written
-from workbench.agreement import NOTHING_LEFT, agreement, repeats_itself
+from workbench.agreement import NOTHING_LEFT, PREDICTED, agreement, left_over, repeats_itself
 from workbench.as_json import comparison_json, diagnosis_json
 from workbench.bench import bench_of
 from workbench.calibration import FALSE_ALARM_RATE, alarm_threshold, empty_campaigns
@@ -15,10 +16,10 @@ from workbench.campaign import read_campaign
 from workbench.comparison import compare
 from workbench.diagnosis import candidates, diagnose, screen_of
 from workbench.errors import WorkbenchError
-from workbench.ledger import COLUMNS, read_ledger
+from workbench.ledger import COLUMNS, read_ledger, try_effect
 from workbench.model import Model
 from workbench.model_file import model_text, with_effects_of
-from workbench.walk import add_effect
+from workbench.walk import add_effect, by_evidence, walk
 
 
 def cubic(x):
@@ -234,6 +235,26 @@ def test_what_one_scan_shows_alone_does_not_repeat_itself(tmp_path):
     assert repeats_itself(bench, wave, held + wave) and not repeats_itself(bench, wave, held)
 
 
+def test_noise_confirms_an_expectation_no_more_often_than_the_bound(tmp_path):
+    """A likelihood ratio has mean one under noise, so that it exceeds exp(G) with probability below exp(-G)."""
+    bench = bench_of(*of(written(tmp_path / "c", n=200)), LIBRARY)
+    shape = np.sin(np.linspace(0, 9, 200))
+    unit = shape / np.linalg.norm(shape)
+    assert left_over(bench, 5 * unit, 5 * unit) == pytest.approx(5.0, rel=0.01)
+    assert left_over(bench, 3 * unit, 3 * unit) == 0.0 and PREDICTED == 6.0
+    noise = np.random.default_rng(5).standard_normal((2000, 200))
+    assert sum(repeats_itself(bench, 3.5 * unit, held) for held in noise) <= 9  # bound 5, 95 % point 9
+
+
+def test_one_station_alone_confirms_nothing(tmp_path):
+    bench = bench_of(*of(written(tmp_path / "c", n=200)), LIBRARY)
+    spike = np.where(np.arange(200) == 77, 13.0, 0.0)
+    random = np.random.default_rng(3)
+    noise = random.standard_normal((2, 200))
+    assert not repeats_itself(bench, spike, spike + noise[0])
+    assert agreement(bench, spike + noise[0], spike + noise[1]) < NOTHING_LEFT
+
+
 def test_without_repeats_it_still_answers_and_says_what_it_lacks(tmp_path):
     model, campaign = of(written(tmp_path / "c", cubic, repeats=1))
     found = diagnose(model, campaign, LIBRARY)
@@ -244,4 +265,26 @@ def test_ten_points_cannot_abstain(tmp_path):
     model, campaign = of(written(tmp_path / "c", lambda x: 0.3 * np.sin(400 * x), n=5))
     found = diagnose(model, campaign, LIBRARY)
     assert any("only 10 rows" in words for words in found.complaints)
-    assert found.verdict in ("cannot_tell", "nothing_missing", "none_of_these", "partial")
+    assert found.verdict == "cannot_tell" and set(found.abstention_power.values()) == {0.0}
+
+
+def test_the_walk_tries_the_next_name_where_one_is_refused(tmp_path):
+    model, campaign = of(written(tmp_path / "c", lambda x: cubic(x) + even(x)))
+    ledger, last = walk(model, campaign, LIBRARY, tmp_path)
+    assert {s.effect for s in ledger.steps if s.decision == "accepted"} == {"hardening", "bump"}
+    assert last.verdict == "nothing_missing"
+    judged = [s.held_out_chi2_per_n for s in ledger.steps if s.decision != "refused"]
+    assert judged == sorted(judged, reverse=True) and judged[-1] < 1.4
+
+
+def test_names_are_tried_by_the_evidence_of_each_alone(diagnosed):
+    one, other = diagnosed.ranking[0].name, diagnosed.ranking[1].name
+    assert by_evidence(replace(diagnosed, names=(other, one))) == (one, other)
+
+
+def test_a_step_tells_the_error_of_each_channel_in_percent_and_on_unseen_rows(hidden):
+    step = try_effect(*hidden, LIBRARY, "hardening").step
+    assert step.rms_error["pull.force"] < 1.2 * step.noise_floor["pull.force"]
+    assert step.held_out_rms_error["pull.force"] == pytest.approx(step.rms_error["pull.force"], rel=0.3)
+    size = step.rms_error["pull.force"] / step.rms_error_percent["pull.force"] * 100
+    assert size == pytest.approx(5.8, rel=0.1), "rms of 1000 N/m over 10 mm either way"

@@ -13,6 +13,7 @@ The force is positive when it opposes a positive velocity. A shunt of 1e6 ohm is
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from math import isinf
 from typing import Mapping
 
@@ -81,10 +82,12 @@ def impedance(design: Damper, frequency: np.ndarray, amplitude: np.ndarray, shun
     if _is_linear(design) and not design.mount_clearance:
         return linear_impedance(design, frequency, shunt)
     points, places = np.unique(np.stack([frequency, amplitude, shunt]), axis=1, return_inverse=True)
-    return _impedance_of_points(design, Drive(*points))[places]  # repeats share their point
+    return _impedance_of_points(design, points.tobytes())[places]  # repeats share their point
 
 
-def _impedance_of_points(design: Damper, drive: Drive) -> np.ndarray:
+@lru_cache(maxsize=16)  # instruments and held-out rows ask for the same damper again
+def _impedance_of_points(design: Damper, points: bytes) -> np.ndarray:
+    drive = Drive(*np.frombuffer(points).reshape(3, -1))
     tight = replace(design, mount_clearance=0.0)
     if _is_linear(tight):
         answer = linear_impedance(tight, drive.frequency, drive.shunt)

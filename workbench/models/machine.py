@@ -28,14 +28,17 @@ from workbench.errors import WorkbenchError
 from workbench.models.device import names, numbers
 from workbench.models.machine_build import MeshPlan, SurrogateBuilder
 from workbench.models.machine_field import LoadedState
+from workbench.models.machine_options import options
 from workbench.models.machine_surrogate import Surrogate, averaged, evaluated, slope
-from workbench.table import Table, Tolerance
+from workbench.recommend import Option
+from workbench.table import Campaign, Table, Tolerance
 
 CACHE = Path("results") / "cache"
 LABORATORY = 22.0  # degC, at which a device table states its remanence when it does not say
 _MAGNET_MEMORY = 61  # rows; a magnet warms over minutes, what its reading does from row to row is noise
 _ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
 _AROUND = round(2 * np.pi / _ANGLE_GRID)
+_REMEMBERED = 24  # answers
 _TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
 
 _DIMENSIONS = (
@@ -126,7 +129,13 @@ class MachineBench:
             raise WorkbenchError("the machine bench answers after prepare: use prepared(design, tables)")
         if kind not in _KINDS:
             raise WorkbenchError(f"the machine bench has no measurement kind {kind}: use one of {', '.join(_KINDS)}")
-        return _KINDS[kind](_Answers(self.surrogate, design), conditions)
+        return dict(self._remembered(design, kind, _Asked(conditions)))
+
+    @cached_property
+    def _remembered(self) -> Callable[..., dict[str, np.ndarray]]:
+        """An error of an instrument leaves the machine as it is: many fits ask the same again."""
+        answer = lambda design, kind, asked: _KINDS[kind](_Answers(self.surrogate, design), asked.columns)  # noqa: E731
+        return lru_cache(maxsize=_REMEMBERED)(answer)
 
     def exact(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
@@ -135,6 +144,10 @@ class MachineBench:
     def recentred(self, design: MachineAsBuilt) -> MachineBench:
         """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing."""
         return replace(self, surrogate=self.builder.about(self.about_drawing, design))
+
+    def options(self, design: MachineAsBuilt, campaign: Campaign) -> list[Option]:
+        """What could be measured next, see ``workbench.recommend``."""
+        return options(campaign.tables)
 
     def numerical(self, kind: str) -> dict[str, float]:
         """Standard uncertainty of the responses of a kind that the mesh leaves, SI."""
@@ -155,6 +168,20 @@ class MachineBench:
             found["locked_rotor"] = {"torque": _NUMERICAL["locked_rotor"] * torque}
             found["flux_linkage"] = {f"dpsi_{x}": _NUMERICAL["flux_linkage"] * linkage for x in _PHASES}
         return found
+
+
+class _Asked:
+    """Conditions that are equal when all values in them are."""
+
+    def __init__(self, columns: Columns):
+        self.columns = columns
+        self.content = tuple((name, np.asarray(values).tobytes()) for name, values in columns.items())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self.content == other.content
+
+    def __hash__(self) -> int:
+        return hash(self.content)
 
 
 _COGGING_OF_MESH = 0.01  # cogging of good meshes of two codes differs by 0.5 mNm of 49 mNm (12 slots, 10 poles)

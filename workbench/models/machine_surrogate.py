@@ -81,7 +81,13 @@ class Surrogate:
 
     def position(self, design: MachineAsBuilt) -> np.ndarray:
         """Coordinates of a design, from the drawing on."""
-        return np.array([c.read(design) for c in self.coordinates]) - self._drawn
+        return self._positions(design)
+
+    @cached_property
+    def _positions(self) -> Callable[[MachineAsBuilt], np.ndarray]:
+        """Asked without and with current in turn."""
+        read = lambda design: np.array([c.read(design) for c in self.coordinates]) - self._drawn  # noqa: E731
+        return lru_cache(maxsize=_REMEMBERED)(read)
 
     @cached_property
     def _drawn(self) -> np.ndarray:
@@ -91,13 +97,13 @@ class Surrogate:
     def _centre(self) -> MachineAsBuilt:
         return self.origin or self.nominal
 
-    def _projection(self, turns: Sequence[float]) -> np.ndarray:
+    def _projection(self, turns: tuple[float, ...]) -> np.ndarray:
         """From a sample to torque and the flux linkages of the phases per metre (4, 1 + coils)."""
-        matrix = np.zeros((4, 1 + len(turns)))
-        matrix[0, 0] = 1.0
-        for k, coil in enumerate(self.layout.coils):
-            matrix[1 + coil.phase, 1 + k] = coil.sign * turns[k]
-        return matrix
+        return self._projections(turns)
+
+    @cached_property
+    def _projections(self) -> Callable[[tuple[float, ...]], np.ndarray]:
+        return lru_cache(maxsize=_REMEMBERED)(lambda turns: _projection(self.layout, turns))
 
     # ---- without current -----------------------------------------------------------------------------------------
 
@@ -155,7 +161,7 @@ class Surrogate:
         added = self._loaded_added(design)
         return sample @ self._projection(design.turns).T + added[:, which].T
 
-    def _ampere_turns(self, turns: Sequence[float], currents: np.ndarray) -> np.ndarray:
+    def _ampere_turns(self, turns: tuple[float, ...], currents: np.ndarray) -> np.ndarray:
         """Of every coil (n, coils) for phase currents (n, 3)."""
         return currents @ self._projection(turns)[1:, 1:]
 
@@ -172,6 +178,14 @@ class Surrogate:
         if distance.min(1).max(initial=0.0) > 1.0:
             raise WorkbenchError("a row lies far from every solved state: prepare the machine with the table it is in")
         return found
+
+
+def _projection(layout: WindingLayout, turns: tuple[float, ...]) -> np.ndarray:
+    matrix = np.zeros((4, 1 + len(turns)))
+    matrix[0, 0] = 1.0
+    for k, coil in enumerate(layout.coils):
+        matrix[1 + coil.phase, 1 + k] = coil.sign * turns[k]
+    return matrix
 
 
 def _wrapped(angle: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from figures.style import BLUE, GREEN, GREY, LIGHT_GREY, ORANGE, new_figure, show_grid, styled
 from workbench.findings import Diagnosis, NextMeasurement, SizePosterior
-from workbench.report.channels import ALARM, bars_height
+from workbench.report.channels import ALARM, bar_rows
 from workbench.report.words import amount, label, plain, probability_text
 
 _LEAST, _MOST = 4, 10  # explanations of the probability chart
@@ -19,9 +19,7 @@ _NOTHING, _NONE = "nothing missing", "none of these"
 def probabilities(d: Diagnosis) -> Figure:
     """Probability of every explanation, the likeliest effects first, with nothing missing and none of these."""
     rows = _explanations(d)
-    figure = new_figure(bars_height(0.85 * len(rows)))
-    axes = figure.subplots()
-    place = np.arange(len(rows))[::-1]
+    figure, axes, place = bar_rows(len(rows), 0.85)
     axes.barh(place, [p for _, p, _ in rows], height=0.65, color=[colour for *_, colour in rows])
     axes.set_yticks(place, [name for name, *_ in rows])
     for y, (_, p, _) in zip(place, rows):
@@ -76,9 +74,7 @@ def _density(axes, p: SizePosterior) -> None:
 def next_measurements(options: tuple[NextMeasurement, ...]) -> Figure:
     """Expected gain of evidence of each measurement, for its declared cost, the best first."""
     shown = sorted(options, key=lambda m: -m.gain_nats / m.cost)[:_MOST]
-    figure = new_figure(bars_height(len(shown)))
-    axes = figure.subplots()
-    place = np.arange(len(shown))[::-1]
+    figure, axes, place = bar_rows(len(shown))
     axes.barh(place, [m.gain_nats / m.cost for m in shown], height=0.62, color=ORANGE)
     axes.set_yticks(place, [m.words or plain(m.kind) for m in shown])
     for y, m in zip(place, shown):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures.style import (
@@ -29,19 +30,25 @@ MOST_SERIES = 7  # told apart by colour and named
 _WIDE = 500.0  # end over start of a logarithmic axis above which only powers of ten are named
 _BAND = 2.0  # u; some 95 of 100 residuals of pure noise lie inside
 _ROW = 0.42  # inch, a row of horizontal bars
+_LEAST_HEIGHT = 1.8  # inch
 
 
-def bars_height(rows: int, least: float = 1.8) -> float:
-    """Height of a figure of horizontal bars [inch]."""
-    return max(least, 1.1 + _ROW * rows)
+def bar_rows(count: int, height: float = 1.0) -> tuple[Figure, Axes, np.ndarray]:
+    """A figure of horizontal bars and the places of its rows from the top; height: of a row, in rows of one bar."""
+    figure = new_figure(max(_LEAST_HEIGHT, 1.1 + _ROW * height * count))
+    return figure, figure.subplots(), np.arange(count)[::-1]
+
+
+def panels(count: int, height: float, rest: float, columns: int = 1, **grid) -> tuple[Figure, np.ndarray]:
+    """A figure of rows of axes one below the other (count, columns); height of one and of the rest [inch]."""
+    figure = new_figure(rest + height * count)
+    return figure, figure.subplots(count, columns, squeeze=False, **grid)
 
 
 @styled
 def scoreboard(scores: tuple[ChannelScore, ...]) -> Figure:
     """chi2/n of every channel: nominal inputs, fitted inputs, held-out rows; the line is pure noise."""
-    figure = new_figure(bars_height(len(scores) * 1.6))
-    axes = figure.subplots()
-    place = np.arange(len(scores))[::-1]
+    figure, axes, place = bar_rows(len(scores), 1.6)
     parts = (
         ("nominal inputs", LIGHT_GREY, [s.chi2_per_n_nominal for s in scores]),
         ("tolerances fitted", BLUE, [s.chi2_per_n for s in scores]),

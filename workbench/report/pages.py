@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import MappingProxyType
+from typing import Mapping
 
 import pandas as pd
 
@@ -10,9 +12,11 @@ from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Tabl
 from workbench.findings import ChannelFit, Comparison, Diagnosis, Ledger, LedgerStep, Ranked, Separation
 from workbench.report import beliefs, channels, operating_range, structure
 from workbench.report.sentences import (
+    TOLD_APART,
     Reading,
     channels_off,
     comparison_sentence,
+    conclusions,
     leading,
     ledger_sentence,
     power_sentence,
@@ -23,42 +27,37 @@ from workbench.report.sentences import (
 from workbench.report.waterfall import waterfall
 from workbench.report.words import amount, bounds, chi2_text, interval, percent, plain, probability_text, signed
 
+_NOTHING_MORE: Mapping[str, str] = MappingProxyType({})
 _FEW_MAPS = 6  # regime maps of one picture
 _MOST_SEPARATIONS = 12  # rows of the table
-TOLD_APART = 3.0  # nats
 
 
 def write_comparison_report(path: Path, comparison: Comparison) -> None:
     """Write the page of a comparison: summary, failing channel, the nine views V0 to V8."""
     effects = f" with {', '.join(map(plain, comparison.effects))}" if comparison.effects else ""
-    write_report(
-        path,
-        comparison_sections(comparison),
-        title=f"Model against measurement: {comparison.campaign}",
-        subtitle=f"Model {comparison.model}{effects}",
-        provenance=dict(comparison.provenance),
-    )
+    _write(path, comparison, comparison_sections, "Model against measurement", effects)
 
 
 def write_diagnosis_report(path: Path, diagnosis: Diagnosis) -> None:
     """Write the page of a diagnosis: verdict, probabilities, the fit, sizes, what was tried, what to measure next."""
-    write_report(
-        path,
-        diagnosis_sections(diagnosis),
-        title=f"What is missing: {diagnosis.campaign}",
-        subtitle=f"Model {diagnosis.model}; {len(diagnosis.ranking)} effects tried",
-        provenance={"seed": str(diagnosis.seed), "time": f"{diagnosis.wall_s:.0f} s", **diagnosis.provenance},
-    )
+    made = {"seed": str(diagnosis.seed), "time": f"{diagnosis.wall_s:.0f} s"}
+    tried = f"; {len(diagnosis.ranking)} effects tried"
+    _write(path, diagnosis, diagnosis_sections, "What is missing", tried, made)
 
 
 def write_ledger_report(path: Path, ledger: Ledger) -> None:
     """Write the page of a ledger: waterfall of the falling error, every step, errors of the channels."""
+    _write(path, ledger, ledger_sections, "The falling error", ", effect after effect")
+
+
+def _write(path: Path, found, sections_of, heading: str, about: str, made: Mapping[str, str] = _NOTHING_MORE) -> None:
+    """A page. about: what follows the name of the model;  made: provenance beside the hashes of the files"""
     write_report(
         path,
-        ledger_sections(ledger),
-        title=f"The falling error: {ledger.campaign}",
-        subtitle=f"Model {ledger.model}, effect after effect",
-        provenance=dict(ledger.provenance),
+        sections_of(found),
+        title=f"{heading}: {found.campaign}",
+        subtitle=f"Model {found.model}{about}",
+        provenance={**made, **found.provenance},
     )
 
 
@@ -183,6 +182,7 @@ def diagnosis_sections(d: Diagnosis) -> tuple[Section, ...]:
     sections = [
         Section("Verdict", (says if calm else Remark(says), *_verdict_numbers(d), power_sentence(d))),
         Section("How likely each explanation is", (_probabilities(d),)),
+        *_concluded(d),
         *_before_and_after(d),
         *_sizes(d),
         *_signature(d),
@@ -221,6 +221,8 @@ def _leader_words(d: Diagnosis) -> str:
 
 
 def _fall(before: float | None, after: float | None) -> str:
+    if before is None and after is None:
+        return "–"
     return f"{chi2_text(before)}\N{NO-BREAK SPACE}→\N{NO-BREAK SPACE}{chi2_text(after)}"
 
 
@@ -339,6 +341,11 @@ def _can_be_seen(d: Diagnosis) -> tuple[Section, ...]:
     return (Section("What these data can show", (said, Table(pd.DataFrame(rows), "Detection limits."))),)
 
 
+def _concluded(d: Diagnosis) -> tuple[Section, ...]:
+    said = conclusions(d)
+    return (Section("What can and cannot be concluded", said),) if said else ()
+
+
 def _next(d: Diagnosis) -> tuple[Section, ...]:
     if not d.next_measurements:
         return ()
@@ -362,7 +369,7 @@ def ledger_sections(ledger: Ledger) -> tuple[Section, ...]:
         Section("Where the walk stands", (ledger_sentence(ledger),)),
         Section("The falling error", (Picture(waterfall(ledger), caption),)),
         Section("Every step", (_steps(ledger), *_reasons(ledger))),
-        Section("Error of each channel", (_channels(ledger),)),
+        Section("Error of each channel", _channels(ledger)),
     )
 
 
@@ -392,13 +399,21 @@ def _reasons(ledger: Ledger) -> tuple[Remark, ...]:
     )
 
 
-def _channels(ledger: Ledger) -> Table:
+def _channels(ledger: Ledger) -> tuple[Table, ...]:
+    """Rms errors over all rows, and over those held out where there are any."""
+    caption = "Rms error of each channel after each step, and what noise alone leaves."
+    every = _errors(ledger, [s.rms_error for s in ledger.steps], caption)
+    held_out = [s.held_out_rms_error for s in ledger.steps]
+    return (every, _errors(ledger, held_out, "The same of held-out rows only.")) if any(held_out) else (every,)
+
+
+def _errors(ledger: Ledger, errors: list[Mapping[str, float]], caption: str) -> Table:
     last = ledger.steps[-1]
     rows = []
     for channel, unit in last.units.items():
         row = {"channel": channel, "noise": amount(last.noise_floor.get(channel), unit)}
-        rows.append(row | {_column(s): amount(s.rms_error.get(channel), unit) for s in ledger.steps})
-    return Table(pd.DataFrame(rows), "Rms error of each channel after each step, and what noise alone leaves.")
+        rows.append(row | {_column(s): amount(e.get(channel), unit) for s, e in zip(ledger.steps, errors)})
+    return Table(pd.DataFrame(rows), caption)
 
 
 def _column(step: LedgerStep) -> str:

@@ -19,6 +19,7 @@ from workbench.findings import (
     Parity,
     Ranked,
     RegimeMap,
+    Sequence,
     Whiteness,
 )  # fmt: skip
 from workbench.report.words import (
@@ -40,6 +41,9 @@ GOAL = 1.2  # chi2/n up to which a channel is at the noise
 ALARMING_PULL = 3.0  # sigma
 ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
+IMPROBABLE = 0.05  # probability of "nothing is missing" below which something is
+POOR = 2.0  # chi2/n of fitted rows above which an effect does not explain them
+TOLD_APART = 3.0  # nats
 ALARMING_PART = 1.5  # odd or even part over what noise alone gives
 
 ORDER_WORDS = {
@@ -92,10 +96,11 @@ def readings(comparison: Comparison) -> tuple[Reading, ...]:
 def fails(score: ChannelScore, channels: int) -> bool:
     """Whether a channel is further off than noise makes likely.
 
-    chi2/n above 1.2 and above the 1 % / channels quantile of F(n, n/2): the size of the noise was itself measured, from
-    the n/2 differences that two repeats give.
+    chi2/n above 1.2 and above the 1 % / channels quantile of F(n, dof): the size of the noise is itself known only as
+    well as the dof of its measurement say; n/2, as two repeats give, where they are not told.
     """
-    return score.chi2_per_n > max(GOAL, float(fisher.isf(ALARMING_P / channels, score.n, score.n / 2)))
+    dof = score.n / 2 if score.noise_dof is None else score.noise_dof
+    return score.chi2_per_n > max(GOAL, float(fisher.isf(ALARMING_P / channels, score.n, dof)))
 
 
 def channels_off(c: Comparison) -> list[ChannelScore]:
@@ -130,7 +135,7 @@ def _scoreboard(c: Comparison) -> tuple[str, bool]:
     if not off:
         worst = max(c.scoreboard, key=lambda score: score.chi2_per_n)
         return (
-            f"All {len(c.scoreboard)} channels are at the noise, as far as the repeats tell its size; the worst, "
+            f"All {len(c.scoreboard)} channels are at the noise, as far as its size is known; the worst, "
             f"{worst.channel}, has chi²/n = {chi2_text(worst.chi2_per_n)}.",
             False,
         )
@@ -222,14 +227,15 @@ def _orders(c: Comparison):
     above = np.flatnonzero(tests * _order_chance(worst) < ALARMING_P)
     if not len(above):
         return (
-            f"No order of {listed(s.channel for s in c.orders)} stands above what {tests} orders of noise give.",
+            f"No order of {listed(dict.fromkeys(s.channel for s in c.orders))} stands above what {tests} orders of "
+            "noise give.",
             False,
         )
     families = {}
     for k in above[np.argsort(-worst.amplitude[above])]:
         families.setdefault(worst.classes[k], []).append(f"{worst.orders[k]:g}")
     said = "; ".join(f"{', '.join(orders[:5])} {ORDER_WORDS[family]}" for family, orders in families.items())
-    return f"{worst.channel} has orders above the noise: {said}.", True
+    return f"{worst.title} has orders above the noise: {said}.", True
 
 
 def _order_chance(spectrum: OrderSpectrum) -> np.ndarray:
@@ -277,15 +283,20 @@ def _sequences(c: Comparison):
     worst = min(c.sequences, key=lambda s: s.p_value)
     if worst.p_value * len(c.sequences) > ALARMING_P:
         return (
-            f"No drift: the strongest trend, in {worst.channel}, is {signed(worst.trend)} u from first to last "
+            f"No drift: the strongest trend, in {worst.channel}, is {signed(worst.trend)} u from the {_ends(worst)} "
             f"({p_text(worst.p_value)}).",
             False,
         )
     return (
-        f"{worst.channel} moves by {signed(worst.trend)} u from the first to the last {plain(worst.axis.name)} "
+        f"{worst.channel} moves by {signed(worst.trend)} u from the {_ends(worst)} "
         f"({p_text(worst.p_value)}): a drift, unless a condition was changed in this order.",
         True,
     )
+
+
+def _ends(s: Sequence) -> str:
+    name = plain(s.axis.name)
+    return f"first to the last {name}" if name in ("sample", "time") else f"lowest to the highest {name}"
 
 
 def _whiteness(c: Comparison):
@@ -341,8 +352,14 @@ def verdict_sentence(d: Diagnosis) -> str:
         "pair": lambda: f"Two effects are missing together: {listed(names)}.",
         "partial": lambda: f"{_explains(names)} a part{_size(d)}, but something remains.",
         "none_of_these": lambda: f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}.",
-        "cannot_tell": lambda: "These data cannot tell whether something is missing.",
+        "cannot_tell": lambda: _cannot_tell(d),
     }[d.verdict]() + f" Probability {probability_text(d.probability)}."
+
+
+def _cannot_tell(d: Diagnosis) -> str:
+    if d.p_nothing_missing < IMPROBABLE:
+        return "Something is missing, but these data cannot tell what."
+    return "These data cannot tell whether something is missing."
 
 
 def _explains(names: list[str]) -> str:
@@ -382,6 +399,49 @@ def power_sentence(d: Diagnosis) -> str:
         " A definite name from data this weak must not be trusted: a set like this cannot abstain." if weak else ""
     )
     return f"Of unknown smooth discrepancies these data would flag {said}, u being that of one reading.{closing}"
+
+
+def conclusions(d: Diagnosis) -> tuple[str, ...]:
+    """What these data allow to be concluded, and then what they do not."""
+    return _can_be_said(d) + _cannot_be_said(d)
+
+
+def _can_be_said(d: Diagnosis) -> tuple[str, ...]:
+    if d.p_nothing_missing > IMPROBABLE:
+        return ()
+    said = ["It can be concluded that the model with its tolerances does not explain these data."]
+    fitted = [r for r in d.ranking if r.parameters]
+    best = min(fitted, key=lambda r: r.chi2_per_n_after, default=None)
+    if best is not None and best.chi2_per_n_after > POOR:
+        left = chi2_text(best.chi2_per_n_after)
+        said.append(
+            "No single effect of the library explains them either: the best, "
+            f"{plain(best.name)}, leaves chi²/n = {left}."
+        )
+    return tuple(said)
+
+
+def _cannot_be_said(d: Diagnosis) -> tuple[str, ...]:
+    said = []
+    pairs = {frozenset((s.first, s.second)): [] for s in d.separations}
+    for s in d.separations:
+        pairs[frozenset((s.first, s.second))].append(s.nats)
+    alike = sum(min(nats) < TOLD_APART for nats in pairs.values())
+    if d.p_nothing_missing <= IMPROBABLE and alike > len(pairs) / 2:
+        said.append(
+            f"It cannot be concluded which effect it is: of {len(pairs)} pairs of effects {alike} look alike in these "
+            "data."
+        )
+    missed = {size: 1 - share for size, share in d.abstention_power.items() if share < 0.5}
+    if missed:
+        size = max(missed)
+        said.append(
+            f"Nor can these data abstain: {percent(missed[size])} of unknown discrepancies of {size:g} u would be "
+            "overlooked or taken for a known effect, so that a name from them alone is not to be believed."
+        )
+    if d.ranking and all(r.held_out_chi2_per_n_before is None for r in d.ranking):
+        said.append("Nothing was checked on rows that no fit has seen: none are held out.")
+    return tuple(said)
 
 
 # ---- ledger ---------------------------------------------------------------------------------------------------------

@@ -17,12 +17,11 @@ from figures.style import (
     SKY,
     VERMILION,
     YELLOW,
-    new_figure,
     show_grid,
     styled,
 )  # fmt: skip
 from workbench.findings import OrderSpectrum, Parity, Pull, Scaling, Sequence, SignatureMatch, Whiteness
-from workbench.report.channels import ALARM, MOST_POINTS, bars_height
+from workbench.report.channels import ALARM, MOST_POINTS, bar_rows, panels
 from workbench.report.sentences import ALARMING_P, ALARMING_PULL
 from workbench.report.words import amount, axis_label, label, p_text, plain, quantity_of, signed
 
@@ -45,9 +44,7 @@ _MOST_ORDERS_NAMED = 8
 @styled
 def pulls(found: tuple[Pull, ...]) -> Figure:
     """Shift of every declared uncertainty over its sigma; red beyond three."""
-    figure = new_figure(bars_height(len(found)))
-    axes = figure.subplots()
-    place = np.arange(len(found))[::-1]
+    figure, axes, place = bar_rows(len(found))
     values = np.array([pull.pull for pull in found])
     axes.axvspan(-ALARMING_PULL, ALARMING_PULL, color=LIGHT_GREY, alpha=0.5, linewidth=0)
     axes.axvline(0.0, color=BLACK, linewidth=0.8)
@@ -81,8 +78,8 @@ def _is_relative(pull: Pull) -> bool:
 def order_spectra(spectra: tuple[OrderSpectrum, ...]) -> Figure:
     """Residual amplitude of every mechanical order, coloured by family, against the noise."""
     shown = spectra[:MOST_CHANNELS]
-    figure = new_figure(0.6 + 2.5 * len(shown))
-    axes = figure.subplots(len(shown), 1, squeeze=False).ravel()
+    figure, axes = panels(len(shown), 2.5, rest=0.6)
+    axes = axes.ravel()
     for axis, spectrum in zip(axes, shown):
         _spectrum(axis, spectrum)
     axes[-1].set_xlabel("mechanical order / (1/revolution)")
@@ -106,7 +103,7 @@ def _spectrum(axes, spectrum: OrderSpectrum) -> None:
         axes.annotate(
             f"{orders[k]:g}", (orders[k], amplitude[k]), (0, 2), textcoords="offset points", ha="center", fontsize=9
         )
-    axes.set_title(spectrum.channel, loc="left")
+    axes.set_title(spectrum.title, loc="left")
     axes.set_ylabel(label(f"residual {quantity_of(spectrum.channel)}", spectrum.unit))
     axes.set_ylim(0, 1.18 * max(amplitude.max(), spectrum.floor.max()))
     show_grid(axes)
@@ -115,9 +112,7 @@ def _spectrum(axes, spectrum: OrderSpectrum) -> None:
 @styled
 def scalings(found: tuple[Scaling, ...]) -> Figure:
     """Exponent of the residual's growth with each condition and its 90 % interval."""
-    figure = new_figure(bars_height(len(found)))
-    axes = figure.subplots()
-    place = np.arange(len(found))[::-1]
+    figure, axes, place = bar_rows(len(found))
     for y, s in zip(place, found):
         colour = BLUE if s.meaning else GREY
         axes.plot([s.low90, s.high90], [y, y], color=colour, linewidth=2.5, solid_capstyle="butt")
@@ -138,9 +133,7 @@ def scalings(found: tuple[Scaling, ...]) -> Figure:
 @styled
 def parities(found: tuple[Parity, ...]) -> Figure:
     """Odd and even part of the residual under each reversal, against what noise alone gives."""
-    figure = new_figure(bars_height(1.5 * len(found)))
-    axes = figure.subplots()
-    place = np.arange(len(found))[::-1]
+    figure, axes, place = bar_rows(len(found), 1.5)
     axes.barh(place + 0.2, [p.odd for p in found], height=0.36, color=BLUE, label="odd part (loss, friction)")
     axes.barh(place - 0.2, [p.even for p in found], height=0.36, color=ORANGE, label="even part (offset, misalignment)")
     for y, p in zip(place, found):
@@ -156,9 +149,8 @@ def parities(found: tuple[Parity, ...]) -> Figure:
 def sequences(found: tuple[Sequence, ...]) -> Figure:
     """Residual in the order of acquisition, scans in alternating colours, with the straight trend."""
     shown = found[:MOST_CHANNELS]
-    figure = new_figure(0.4 + 1.75 * len(shown))
-    axes = figure.subplots(len(shown), 1, squeeze=False).ravel()
-    for axis, sequence in zip(axes, shown):
+    figure, axes = panels(len(shown), 1.75, rest=0.4)
+    for axis, sequence in zip(axes.ravel(), shown):
         _sequence(axis, sequence)
     return figure
 
@@ -181,8 +173,7 @@ def _sequence(axes, s: Sequence) -> None:
 def whiteness(found: tuple[Whiteness, ...]) -> Figure:
     """Autocorrelation within scans with its 99 % band, and the dependence on each condition."""
     shown = found[:MOST_CHANNELS]
-    figure = new_figure(0.4 + 2.0 * len(shown))
-    axes = figure.subplots(len(shown), 2, squeeze=False, width_ratios=(3, 2))
+    figure, axes = panels(len(shown), 2.0, rest=0.4, columns=2, width_ratios=(3, 2))
     for (left, right), w in zip(axes, shown):
         _autocorrelation(left, w)
         _dependences(right, w)
@@ -219,9 +210,7 @@ def _dependences(axes, w: Whiteness) -> None:
 def signatures(found: tuple[SignatureMatch, ...]) -> Figure:
     """Cosine of the residual with what each effect would leave, the nearest first."""
     shown = sorted(found, key=lambda s: -abs(s.cosine))[:_MOST_EFFECTS]
-    figure = new_figure(bars_height(0.8 * len(shown)))
-    axes = figure.subplots()
-    place = np.arange(len(shown))[::-1]
+    figure, axes, place = bar_rows(len(shown), 0.8)
     values = np.array([s.cosine for s in shown])
     axes.barh(place, np.abs(values), height=0.65, color=np.where(values < 0, SKY, BLUE))
     axes.set_yticks(place, [plain(s.name) for s in shown])
