@@ -232,3 +232,17 @@ def test_what_a_second_parameter_of_an_effect_explains_is_not_foreign():
     other = judge.stacked(damper_bench._stribeck(setup.state, 1.0, velocity=0.08)) - base
     alone, all_forms = (other - s @ np.linalg.lstsq(s, other, rcond=None)[0] for s in (taken[:, :1], taken))
     assert np.sum(all_forms**2) < 0.2 * np.sum(alone**2)
+
+
+def test_what_a_tolerance_does_by_far_more_than_itself_adds_no_more_than_its_penalty():
+    setup = DQ.setup(np.random.default_rng(4))
+    judge = hiding._Judge(DQ, setup, setup.state, Noise.ideal())
+    base = judge.stacked(setup.state)
+    sensitivities = judge.sensitivities(base)
+    linear, followed = [], []
+    for name in setup.tolerance:
+        far = DQ.moved(setup, setup.state, name, 6.0)
+        linear.append(judge.visibility(far, sensitivities, base))
+        followed.append(judge.beyond_tolerances(far, sensitivities, base))
+    assert max(followed) <= 36.0 * 1.01
+    assert max(linear) > 2 * 36.0  # where the bench is taken to be linear
