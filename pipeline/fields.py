@@ -14,7 +14,7 @@ from study.read import read_study
 
 MACHINES = ("reference", "matched")
 STATES = ("no_current", "nominal", "overload")
-_STEPS = 72  # over one electrical period
+_STEPS = 144  # over one electrical period: twelve in a period of the cogging of 12 slots and 10 poles
 ROTATIONS = {machine: f"rotation_{machine}.csv" for machine in MACHINES}
 FIELDS = {(machine, state): f"{machine}_{state}.vtu" for machine in MACHINES for state in STATES}
 
