@@ -24,6 +24,8 @@ import numpy as np
 from benchmarks.blind_figure import confusion_figure, reliability_figure
 from benchmarks.blind_metrics import Metric, score
 from benchmarks.inverse_crime import committed
+from benchmarks.recommender_score import RecommenderScore, Tried, ambiguous
+from benchmarks.recommender_score import score as score_advice
 from benchmarks.this_machine import machine_name
 from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
 from benchmarks.virtual_benches.hiding import hide
@@ -33,6 +35,7 @@ from pipeline.parallel import Interrupted, default_workers, run_parallel
 from workbench.base_models import nominal_model
 from workbench.campaign import read_campaign
 from workbench.diagnosis import diagnose
+from workbench.errors import WorkbenchError
 
 PROJECT = Path(__file__).resolve().parent.parent
 RESULTS = PROJECT / "results" / "reference" / "blind_score"
@@ -48,6 +51,8 @@ BENCHES = {
 IN_FULL_FIELD = {"null": 6, "single": 12, "outside": 3, "pair": 3}  # of the machine, besides
 FIELD_START = 500  # seeds of these; they hide other things than the expanded ones
 INVERSE = {"null": 40, "single": 40}  # of each lumped bench, under the inverse crime
+ADVICE = 10  # cases of each lumped bench in which the advice on what to measure next is tried
+SEARCHED = 80  # seeds in which they are looked for
 REPEATED = 6  # cases that are diagnosed twice; the answers must agree to the digit
 
 
@@ -73,8 +78,31 @@ def score_case(case: dict) -> dict:
         if case["crime"]:
             campaign, answer = committed(campaign, library(), tuple(answer.effects), answer)
         start = perf_counter()
-        found = diagnose(nominal_model(campaign), campaign, library(), SEED)
-    return {**case, **_answer(answer), **_said(found, answer), "wall_s": perf_counter() - start}
+        said = _told(campaign, answer)
+    return {**case, **_answer(answer), **said, "wall_s": perf_counter() - start}
+
+
+def _told(campaign, answer: Answer) -> dict:
+    """What the tool said; a diagnosis that ends with an error is a wrong answer and stops no other case."""
+    try:
+        return _said(diagnose(nominal_model(campaign), campaign, library(), SEED), answer)
+    except WorkbenchError as error:
+        nothing = {"names": [], "alternatives": {}, "intervals": {}, "held_out_before": None, "held_out_after": None}
+        zero = dict.fromkeys(("probability", "p_nothing_missing", "p_none_of_these"), 0.0)
+        return {"verdict": "error", "first": str(error), **zero, **nothing}
+
+
+def advice(task: dict) -> list[dict]:
+    """Cases of one bench in which there is something to advise, as ``recommender_score.Tried``."""
+    return [asdict(case) for case in ambiguous(task["bench"], task["start"], ADVICE, SEARCHED)]
+
+
+def all_advice(benches: list[str], checkpoint: Path) -> RecommenderScore:
+    """The advice on all lumped benches of these."""
+    chosen = {f"advice {b}": {"bench": b, "start": SCORED_START} for b in benches if b != "machine"}
+    done = Checkpoint(checkpoint, fingerprint())
+    found = run_parallel(advice, chosen, default_workers(), done, "advice what to measure")
+    return score_advice(Tried(**case) for cases in found.values() for case in cases)
 
 
 def _made(case: dict) -> tuple[Bench, Answer]:
@@ -178,12 +206,13 @@ def sets_of(cases: list[dict]) -> dict[str, list[Metric]]:
     return {"damper and dq": score(lumped)} | sets | ({"inverse crime": score(crime)} if crime else {})
 
 
-def write(cases: list[dict], wall_s: float, changed: int, folder: Path) -> None:
+def write(cases: list[dict], wall_s: float, changed: int, advised: RecommenderScore, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     sets = sets_of(cases)
     record = {
         "metrics": {name: [asdict(metric) for metric in metrics] for name, metrics in sets.items()},
         "cases": len(cases),
+        "advice": asdict(advised) | {"share_of_oracle": advised.share, "passed": advised.passed},
         "wall_s": wall_s,
         "answers_that_changed_on_repetition": changed,
         "repeated": REPEATED,
@@ -217,7 +246,18 @@ def _summary(sets: dict[str, list[Metric]], record: dict) -> str:
         "chi2 >= 20 beyond tolerances and instruments, a truth outside the library when it keeps as much beside the best "
         "effect. Winding temperature and contact resistance are the same law and count as one.\n\n"
         f"{table_of(sets)}\n\n"
+        f"Advice on what to measure next: {_advice_line(record['advice'])}\n\n"
         f"{record['answers_that_changed_on_repetition']} of {record['repeated']} repeated diagnoses differed.\n"
+    )
+
+
+def _advice_line(advice: dict) -> str:
+    if not advice["cases"]:
+        return "no case."
+    return (
+        f"{advice['cases']} cases; the probability of the truth rises by {advice['advised']:.3f} with the advised "
+        f"measurement, by {advice['oracle']:.3f} with the best one (share {advice['share_of_oracle']:.2f}, asked 0.8), "
+        f"by {advice['fixed']:.3f} with the best fixed one, by {advice['blind']:.3f} with any."
     )
 
 
@@ -263,9 +303,11 @@ def _score(benches: list[str]) -> None:
     chosen |= tasks(SCORED_START, {bench: INVERSE for bench in benches if bench != "machine"}, crime=True)
     if "machine" in benches:
         chosen |= tasks(SCORED_START + FIELD_START, {"machine": IN_FULL_FIELD}, field=True)
-    cases = all_cases(chosen, RESULTS.parent.parent / "blind_score_cases.jsonl", "blind cases")
+    unfinished = RESULTS.parent.parent
+    cases = all_cases(chosen, unfinished / "blind_score_cases.jsonl", "blind cases")
     changed = repeated(cases)
-    write(cases, perf_counter() - start, changed, RESULTS)
+    advised = all_advice(benches, unfinished / "blind_score_advice.jsonl")
+    write(cases, perf_counter() - start, changed, advised, RESULTS)
     print((RESULTS / "summary.md").read_text(encoding="utf-8"))
 
 
