@@ -22,9 +22,9 @@ def chain_figures(study) -> dict[str, str]:
 
 def chain_results(study) -> list[str]:
     """Files that these sections read."""
-    from pipeline import drive, gearbox, linkage, outcome, requirements
+    from pipeline import drive, flux_map, gearbox, linkage, outcome, requirements
 
-    names = [drive.OUTPUT, drive.WINDINGS, gearbox.OUTPUT, gearbox.SETS, outcome.OUTPUT]
+    names = [flux_map.OUTPUT, drive.OUTPUT, drive.WINDINGS, gearbox.OUTPUT, gearbox.SETS, outcome.OUTPUT]
     names += [requirements.OUTPUT] if drives(study) else []
     names += [linkage.OUTPUT] if searches_linkage(study) else []
     return names
@@ -165,9 +165,13 @@ class ChainSections:
         """The wound machine on its flux map."""
         import pandas as pd
         from figures.report import Section, Table
+        from pipeline import flux_map
 
         found, table = read_result(self.study, "drive.json"), pd.read_csv(self.folder / "windings_field.csv")
+        best = read_result(self.study, flux_map.OUTPUT)["field"]
         text = (
+            f"At full current the flux map gives {best['mtpa_torque_Nm']:.3f} ± {best['mtpa_torque_error_Nm']:.3f} Nm "
+            "(± bounds the error of the mesh). "
             f"With saturation in every number the chosen winding has a base speed of {found['base_speed_rpm']:.0f} "
             f"rpm and {found['power_at_base_speed_W']:.0f} W there; constant parameters say "
             f"{100 * found['base_speed_difference']:+.1f} % in base speed, "

@@ -96,6 +96,7 @@ def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     assert titles[-4:-2] == ["Planetary gearbox", "Winding"]  # whole teeth first: they decide about the length
     assert titles[-1] == "The vehicle with the designed actuator"
     assert html.count("data:image/png;base64") == 15 + 5 + 3 + 3 + 3 + 3
+    assert re.search(r"At full current the flux map gives [\d.]+ ± 0\.\d+ Nm", html)
     assert "regenerative damping 27.7 kNs/m is 12.3 kNs/m below the requirement" in html
 
 
