@@ -18,7 +18,8 @@ from geometry.plane_mesh import Drawing, PlaneMesh, triangulate
 
 @dataclass(frozen=True)
 class MeshDensity:
-    """How fine to mesh. The defaults hold torque to 0.2 % with quadratic elements.
+    """How fine to mesh. The defaults hold torque to 0.2 % with quadratic elements: by consistent fluxes always, by the
+    ring average of most machines, with 0.4 % at worst.
 
     gap_edges: least number of edges around the sliding circle
     longest_gap_edge: longest edge on the sliding circle, as a multiple of the air gap

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
@@ -107,10 +108,8 @@ class DesignSolver:
         found: dict[int, Design | None] = {number: None for number in left}
         while left:
             base = _most_central(list(left.values()))
-            try:
+            with suppress(GeometryError):
                 found |= self._around(base, left)
-            except GeometryError:
-                found |= {number: None for number, machine in left.items() if machine == base}
             left = {number: machine for number, machine in left.items() if machine != base and found[number] is None}
         return list(found.values())
 

@@ -59,15 +59,12 @@ def solve_block(task: dict) -> list[list[list[float]]]:
         with suppress(GeometryError):
             machines[place] = family.machine(task["slots"], outer, place[1] * MILLIMETRE, place[0] * MILLIMETRE)
     designs = dict(zip(machines, DesignSolver(judge).designs(list(machines.values()))))
-    nothing = [nan] * len(VARIABLES)
-    return [
-        [_row(designs[radius, width]) if designs.get((radius, width)) else nothing for width in task["back_iron_widths_mm"]]
-        for radius in task["rotor_outer_radii_mm"]
-    ]
 
+    def row(radius, width) -> list[float]:
+        design = designs.get((radius, width))
+        return [getattr(design, name) if design else nan for name in VARIABLES.values()]
 
-def _row(design) -> list[float]:
-    return [getattr(design, name) for name in VARIABLES.values()]
+    return [[row(radius, width) for width in task["back_iron_widths_mm"]] for radius in task["rotor_outer_radii_mm"]]
 
 
 @lru_cache(maxsize=1)
