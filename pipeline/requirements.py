@@ -99,7 +99,7 @@ def required_of(study, parts: dict[str, list]):
 
 def as_section(required) -> dict[str, float]:
     """The keys of [requirements], magnitudes in drawing units."""
-    from study.key_units import split_unit
+    from units import split_unit
     from study.schema import RequirementsSection
 
     factors = _factors()
@@ -108,7 +108,7 @@ def as_section(required) -> dict[str, float]:
 
 
 def _scenarios(required) -> dict[str, str]:
-    from study.key_units import split_unit
+    from units import split_unit
     from study.schema import RequirementsSection
 
     return {key: getattr(required, split_unit(key)[0]).scenario for key in RequirementsSection.model_fields}
@@ -150,7 +150,7 @@ def _ride_of_damping(runs: list) -> list[dict]:
 def mean_of_seeds(runs: list, columns) -> dict[str, float]:
     """Means over runs, in drawing units; magnitudes, since the sign of a peak differs from seed to seed."""
     import numpy as np
-    from study.key_units import split_unit
+    from units import split_unit
 
     found = {}
     for column in columns:
@@ -162,7 +162,7 @@ def mean_of_seeds(runs: list, columns) -> dict[str, float]:
 
 def _factors() -> dict[str, float]:
     """SI value of every unit that a key may end in."""
-    from study.key_units import QUANTITIES
+    from units import QUANTITIES
 
     return {"": 1.0} | {unit: factor for row in QUANTITIES for unit, factor in row.items()}
 

@@ -15,7 +15,7 @@ from geometry.winding import star_of_slots
 from study.chain import check_chain, check_libraries
 from study.convert import to_machine
 from study.errors import StudyError
-from study.key_units import split_unit
+from units import split_unit
 from study.schema import MachineSection, Study
 from study.sentences import sections_with, sentences
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Annotated, Literal, Optional
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, field_validator, model_validator
 
-from study.key_units import split_unit
+from units import split_unit, to_si
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,11 @@ class Section(BaseModel):
     def quantity(cls, key: str) -> Quantity | None:
         """Meaning and range of a key, None for a key that is not a number."""
         return next((note for note in cls.model_fields[key].metadata if isinstance(note, Quantity)), None)
+
+    @property
+    def si(self) -> SimpleNamespace:
+        """Every key as its quantity in SI: ``machine.si.airgap`` is metres where the file says ``airgap_mm``."""
+        return SimpleNamespace(**dict(to_si(key, getattr(self, key)) for key in type(self).model_fields))
 
     @field_validator("*", mode="after")
     @classmethod

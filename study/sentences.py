@@ -10,7 +10,7 @@ from typing import get_args
 
 from pydantic import ValidationError
 
-from study.key_units import converted, same_quantity, split_unit
+from units import converted, same_quantity, split_unit
 from study.schema import Section, Study
 
 _TEMPLATE = "studies/template.toml"

@@ -1,0 +1,40 @@
+"""What is asked of the actuator and where it acts, as every stage behind them reads it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """Demands at the wheel in nominal and overload condition (thesis Table 3.7), magnitudes.
+
+    maximum_damping: regenerative damping [Ns/m], 0 where none is asked for
+    force_rms [N], velocity_rms [m/s], power_rms [W]: nominal working point
+    velocity_peak [m/s]; force_peak [N] at velocity_at_force_peak [m/s]; power_peak [W] = force_at_power_peak [N] times
+    velocity_at_power_peak [m/s]
+    """
+
+    maximum_damping: float
+    force_rms: float
+    velocity_rms: float
+    power_rms: float
+    velocity_peak: float
+    force_peak: float
+    velocity_at_force_peak: float
+    power_peak: float
+    force_at_power_peak: float
+    velocity_at_power_peak: float
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """Transmission from wheel travel to the lever of the actuator, tau_l [m/rad].
+
+    ratio_nominal: in the nominal wheel position; ratio_max: the largest along the travel, where torques are largest
+    envelope_radius_max: largest outer radius of the actuator [m], None where nothing limits it
+    """
+
+    ratio_nominal: float
+    ratio_max: float
+    envelope_radius_max: float | None = None

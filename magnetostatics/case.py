@@ -1,0 +1,48 @@
+"""What every field solution of one study shares: machines, materials, winding, mesh and the two current densities.
+
+A ``FieldCase`` is a plain value: a task carries it to its worker, and a field solution there depends on nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from geometry.cross_section import mesh_cross_section
+from geometry.family import MachineFamily
+from geometry.half_cell import MeshDensity
+from geometry.machine import Machine
+from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.model import FieldModel, MachineMaterials
+from magnetostatics.newton import NewtonSettings
+
+
+@dataclass(frozen=True)
+class FieldCase:
+    """See the module.
+
+    layers, coil_pitch [slots, None: what the star of slots gives], packing: of the winding; copper over slot area
+    density: mesh of sweep, optima and maps; detail: mesh for single states that are looked at
+    nominal_density, overload_density: amplitudes of the current density in the copper [A/m^2]
+    """
+
+    family: MachineFamily
+    materials: MachineMaterials
+    layers: int
+    coil_pitch: int | None
+    packing: float
+    density: MeshDensity
+    detail: MeshDensity
+    nominal_density: float
+    overload_density: float
+
+    def layout(self, machine: Machine) -> WindingLayout:
+        """The winding of a machine of this study."""
+        return star_of_slots(machine.slots, machine.pole_pairs, self.layers, self.coil_pitch)
+
+    def model(self, machine: Machine, settings: NewtonSettings = NewtonSettings()) -> FieldModel:
+        """Field model of a machine on the mesh of the sweep. Raises GeometryError when it cannot be built."""
+        return FieldModel(mesh_cross_section(machine, self.layout(machine), self.density), self.materials, settings)
+
+    def detailed_model(self, machine: Machine) -> FieldModel:
+        """Field model of a machine on the finer mesh."""
+        return FieldModel(mesh_cross_section(machine, self.layout(machine), self.detail), self.materials)
