@@ -17,7 +17,9 @@ from typing import Any, Callable, Iterator
 
 import xarray as xr
 
+from pipeline.closure import PROJECT
 from pipeline.codec import CodecError, decoded, encoded
+from study.schema import Study
 
 try:
     import fcntl
@@ -120,6 +122,11 @@ class Results:
             return decoded(content, _Datasets(self.folder, name))
         except (OSError, ValueError, RecursionError) as error:
             raise CodecError(f"{name}.json cannot be read ({error})") from error
+
+
+def results_of(study: Study) -> Results:
+    """The results folder of a study."""
+    return Results(PROJECT / "results" / study.study.id)
 
 
 class _Datasets(list):

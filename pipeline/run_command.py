@@ -9,10 +9,10 @@ from typing import Iterator
 
 from figures.files import File
 from figures.report import Remark, Section, write_report
-from pipeline.closure import PROJECT, packages_of
+from pipeline.closure import packages_of
 from pipeline.graph import Graph
 from pipeline.pools import DaskCluster, Pool, Processes
-from pipeline.results import Results
+from pipeline.results import results_of
 from pipeline.run import Failure, Run, git_commit
 from pipeline.sentences import EXIT_FAILED, sentences
 from pipeline.stages import graph_of
@@ -49,11 +49,6 @@ def run_command(options: argparse.Namespace) -> None:
                 print(f"report: {run.results.folder / REPORT}")
         if run.failures:
             raise SystemExit(EXIT_FAILED)
-
-
-def results_of(study: Study) -> Results:
-    """The results folder of a study."""
-    return Results(PROJECT / "results" / study.study.id)
 
 
 def _wanted(graph: Graph, name: str | None) -> str | None:
