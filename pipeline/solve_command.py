@@ -57,10 +57,9 @@ def solve(options: argparse.Namespace) -> None:
         field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
 
 
-def _field(study, options):
-
-    amplitude = _amplitude(options)
-    density = to_mesh_density(study.mesh) if options.sweep_mesh else detail_density(study)
+def _field(study: Study, options: argparse.Namespace) -> FieldSolution:
+    amplitude, case = _amplitude(options), field_case(study)
+    model = (case.model if options.sweep_mesh else case.detailed_model)(case.family.reference)
     point = OperatingPoint(
         options.angle_deg * DEGREE,
         amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
