@@ -38,3 +38,14 @@ class Linkage:
     ratio_nominal: float
     ratio_max: float
     envelope_radius_max: float | None = None
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """Overall transmission from wheel travel to the rotor, linkage and gears together, tau_t [m/rad].
+
+    nominal: in the nominal wheel position; largest: along the travel, where a force asks for the largest torque
+    """
+
+    nominal: float
+    largest: float

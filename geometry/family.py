@@ -53,3 +53,13 @@ class MachineFamily:
             back_iron_width=back_iron_width,
             rotor_outer_radius=rotor_outer_radius,
         ).reference
+
+
+@dataclass(frozen=True)
+class MatchedMachine:
+    """The machine that gearbox and motor were matched for, or that the study states where nothing is matched.
+
+    It has its final active length; its winding and its current are chosen by the stages behind it.
+    """
+
+    machine: Machine
