@@ -32,16 +32,14 @@ class WoundMachine:
 
     @property
     def end_turn_length(self) -> float:
-        """Of one end turn [m], a half-circle (thesis eq. 3.84); coils on single teeth."""
-        if self.layout.coil_pitch != 1:
-            found = self.layout.coil_pitch
-            raise ValueError(f"the end turns are known for coils on single teeth only, found a pitch of {found} slots")
+        """Of one end turn [m], a half-circle over the pitch of the coil (thesis eq. 3.84)."""
         m = self.machine
         return end_turn_length(
             slots=m.slots,
             shoe_top_radius=m.shoe_top_radius,
             slot_bottom_radius=m.slot_bottom_radius,
             tooth_width=m.tooth_width,
+            coil_pitch=self.layout.coil_pitch,
         )
 
     def phase_resistance(self, resistivity: float) -> float:

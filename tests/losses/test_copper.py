@@ -42,5 +42,5 @@ def test_loss_is_current_density_squared_times_copper():
 def test_end_turns():
     assert PRINTED.end_turn_length == pytest.approx(16.30 * MILLIMETRE, rel=1e-3)
     assert PRINTED.end_turn_share == pytest.approx(0.2845, rel=1e-3)
-    with pytest.raises(ValueError, match="pitch of 3"):
-        replace(PRINTED, layout=star_of_slots(36, 6, coil_pitch=3)).end_turn_length
+    distributed = replace(PRINTED, layout=star_of_slots(12, 2, coil_pitch=3))
+    assert distributed.end_turn_length == pytest.approx(71.9 * MILLIMETRE, rel=1e-3)
