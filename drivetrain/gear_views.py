@@ -1,14 +1,14 @@
-"""Between match, linkage and gearbox: what is asked of the gears, and the transmission that they make."""
+"""Between match, linkage and gearbox: what is asked of the gears, under which loads, and the transmission they make."""
 
 from __future__ import annotations
 
 from drivetrain.matching import MatchOutcome
 from drivetrain.requirements import Linkage, Requirements, Transmission
-from gearbox.stage import GearboxOutcome, GearDemand
+from gearbox.stage import GearboxOutcome, GearDemand, GearInputs, GearLoads, NormalLoads
 
 
 def gear_demand(found: MatchOutcome, linkage: Linkage, required: Requirements) -> GearDemand:
-    """The ratio of the match with the largest linkage ratio, inside the stator's diameter, for the peak force."""
+    """The ratio of the match with the largest linkage ratio, inside the stator's diameter, for the peak effort."""
     return GearDemand(
         ratio=linkage.ratio_max / found.chosen.transmission_ratio,
         envelope_diameter=2 * found.machine.stator_outer_radius,
@@ -17,6 +17,11 @@ def gear_demand(found: MatchOutcome, linkage: Linkage, required: Requirements) -
         effort_peak=required.force_peak,
         speed_at_effort_peak=required.velocity_at_force_peak,
     )
+
+
+def stated_loads(required: Requirements, inputs: GearInputs) -> GearLoads:
+    """Where no history is at hand: a normal distribution with the RMS values that are asked for."""
+    return NormalLoads(required.force_rms, required.velocity_rms, inputs.swing)
 
 
 def transmission(gears: GearboxOutcome, linkage: Linkage) -> Transmission:

@@ -64,6 +64,8 @@ class GearInputs:
 
     stage_count: planetary stages; ratio_tolerance: relative; planets of a stage; friction: mean coefficient of the teeth
     torque_class_width: of the load spectrum at the slow shaft [Nm]; life: operating time [s]
+    swing: largest turn of the slow shaft between two reversals [rad], inf for a shaft that turns on; read where no
+        history tells it
     """
 
     rules: Rules
@@ -76,6 +78,7 @@ class GearInputs:
     friction: float
     torque_class_width: float
     life: float
+    swing: float
     stated: StatedGears | None = None
 
 
