@@ -97,7 +97,7 @@ class Outcome:
     """The designed actuator and how it stands against what is asked of it.
 
     checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
-    masses: of the active parts; gearbox_mass, casing_mass [kg]; layout: parts along the axis
+    masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]; layout: parts along the axis
     limits: effort over speed, inertia and friction at the output
     load_inertia_ratio: inertia of the load over that of the drive, both at the output; None without a load inertia
     """
@@ -109,6 +109,7 @@ class Outcome:
     remedies: tuple[Remedy, ...]
     masses: PartMasses
     gearbox_mass: float
+    gearbox_inertia: float
     casing_mass: float
     active_length: float
     layout: Layout
@@ -143,6 +144,7 @@ def outcome_stage(
         remedies=remedies(design, checks, LEVERS if gears.train.stages else DIRECT_DRIVE_LEVERS),
         masses=masses,
         gearbox_mass=gears.train.mass,
+        gearbox_inertia=gears.train.inertia_at_fast_shaft,
         casing_mass=inputs.casing_mass,
         active_length=wound.active_length,
         layout=layout,

@@ -47,7 +47,7 @@ def section(found: Outcome, output: Output) -> Section:
             *_remedy_table(found, output),
             Table(features_table(found, output), "Features of the actuator.", headings=_stated_heading(found)),
             *_load(found),
-            Table(masses_table(found), "What it weighs, and what of it turns."),
+            Table(masses_table(found), "What it weighs, and the inertias that the rotor feels."),
             Picture(picture_name("axial_section"), "Axial section with the envelope."),
         ),
     )
@@ -125,12 +125,13 @@ def _drawn(features: Features, attribute: str, unit: str) -> float:
 
 
 def masses_table(found: Outcome) -> pd.DataFrame:
-    """Masses of all parts, and inertias about the axis of those that turn with the rotor."""
+    """Masses of all parts, and inertias of those that turn, as the rotor feels them."""
     rows = [{"part": name, "mass_kg": mass, "inertia_kg_m2": inertia} for name, mass, inertia in found.masses.rows]
     if found.gearbox_mass:
-        rows.append({"part": "gears", "mass_kg": found.gearbox_mass, "inertia_kg_m2": float("nan")})
-    rows.append({"part": "casing, bearings, shafts", "mass_kg": found.casing_mass, "inertia_kg_m2": float("nan")})
-    return pd.DataFrame([*rows, {"part": "whole", "mass_kg": found.features.mass, "inertia_kg_m2": float("nan")}])
+        rows.append({"part": "gears", "mass_kg": found.gearbox_mass, "inertia_kg_m2": found.gearbox_inertia})
+    rows.append({"part": "casing, bearings, shafts", "mass_kg": found.casing_mass, "inertia_kg_m2": 0.0})
+    inertia = found.masses.rotor_inertia + found.gearbox_inertia
+    return pd.DataFrame([*rows, {"part": "whole", "mass_kg": found.features.mass, "inertia_kg_m2": inertia}])
 
 
 # ---- parts of the section -------------------------------------------------------------------------------------------
