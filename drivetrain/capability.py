@@ -13,11 +13,10 @@ from math import pi, sqrt
 
 import numpy as np
 
-from drivetrain.constraints import winding_damping
-from electrical.flux_map_limits import mtpa_currents, torque_speed_envelope
+from electrical.dq import DriveLimits, mtpa_currents, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
-from electrical.synchronous_machine import DriveLimits
+from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
 SLACK = 1e-6  # relative; a capability this close to its requirement is met

@@ -8,8 +8,9 @@ import pytest
 import xarray as xr
 
 from drivetrain.capability import ActuatorDesign, Requirement, levers_of, remedies
+from electrical.dq import DriveLimits, torque_speed_envelope
 from electrical.resistance import phase_resistance
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine, torque_speed_envelope
+from electrical.synchronous_machine import SynchronousMachine
 
 PSI, L_D, L_Q, POLES = 5e-3, 4e-6, 4e-6, 5  # per turn and metre: Wb, H, H; without saliency
 TURNS, STRANDS, AREA, LENGTH, END, RHO = 8, 20, 0.2e-6, 0.04, 0.016, 1.7e-8

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from drivetrain.constraints import LengthLimit, NominalForce, OverloadForce, SpeedLimit, winding_damping
+from drivetrain.constraints import LengthLimit, NominalForce, OverloadForce, SpeedLimit
 from drivetrain.match import bound_constraints, damping_constraint, force_constraints, linear_overload
+from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
 RATIO = 2.3 * MILLIMETRE

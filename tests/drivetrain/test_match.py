@@ -18,7 +18,8 @@ from drivetrain.match import (
     match_curves,
     match_over_radius,
 )
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine, operating_map
+from electrical.dq import DriveLimits, operating_map
+from electrical.synchronous_machine import SynchronousMachine
 from units import MILLIMETRE
 
 
