@@ -12,6 +12,7 @@ from scipy.optimize import minimize as minimize_locally
 
 from drivetrain.four_bar import FourBar, LinkageError
 from drivetrain.linkage_problem import CONSTRAINTS, LinkageProblem, constraint_text
+from drivetrain.pareto import non_dominated
 
 _STEP = 1e-6  # of the width of a box, for derivatives
 _SAFETY = 1e-8  # kept from every limit, so that rounding does not cost the feasibility
@@ -182,13 +183,6 @@ def _nothing_feasible(problem, constraints):
         "no linkage with B and C inside their boxes satisfies the constraints; where the miss is smallest, "
         f"{constraint_text(problem, worst, nearest[worst])}: widen the boxes or relax that limit"
     )
-
-
-def non_dominated(objectives: np.ndarray) -> np.ndarray:
-    """Indices of the points, (points, 2), that no other one dominates, in the order of rising first objective."""
-    order = np.lexsort((objectives[:, 1], objectives[:, 0]))
-    best = np.minimum.accumulate(objectives[order, 1])
-    return order[np.concatenate([[True], objectives[order, 1][1:] < best[:-1]])]
 
 
 def standing(front: LinkageFront, linkage: FourBar) -> Standing:

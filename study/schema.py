@@ -93,6 +93,7 @@ class MachineSection(Section):
     shoe_aspect_ratio: Annotated[float, Quantity("shoe depths d_1 over d_2, alpha_d", 0.05, 20)]
     shaft_radius_mm: Annotated[float, Quantity("shaft radius", 0.3, 900)]
     magnet_arc_fraction: Annotated[float, Quantity("magnet arc over pole pitch", 0.1, 1)]
+    stacking_factor: Annotated[float, Quantity("steel over stack length of the laminations, of their mass", 0.5, 1)]
     magnetisation: Literal["parallel", "radial"]
     # optional: stated instead of derived from the back iron (eqs 3.53, 3.57, 3.58)
     tooth_width_mm: Annotated[Optional[float], Quantity("tooth width w_tb", 0.3, 200)] = None
@@ -119,6 +120,9 @@ class MaterialsSection(Section):
     copper_temperature_coefficient_per_K: Annotated[
         float, Quantity("linear temperature coefficient of the copper resistivity", 0, 0.02)
     ]
+    lamination_density_kg_per_m3: Annotated[float, Quantity("density of the electrical steel", 1000, 20000)]
+    magnet_density_kg_per_m3: Annotated[float, Quantity("density of the magnets", 1000, 20000)]
+    copper_density_kg_per_m3: Annotated[float, Quantity("density of the copper", 1000, 20000)]
 
 
 class WindingSection(Section):
@@ -365,7 +369,7 @@ class MatchSection(Section):
     # optional: the designer's choice of the machine to go on with; without it the least cost decides
     chosen_slots: Annotated[Optional[int], Quantity("slot count to go on with", 3, 360)] = None
     chosen_stator_diameter_mm: Annotated[Optional[float], Quantity("stator diameter to go on with", 10, 2000)] = None
-    steel_density_kg_per_m3: Annotated[float, Quantity("density of steel", 1000, 20000)]
+    steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages", 1, 6)]
     gear_ring_diameter_fraction: Annotated[float, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)]
     gear_contact_stress_MPa: Annotated[float, Quantity("allowable contact stress sigma_H", 50, 5000)]
