@@ -1,1 +1,1 @@
-"""What people read: the files beside an artefact, in drawing units, and the sections of the report."""
+"""What people read of each stage: its section of the report, tables and figures, in drawing units."""
