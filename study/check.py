@@ -39,6 +39,12 @@ def _required(study: Study) -> str:
             f"from runs of the {what}: road class {ride.road_class} at {ride.cruise_speed_km_per_h:g} km/h, "
             f"{ride.maximum_regenerative_damping_kNs_per_m:g} kNs/m"
         )
+    if study.drive is not None:
+        drive = study.drive
+        return (
+            f"{drive.torque_peak_Nm:g} Nm peak, {drive.torque_rms_Nm:g} Nm RMS, {drive.speed_peak_rpm:g} rpm at most, "
+            "on a shaft"
+        )
     required = study.requirements
     return (
         f"{required.force_peak_N:g} N peak, {required.force_rms_N:g} N RMS, "
@@ -47,6 +53,8 @@ def _required(study: Study) -> str:
 
 
 def _linkage(study: Study) -> str:
+    if study.drive is not None:
+        return "none, the load sits on the shaft"
     if searches_linkage(study):
         return f"searched, choice {study.linkage_search.choice}"
     return f"{study.linkage.ratio_nominal_mm_per_rad:g} mm/rad, as stated"

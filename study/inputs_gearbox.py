@@ -12,6 +12,7 @@ from gearbox.planetary_set import planetary_set
 from gearbox.rating import Rules
 from gearbox.search import Safety
 from gearbox.stage import GearCost, GearInputs, StatedGears
+from study.inputs_drive import largest_equivalent_mass
 from study.schema import GearboxSection, Study
 
 
@@ -22,7 +23,7 @@ def gear_inputs(study: Study) -> GearInputs:
         rules=gear_rules(section),
         safety=Safety(si.safety_flank, si.safety_root, si.safety_static_flank, si.safety_static_root),
         construction=construction(section),
-        cost=GearCost(match.si.mass_max, match.si.equivalent_mass_max, match.si.weight_inertia),
+        cost=GearCost(match.si.mass_max, largest_equivalent_mass(study), match.si.weight_inertia),
         stage_count=match.gearbox_stages,
         ratio_tolerance=si.ratio_tolerance,
         planets=si.planets,

@@ -10,6 +10,7 @@ from drivetrain.linkage_front import GeneticSettings
 from drivetrain.linkage_problem import Box, Limits, LinkageProblem, Travel
 from drivetrain.linkage_stage import LinkageSearch
 from drivetrain.requirements import InstallationSpace, Linkage
+from study.inputs_drive import drive_linkage
 from study.schema import LinkageSearchSection, LinkageSection, Study
 
 
@@ -25,7 +26,9 @@ def linkage_search(study: Study) -> LinkageSearch:
 
 
 def stated_linkage(study: Study) -> Linkage:
-    """The ratios that the study states."""
+    """The ratios that the study states; 1 for a load on the shaft."""
+    if study.drive is not None:
+        return drive_linkage(study.drive)
     section = study.linkage.si
     return Linkage(section.ratio_nominal, section.ratio_max, section.envelope_radius_max)
 

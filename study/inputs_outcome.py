@@ -4,27 +4,28 @@ from __future__ import annotations
 
 from drivetrain.outcome import Features, OutcomeInputs, StatedActuator
 from gearbox.layout import Housing
+from study.inputs_drive import friction_at, largest_equivalent_mass
 from study.inputs_match import part_materials
 from study.schema import AssemblySection, PrintedActuatorSection, Study
 
 
 def outcome_inputs(study: Study) -> OutcomeInputs:
     """Currents, supply, limits, materials, casing and friction."""
-    sweep, match, drive, assembly = study.sweep.si, study.match.si, study.winding_selection.si, study.assembly.si
+    sweep, match, supply, friction = study.sweep.si, study.match.si, study.winding_selection.si, friction_at(study)
     return OutcomeInputs(
         nominal_density=sweep.j_nominal_rms,
         overload_density=sweep.j_overload_rms,
-        dc_voltage=drive.dc_bus_voltage,
-        phase_current_max=drive.phase_current_max_rms,
+        dc_voltage=supply.dc_bus_voltage,
+        phase_current_max=supply.phase_current_max_rms,
         rotor_speed_max=match.speed_max,
         active_length_max=match.length_max,
-        equivalent_mass_max=match.equivalent_mass_max,
+        equivalent_mass_max=largest_equivalent_mass(study),
         housing=housing(study.assembly),
-        casing_mass=assembly.casing_mass,
+        casing_mass=study.assembly.si.casing_mass,
         materials=part_materials(study),
-        viscous_friction=assembly.viscous_friction,
-        coulomb_friction=assembly.coulomb_friction,
-        load_inertia=None,
+        viscous_friction=friction.viscous,
+        coulomb_friction=friction.coulomb,
+        load_inertia=None if study.drive is None else study.drive.si.load_inertia,
         stated=_stated(study.printed_actuator),
     )
 

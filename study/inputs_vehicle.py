@@ -7,6 +7,7 @@ from pathlib import Path
 
 from drivetrain.requirements import Requirements, StatedRequirements
 from study.errors import StudyError
+from study.inputs_drive import drive_requirements
 from study.schema import DampersSection, MotorcycleSection, QuarterCarSection, Study
 from units import to_si
 from vehicle.damping import DamperCurve, linear_damper, mixed, read_damper_curve
@@ -40,7 +41,9 @@ def ride_case(study: Study) -> RideCase:
 
 
 def stated_requirements(study: Study) -> Requirements:
-    """The requirements that the study states. Raises StudyError where it states none."""
+    """The requirements that the study states, of a wheel or of a shaft. Raises StudyError where it states none."""
+    if study.drive is not None:
+        return drive_requirements(study.drive)
     if study.requirements is None:
         raise StudyError(f"{study.path}: section [requirements] is missing; add it.")
     section = study.requirements.si

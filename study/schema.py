@@ -207,6 +207,28 @@ class RequirementsSection(Section):
     velocity_at_power_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak power", 1e-4, 1e2)]
 
 
+class DriveSection(Section):
+    """A load on the slow shaft in the place of a wheel: a robot joint, a pump; magnitudes."""
+
+    torque_peak_Nm: Annotated[float, Quantity("peak torque of the shaft", 1e-3, 1e6)]
+    speed_at_torque_peak_rpm: Annotated[float, Quantity("speed at the peak torque", 0, 1e5)]
+    torque_rms_Nm: Annotated[float, Quantity("RMS torque of the shaft", 1e-3, 1e6)]
+    speed_rms_rpm: Annotated[float, Quantity("RMS speed of the shaft", 0, 1e5)]
+    power_rms_W: Annotated[float, Quantity("RMS power", 0, 1e6)]
+    speed_peak_rpm: Annotated[float, Quantity("peak speed of the shaft", 1e-3, 1e5)]
+    torque_at_power_peak_Nm: Annotated[float, Quantity("torque at the peak power", 0, 1e6)]
+    speed_at_power_peak_rpm: Annotated[float, Quantity("speed at the peak power", 0, 1e5)]
+    inertia_max_kg_m2: Annotated[
+        float, Quantity("inertia of rotor and gears at the shaft that counts as 1 in the cost", 1e-9, 1e5)
+    ]
+    viscous_friction_Nms_per_rad: Annotated[float, Quantity("viscous friction at the shaft", 0, 1e5)]
+    coulomb_friction_Nm: Annotated[float, Quantity("dry friction at the shaft", 0, 1e5)]
+    # optional: an inertia that is compared with that of the drive, braking in short circuit, room for the casing
+    load_inertia_kg_m2: Annotated[Optional[float], Quantity("inertia of the load at the shaft", 0, 1e6)] = None
+    damping_Nms_per_rad: Annotated[Optional[float], Quantity("damping in short circuit", 0, 1e6)] = None
+    diameter_max_mm: Annotated[Optional[float], Quantity("largest diameter of the casing", 5, 4000)] = None
+
+
 class ChainSection(Section):
     """What feeds the match: results of the stages before it, or what the study states."""
 
@@ -360,7 +382,10 @@ class MatchSection(Section):
     length_max_mm: Annotated[float, Quantity("largest active length", 1, 5000)]
     speed_max_rad_per_s: Annotated[float, Quantity("largest rotor speed", 1, 1e5)]
     mass_max_kg: Annotated[float, Quantity("mass that counts as 1 in the cost", 0.01, 1e4)]
-    equivalent_mass_max_kg: Annotated[float, Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)]
+    # optional: only with a wheel; a [drive] states its inertia_max_kg_m2
+    equivalent_mass_max_kg: Annotated[
+        Optional[float], Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)
+    ] = None
     weight_inertia: Annotated[float, Quantity("weight of the equivalent inertia against the mass, w_m", 0, 1)]
     weight_radius: Annotated[float, Quantity("weight of the stator radius, w_Rso", 0, 100)]
     radius_limit_mm: Annotated[float, Quantity("stator radius that counts as 1 in the cost", 5, 1000)]
@@ -370,14 +395,17 @@ class MatchSection(Section):
     chosen_slots: Annotated[Optional[int], Quantity("slot count to go on with", 3, 360)] = None
     chosen_stator_diameter_mm: Annotated[Optional[float], Quantity("stator diameter to go on with", 10, 2000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
-    gearbox_stages: Annotated[int, Quantity("planetary stages", 1, 6)]
-    gear_ring_diameter_fraction: Annotated[float, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)]
-    gear_contact_stress_MPa: Annotated[float, Quantity("allowable contact stress sigma_H", 50, 5000)]
-    gear_overload_factor: Annotated[float, Quantity("overload factor K_A", 1, 5)]
-    gear_contact_ratio_factor: Annotated[float, Quantity("contact ratio factor Z_eps", 0.3, 1)]
-    gear_pressure_angle_deg: Annotated[float, Quantity("pressure angle", 10, 35)]
-    gear_youngs_modulus_GPa: Annotated[float, Quantity("Young's modulus of the gears", 10, 1000)]
-    gear_poisson_ratio: Annotated[float, Quantity("Poisson's ratio of the gears", 0, 0.49)]
+    gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
+    # optional: only with planetary stages
+    gear_ring_diameter_fraction: Annotated[
+        Optional[float], Quantity("ring pitch diameter over the outer diameter", 0.3, 1)
+    ] = None
+    gear_contact_stress_MPa: Annotated[Optional[float], Quantity("allowable contact stress sigma_H", 50, 5000)] = None
+    gear_overload_factor: Annotated[Optional[float], Quantity("overload factor K_A", 1, 5)] = None
+    gear_contact_ratio_factor: Annotated[Optional[float], Quantity("contact ratio factor Z_eps", 0.3, 1)] = None
+    gear_pressure_angle_deg: Annotated[Optional[float], Quantity("pressure angle", 10, 35)] = None
+    gear_youngs_modulus_GPa: Annotated[Optional[float], Quantity("Young's modulus of the gears", 10, 1000)] = None
+    gear_poisson_ratio: Annotated[Optional[float], Quantity("Poisson's ratio of the gears", 0, 0.49)] = None
 
 
 class GearboxSection(Section):
@@ -426,8 +454,9 @@ class AssemblySection(Section):
     bearing_seat_mm: Annotated[float, Quantity("bearing seat on either side of the machine", 0, 500)]
     sensor_cover_mm: Annotated[float, Quantity("cover with the position sensor", 0, 500)]
     casing_mass_kg: Annotated[float, Quantity("casing, bearings, shafts and lever", 0, 1e4)]
-    viscous_friction_Ns_per_m: Annotated[float, Quantity("viscous friction at the wheel", 0, 1e6)]
-    coulomb_friction_N: Annotated[float, Quantity("dry friction at the wheel", 0, 1e5)]
+    # optional: only with a wheel; a [drive] states its own
+    viscous_friction_Ns_per_m: Annotated[Optional[float], Quantity("viscous friction at the wheel", 0, 1e6)] = None
+    coulomb_friction_N: Annotated[Optional[float], Quantity("dry friction at the wheel", 0, 1e5)] = None
 
 
 class PrintedActuatorSection(Section):
@@ -483,13 +512,14 @@ class Study(Section):
     obstacles: Optional[ObstaclesSection] = None
     acceleration: Optional[AccelerationSection] = None
     requirements: Optional[RequirementsSection] = None
-    linkage: LinkageSection
+    drive: Optional[DriveSection] = None  # in the place of [requirements] and [linkage]
+    linkage: Optional[LinkageSection] = None
     linkage_search: Optional[LinkageSearchSection] = None
     match: MatchSection
     printed_machine: Optional[PrintedMachineSection] = None
     winding_selection: WindingSelectionSection
     flux_map: FluxMapSection = FluxMapSection()
-    gearbox: GearboxSection
+    gearbox: Optional[GearboxSection] = None  # not for a direct drive
     assembly: AssemblySection
     printed_actuator: Optional[PrintedActuatorSection] = None
 
