@@ -5,6 +5,7 @@ from __future__ import annotations
 from drivetrain.matching import MatchOutcome
 from drivetrain.requirements import Linkage, Requirements, Transmission
 from gearbox.stage import GearboxOutcome, GearDemand, GearInputs, GearLoads, NormalLoads
+from gearbox.train import DirectDrive
 
 
 def gear_demand(found: MatchOutcome, linkage: Linkage, required: Requirements) -> GearDemand:
@@ -22,6 +23,11 @@ def gear_demand(found: MatchOutcome, linkage: Linkage, required: Requirements) -
 def stated_loads(required: Requirements, inputs: GearInputs) -> GearLoads:
     """Where no history is at hand: a normal distribution with the RMS values that are asked for."""
     return NormalLoads(required.force_rms, required.velocity_rms, inputs.swing)
+
+
+def direct_drive(linkage: Linkage) -> GearboxOutcome:
+    """The place of the gearbox where there is none: the rotor sits on the slow shaft."""
+    return GearboxOutcome(DirectDrive(), linkage.ratio_nominal)
 
 
 def transmission(gears: GearboxOutcome, linkage: Linkage) -> Transmission:

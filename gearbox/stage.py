@@ -16,7 +16,7 @@ from gearbox.planetary_set import PlanetarySet
 from gearbox.rating import Rules, StageLoad
 from gearbox.search import CostScale, Found, GearRequest, Safety, strongest
 from gearbox.spectrum import LoadSpectrum, gaussian_spectrum, largest_swing, spectrum_from_history
-from gearbox.train import DirectDrive, Gears, GearTrain
+from gearbox.train import Gears, GearTrain
 
 SETS_KEPT = 12
 WIDTH_SLACK = 1e-3  # relative; widths are drawn in steps and Miner's sum is met to its rounding
@@ -209,13 +209,11 @@ class GearboxOutcome:
 
 
 def gearbox_stage(demand: GearDemand, loads: GearLoads, inputs: GearInputs) -> GearboxOutcome:
-    """The gears of least cost in mass and inertia among all sets of teeth; a direct drive where no stage is asked for.
+    """The gears of least cost in mass and inertia among all sets of teeth.
 
     Where the wanted safety factors are out of reach the nearest set is taken and ``search.weakness`` says so.
     Raises GearError, naming the key of the study to move, when no teeth fit or none are strong enough.
     """
-    if inputs.stage_count == 0:
-        return GearboxOutcome(DirectDrive(), demand.linkage_ratio)
     request = _request(demand, loads, inputs)
     found, weakness = strongest(request, SETS_KEPT)
     search = _described(found, weakness, request, inputs.stated)

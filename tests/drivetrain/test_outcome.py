@@ -1,5 +1,6 @@
 """The outcome of a small machine: numbers that agree with each other, behind gears and as a direct drive."""
 
+import json
 from math import pi
 
 import numpy as np
@@ -26,6 +27,7 @@ from gearbox.stage import GearboxOutcome, SafetyCheck
 from gearbox.train import DirectDrive, GearTrain, Stage
 from geometry.machine import hanselman_machine
 from magnetostatics.flux_map_stage import FluxMap
+from pipeline.codec import decoded, digest, encoded
 from report.outcome import checks_table, features_table, files, masses_table, remedies_table, section
 
 MM = 1e-3
@@ -152,6 +154,11 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
     for absent in ("wheel", "lever", "force", "m/s", "linkage", "gears"):
         assert absent not in words
     assert "peak torque" in words and "rpm" in words and "kg m²" in words
+
+
+def test_the_outcome_is_written_and_read_again(found):
+    again = decoded(json.loads(json.dumps(encoded(found))))
+    assert digest(again) == digest(found) and again.checks == found.checks and again.remedies == found.remedies
 
 
 def test_files_are_written_in_both_kinds_of_words(found, tmp_path):
