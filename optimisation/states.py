@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, lcm, pi
+from typing import ClassVar
 
 from geometry.machine import Machine
 from geometry.winding import WindingLayout
 from magnetostatics.model import OperatingPoint
 
-_STEPS_OVER_PERIOD = 6  # in 60 electrical degrees; over all teeth these repeat for the rest of the period
+STEPS_OVER_PERIOD = 6  # in 60 electrical degrees; over all teeth these repeat for the rest of the period
 
 
 def q_axis_angle(machine: Machine, layout: WindingLayout) -> float:
@@ -26,6 +27,25 @@ def null_angle(machine: Machine, layout: WindingLayout) -> float:
     """Rotor angle nearest to the q-axis angle with a magnet centred on a tooth [rad]; of two equals the smaller."""
     step = 2 * pi / lcm(machine.slots, machine.poles)
     return step * ceil(q_axis_angle(machine, layout) / step - 0.5 - 1e-9)
+
+
+def null_point(machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> OperatingPoint:
+    """The null state: a magnet on a tooth, phase A at its peak.
+
+    amplitude: of the current density in the copper [A/m^2]; packing: copper share of the slot
+    """
+    return OperatingPoint(null_angle(machine, layout), amplitude, null_current_angle(machine, layout), packing)
+
+
+def period_points(
+    machine: Machine, layout: WindingLayout, amplitude: float, packing: float, steps: int
+) -> list[OperatingPoint]:
+    """The q-axis current at ``steps`` rotor positions from the null position on, evenly over 60 electrical degrees.
+
+    After these a balanced winding sees the same field in other teeth, so they stand for the whole period.
+    """
+    first, span = null_angle(machine, layout), pi / 3 / machine.pole_pairs
+    return [OperatingPoint(first + span * k / steps, amplitude, 0.0, packing) for k in range(steps)]
 
 
 def null_current_angle(machine: Machine, layout: WindingLayout) -> float:
@@ -45,9 +65,13 @@ def _distance_to_magnet(machine: Machine, tooth: int, angle: float) -> float:
 
 
 class SaturationReading:
-    """Which states are solved, and which probe flux density [T] the limit applies to."""
+    """Which states are solved, and which probe flux density [T] the limit applies to.
+
+    The reading says how a limit is read; the torque of a design does not depend on it (``optimisation.torque``).
+    """
 
     name: str
+    covers_period: ClassVar[bool] = False  # whether the states are the q-axis current over one electrical period
 
     def states(self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> list[OperatingPoint]:
         """The states to solve for a current density amplitude [A/m^2]."""
@@ -61,9 +85,10 @@ class SaturationReading:
 class NullStateReading(SaturationReading):
     """Readings that look at the null state alone."""
 
-    def states(self, machine, layout, amplitude, packing):
-        angle, gamma = null_angle(machine, layout), null_current_angle(machine, layout)
-        return [OperatingPoint(angle, amplitude, gamma, packing)]
+    def states(
+        self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
+    ) -> list[OperatingPoint]:
+        return [null_point(machine, layout, amplitude, packing)]
 
 
 @dataclass(frozen=True)
@@ -72,7 +97,7 @@ class AlignedTooth(NullStateReading):
 
     name: str = "aligned_tooth"
 
-    def limited(self, aligned, tooth, back_iron):
+    def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
         return aligned
 
 
@@ -82,7 +107,7 @@ class EveryTooth(NullStateReading):
 
     name: str = "every_tooth"
 
-    def limited(self, aligned, tooth, back_iron):
+    def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
         return tooth
 
 
@@ -90,18 +115,18 @@ class EveryTooth(NullStateReading):
 class EveryToothAndBackIronOverPeriod(SaturationReading):
     """The rigorous reading: every tooth and the back iron, worst over one electrical period, on the q axis.
 
-    After 60 electrical degrees a balanced winding sees the same field in other teeth, so that many steps inside these
-    cover the period once all teeth are looked at.
+    Some steps inside 60 electrical degrees cover the period once all teeth are looked at (``period_points``).
     """
 
     name: str = "every_tooth_and_back_iron_over_period"
+    covers_period: ClassVar[bool] = True
 
-    def states(self, machine, layout, amplitude, packing):
-        first, span = null_angle(machine, layout), pi / 3 / machine.pole_pairs
-        angles = [first + span * k / _STEPS_OVER_PERIOD for k in range(_STEPS_OVER_PERIOD)]
-        return [OperatingPoint(angle, amplitude, 0.0, packing) for angle in angles]
+    def states(
+        self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
+    ) -> list[OperatingPoint]:
+        return period_points(machine, layout, amplitude, packing, STEPS_OVER_PERIOD)
 
-    def limited(self, aligned, tooth, back_iron):
+    def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
         return max(tooth, back_iron)
 
 
