@@ -17,9 +17,11 @@ from scipy.spatial import cKDTree
 
 from figures.style import degrees
 from geometry.cross_section import CrossSection
+from magnetostatics.case import FieldCase
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, refine_order
 from magnetostatics.model import FieldSolution, OperatingPoint, OperatingState
+from magnetostatics.rotation_stage import STATES, NullFields
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
 # Reference coordinates of the six nodes and the gradients of the six functions there (function, direction, node).
@@ -104,16 +106,26 @@ def whole_field(solution: FieldSolution) -> WholeField:
     """The whole machine around a solution, rotor turned to its angle; nodes that meet are one node."""
     model, angle = solution.model, solution.point.angle
     a = refine_order(model.topology.facets, solution.a) if model.order is LINEAR else solution.a
-    return _copied_around(model.section, a, angle, model.unknowns.turn(angle).rest, describe(solution.point))
+    return copied_around(model.section, a, angle, model.unknowns.turn(angle).rest, describe(solution.point))
+
+
+def null_field(fields: NullFields, case: FieldCase, state: str) -> WholeField:
+    """The whole machine of a kept field, in one of ``magnetostatics.rotation_stage.STATES``."""
+    point = fields.points[STATES.index(state)]
+    return copied_around(fields.section(case), fields.potential(state), point.angle, fields.rest, describe(point))
 
 
 def whole_geometry(section: CrossSection, angle: float = 0.0) -> WholeField:
     """The whole machine without a field (A = 0 everywhere), rotor at this mechanical angle [rad]."""
     _, size = element_dofs(section.mesh, QUADRATIC)
-    return _copied_around(section, np.zeros(size), angle, 0.0, "")
+    return copied_around(section, np.zeros(size), angle, 0.0, "")
 
 
-def _copied_around(section: CrossSection, a: np.ndarray, angle: float, rest: float, description: str) -> WholeField:
+def copied_around(section: CrossSection, a: np.ndarray, angle: float, rest: float, description: str) -> WholeField:
+    """The whole machine from the potential a (n,) [Wb/m] of the quadratic elements of a section.
+
+    angle: of the rotor [rad]; rest: what is left of it between two nodes of the sliding circle [rad]
+    """
     cells, _ = element_dofs(section.mesh, QUADRATIC)
     points = _nodes_in_space(section, cells, angle, rest)
     copies = range(section.sectors)

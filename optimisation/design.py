@@ -16,11 +16,12 @@ from geometry.morph import Morpher
 from magnetostatics.case import FieldCase
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.newton import NewtonSettings
+from magnetostatics.positions import aligned_teeth
 from magnetostatics.probes import ProbeReader, probe_reader
 from magnetostatics.sensitivity import sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from magnetostatics.variations import Dimension
-from optimisation.states import SaturationReading, aligned_teeth
+from optimisation.states import SaturationReading
 from optimisation.torque import MeanTorque, TorqueObjective, TorqueOfReading, is_null_state
 
 

@@ -9,10 +9,11 @@ from geometry.machine import Machine
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
 from magnetostatics.model import FieldModel, FieldSolution
+from magnetostatics.positions import period_points
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from optimisation.constrained_optimum import BestDesign, NoOptimumError, find_optimum
 from optimisation.design import Judge
-from optimisation.states import STEPS_OVER_PERIOD, period_points
+from optimisation.states import STEPS_OVER_PERIOD
 from optimisation.sweep import DesignMaps, SaturationLimit, SweepGrid
 from optimisation.torque import QuickMeanTorque
 from tasks import Workers

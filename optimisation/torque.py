@@ -14,8 +14,9 @@ import numpy as np
 from geometry.winding import WindingLayout
 from magnetostatics.flux_linkage import flux_linkage_torque
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.positions import null_angle, period_points
 from magnetostatics.torque import maxwell_torque
-from optimisation.states import STEPS_OVER_PERIOD, null_angle, period_points
+from optimisation.states import STEPS_OVER_PERIOD
 
 Starts = Sequence[FieldSolution | None]  # to start the further states from, None where there is nothing
 
