@@ -569,7 +569,8 @@ def _best_radius(at: Callable[[float], Match], radii: np.ndarray, costs: np.ndar
         result = _attempt(at, radius)
         return inf if isinstance(result, str) else result.cost.total
 
-    return _refine(cost, radii, int(np.nanargmin(costs)))
+    with np.errstate(invalid="ignore"):  # the parabola of the search through a radius without a match
+        return _refine(cost, radii, int(np.nanargmin(costs)))
 
 
 def _edge_sentence(best: Match, radii: np.ndarray) -> str | None:

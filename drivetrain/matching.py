@@ -14,7 +14,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from drivetrain.constraints import Constraint
 from drivetrain.masses import DrawnParts, MassModel, PartMasses, PartMaterials, SteelCylinder
 from drivetrain.match import (
     Constraints,
@@ -249,11 +248,13 @@ class Matcher:
         torques = fitted.torque_nominal, overload.torque_per_length(fitted)
         return sized_section(self.case, machine, fitted.half_slot_area, *torques)
 
+    def constraints_without_planets(self, section: SizedSection) -> Constraints:
+        """As the study asks for them."""
+        return self.inputs.damping.constraints(section, self.requirements, self.inputs.limits, self.loading)
+
     def constraints(self, section: SizedSection) -> Constraints:
         """As the study asks for them, with planets that clear each other."""
-        inputs = self.inputs
-        found = inputs.damping.constraints(section, self.requirements, inputs.limits, self.loading)
-        planets: Constraint = planet_clearance(self.gearbox)
+        found, planets = self.constraints_without_planets(section), planet_clearance(self.gearbox)
         return replace(found, enforced=(*found.enforced, planets))
 
     def match(self, section: SizedSection) -> Match:

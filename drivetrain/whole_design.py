@@ -270,8 +270,9 @@ def improved(
 def _excess(values: Values, objective: int, allowed: np.ndarray) -> float:
     """Sum of what a design exceeds constraints and allowed values by, relative."""
     others = [k for k in range(4) if k != objective and np.isfinite(allowed[k])]
-    scale = np.where(allowed == 0, 1.0, np.abs(allowed))
-    miss = (np.array(values.objectives) - allowed)[others] * _SIGNS[others] / scale[others]
+    bounds = allowed[others]
+    scale = np.where(bounds == 0, 1.0, np.abs(bounds))
+    miss = (np.array(values.objectives)[others] - bounds) * _SIGNS[others] / scale
     return float(np.maximum(miss, 0).sum() + np.maximum(values.constraints, 0).sum())
 
 
