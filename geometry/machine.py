@@ -6,7 +6,7 @@ All lengths in metres, angles in radians, x axis through the centre of tooth 0, 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import gcd, pi
+from math import acos, asin, gcd, pi
 
 
 class GeometryError(ValueError):
@@ -45,8 +45,8 @@ class RadialMagnetisation(Magnetisation):
 class Machine:
     """Cross-section of an inner-rotor surface-magnet machine (thesis Fig. 3.16), SI units.
 
-    The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``,
-    straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe from the back iron.
+    The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``
+    (see ``taper_angle``), straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe from the back iron.
     """
 
     slots: int
@@ -86,6 +86,31 @@ class Machine:
     def opening_width(self) -> float:
         """Distance between neighbouring shoes at the bore: tau_s - w_t, w_t = max(tau_s - w_s, w_tb) (eq. 3.54)."""
         return min(self.slot_opening, self.slot_pitch * self.stator_inner_radius - self.tooth_width)
+
+    @property
+    def opening_top_radius(self) -> float:
+        """Radius at which the parallel-sided opening ends and the taper begins, R_si + d_1 [m]."""
+        return self.stator_inner_radius + self.shoe_d1
+
+    @property
+    def opening_top_angle(self) -> float:
+        """Angle of that end from the tooth axis [rad]."""
+        return self.slot_pitch / 2 - asin(self.opening_width / 2 / self.opening_top_radius)
+
+    @property
+    def taper_angle(self) -> float:
+        """Angle from the tooth axis at which the straight taper leaves the shoe [rad].
+
+        That is the end of the opening, unless the shoe spans so wide an angle (few slots) that a straight line from
+        there would cut through it, or through the bore: then the shoe keeps its depth d_1 up to the line that touches it.
+        """
+        touching = asin(self.tooth_width / 2 / self.shoe_top_radius) + acos(self.opening_top_radius / self.shoe_top_radius)
+        return min(touching, self.opening_top_angle)
+
+    @property
+    def taper_touches_shoe(self) -> bool:
+        """Whether a straight taper from the end of the opening would cut through the shoe; see ``taper_angle``."""
+        return self.taper_angle < self.opening_top_angle
 
     @property
     def shoe_top_radius(self) -> float:
