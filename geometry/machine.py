@@ -5,6 +5,7 @@ All lengths in metres, angles in radians, x axis through the centre of tooth 0, 
 
 from __future__ import annotations
 
+from cmath import phase, rect
 from dataclasses import dataclass
 from math import acos, asin, gcd, pi
 
@@ -118,6 +119,23 @@ class Machine:
         return self.stator_inner_radius + self.shoe_d1 + self.shoe_d2
 
     @property
+    def half_slot_area(self) -> float:
+        """Area that one coil side may fill, from the axis of the slot to the tooth and down to its opening [m^2].
+
+        A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) + |sum of P x Q|)/2, by Green's theorem around the half slot; t: slot
+        pitch, f_sb and f_t: angles at which flank and taper end, P, Q: the ends of flank and taper.
+        """
+        flank_end, flank_start = self._flank(self.slot_bottom_radius), self._flank(self.shoe_top_radius)
+        taper = rect(self.opening_top_radius, self.taper_angle)
+        arcs = self.slot_bottom_radius**2 * (self.slot_pitch / 2 - phase(flank_end))
+        arcs -= self.opening_top_radius**2 * (self.slot_pitch / 2 - self.taper_angle)
+        return (arcs - _cross(flank_end, flank_start) - _cross(flank_start, taper)) / 2
+
+    def _flank(self, radius: float) -> complex:
+        """Point x + jy of the flank of tooth 0 at this radius [m]."""
+        return rect(radius, asin(self.tooth_width / 2 / radius))
+
+    @property
     def rotor_core_radius(self) -> float:
         return self.rotor_outer_radius - self.magnet_length
 
@@ -140,6 +158,10 @@ class Machine:
     def is_antiperiodic(self) -> bool:
         """True when the field changes sign from one sector to the next (odd number of poles per sector)."""
         return (self.poles // self.sectors) % 2 == 1
+
+
+def _cross(p: complex, q: complex) -> float:
+    return (p.conjugate() * q).imag
 
 
 def hanselman_machine(

@@ -66,7 +66,8 @@ def _add_overrides(parser: argparse.ArgumentParser) -> None:
 
 def _check(options) -> None:
     from study.check import summary
-    from study.read import check_study, read_study
+    from study.read import read_study
+    from study.usable import check_study
 
     study = read_study(options.study, options.set)
     check_study(study)
@@ -74,11 +75,14 @@ def _check(options) -> None:
 
 
 def _solve(options) -> None:
-    from study.read import check_steel, read_study
+    from study.operating_point import asked_point
+    from study.read import read_study
+    from study.usable import check_steel
 
     study = read_study(options.study, options.set)
+    asked = asked_point(options.angle_deg, _amplitude(options), options.current_angle_deg)
     check_steel(study)
-    solution = _field(study, options)
+    solution = _field(study, asked, options.sweep_mesh)
     result = _result(solution)
     _print(result, options.json)
     if options.vtu:
@@ -92,39 +96,24 @@ def _solve(options) -> None:
         field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
 
 
-def _field(study, options):
+def _field(study, asked, sweep_mesh: bool):
     from magnetostatics.model import OperatingPoint
     from pipeline.models import detail_density, field_model
-    from study.convert import to_machine, to_mesh_density
-    from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
+    from study.inputs_machine import machine_family
+    from study.usable import check_mesh, mesh_density
 
-    amplitude = _amplitude(options)
-    density = to_mesh_density(study.mesh) if options.sweep_mesh else detail_density(study)
-    point = OperatingPoint(
-        options.angle_deg * DEGREE,
-        amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
-        options.current_angle_deg * DEGREE,
-        study.winding.packing_factor,
-    )
-    return field_model(study, to_machine(study.machine), density).solve(point)
+    density = mesh_density(study) if sweep_mesh else detail_density(study)
+    machine = machine_family(study.machine).reference
+    check_mesh(study, machine, density)
+    point = OperatingPoint(asked.angle, asked.amplitude, asked.current_angle, study.winding.packing_factor)
+    return field_model(study, machine, density).solve(point)
 
 
 def _amplitude(options) -> float:
     """Amplitude of the current density [A/mm2]; none stated means no current."""
-    from math import isfinite
-
     if options.j_rms is not None:
-        amplitude = sqrt(2) * options.j_rms
-    else:
-        amplitude = options.j_amplitude or 0.0
-    for name in ("angle_deg", "current_angle_deg"):
-        if not isfinite(getattr(options, name)):
-            raise StudyError(
-                f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}."
-            )
-    if not isfinite(amplitude) or amplitude < 0:
-        raise StudyError(f"the current density must be a finite number, zero or more A/mm2, found {amplitude:g}.")
-    return amplitude
+        return sqrt(2) * options.j_rms
+    return options.j_amplitude or 0.0
 
 
 def _result(solution) -> dict:

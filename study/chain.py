@@ -1,4 +1,4 @@
-"""Which sections the design chain of a study needs, and whether its vehicle, linkage and gears can be."""
+"""Which sections the design chain of a study needs."""
 
 from __future__ import annotations
 
@@ -71,37 +71,3 @@ def _linkage_problem(study: Study) -> str | None:
     if missing:
         return f'chain.linkage = "optimised" needs linkage.{missing[0]}; add it, or state the ratios and write "stated"'
     return None
-
-
-def check_libraries(study: Study) -> None:
-    """Build the vehicle, its dampers and scenarios, the linkage problem and the gear rules, as far as they are used.
-
-    StudyError with the sentence of the package that refuses them.
-    """
-    if drives(study):
-        _build_vehicle(study)
-    if searches_linkage(study):
-        _build_linkage(study)
-
-
-def _build_vehicle(study: Study) -> None:
-    from study import convert_vehicle
-    from vehicle.errors import VehicleError
-
-    try:
-        convert_vehicle.to_vehicle(study)
-        convert_vehicle.to_damping(study)
-        convert_vehicle.to_overload_scenarios(study)
-    except VehicleError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error
-
-
-def _build_linkage(study: Study) -> None:
-    from drivetrain.four_bar import LinkageError
-    from study import convert_linkage
-
-    try:
-        convert_linkage.to_linkage_problem(study)
-        convert_linkage.to_stated_linkage(study.linkage)
-    except LinkageError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error

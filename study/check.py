@@ -7,7 +7,8 @@ import sys
 
 from study.chain import drives, searches_linkage
 from study.errors import exit_on_wrong_study
-from study.read import check_study, read_study
+from study.read import read_study
+from study.usable import check_study
 from study.schema import Study
 
 

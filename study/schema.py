@@ -7,12 +7,11 @@ Defaults exist only for numerical resolution and for keys that are marked option
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Annotated, Literal, Optional
+from typing import Annotated, Any, Literal, Optional, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from units import split_unit, to_si
 
@@ -30,9 +29,11 @@ class Quantity:
         return f"{self.low:g} to {self.high:g} {split_unit(key)[1]}".rstrip()
 
     def holds(self, number: float) -> bool:
-        return isfinite(number) and self.low <= number <= self.high
+        """Whether the number lies in the range; NaN and the infinities do not."""
+        return self.low <= number <= self.high
 
 
+_LARGEST_NUMBER = 1e300  # integers of a file may be larger than any number that is calculated with
 Listed = Field(strict=False)  # a TOML array arrives as a list and is kept as a tuple
 
 
@@ -53,7 +54,7 @@ class Section(BaseModel):
 
     @field_validator("*", mode="after")
     @classmethod
-    def _stays_in_its_range(cls, value, info):
+    def _stays_in_its_range(cls, value: Any, info: ValidationInfo) -> Any:
         quantity = cls.quantity(info.field_name)
         if quantity is None or value is None:
             return value
@@ -65,7 +66,7 @@ class Section(BaseModel):
 
 def _out_of_range(number: float, quantity: Quantity, key: str) -> str:
     expected = f"give {quantity.allowed(key)} ({quantity.meaning})"
-    if not isfinite(number):
+    if not abs(number) < _LARGEST_NUMBER:  # also NaN
         return f"is not a finite number; {expected}"
     hint = " and looks like a value in metres" if key.endswith("_mm") and quantity.holds(number * 1e3) else ""
     return f"is outside the allowed range{hint}; {expected}"
@@ -101,7 +102,7 @@ class MachineSection(Section):
 
     @field_validator("poles", mode="after")
     @classmethod
-    def _poles_come_in_pairs(cls, poles):
+    def _poles_come_in_pairs(cls, poles: int) -> int:
         if poles % 2:
             raise ValueError("is odd, but magnets come in pairs; give an even number")
         return poles
@@ -163,7 +164,7 @@ class SweepSection(Section):
     j_overload_rms_A_per_mm2: Annotated[float, Quantity("overload current density in the copper", 0.1, 200)]
 
     @model_validator(mode="after")
-    def _ends_are_in_order(self):
+    def _ends_are_in_order(self) -> Self:
         _require_order(self, "back_iron_fraction_min", "back_iron_fraction_max")
         _require_order(self, "rotor_radius_fraction_min", "rotor_radius_fraction_max")
         _require_order(self, "j_nominal_rms_A_per_mm2", "j_overload_rms_A_per_mm2")
@@ -171,7 +172,7 @@ class SweepSection(Section):
 
     @field_validator("slots", "stator_diameters_mm", mode="after")
     @classmethod
-    def _named_once(cls, values):
+    def _named_once(cls, values: tuple[float, ...]) -> tuple[float, ...]:
         if len(set(values)) < len(values):
             raise ValueError("names a value twice; give each one once")
         return values
@@ -188,19 +189,45 @@ class SaturationSection(Section):
     limits_compared_T: Annotated[tuple[float, ...], Listed, Quantity("limits compared in the report", 0.3, 2.5)]
 
 
+_BELOW_THEIR_PEAK = (
+    ("force_rms_N", "force_peak_N"),
+    ("velocity_rms_m_per_s", "velocity_peak_m_per_s"),
+    ("power_rms_W", "power_peak_W"),
+    ("velocity_at_force_peak_m_per_s", "velocity_peak_m_per_s"),
+    ("force_at_power_peak_N", "force_peak_N"),
+    ("velocity_at_power_peak_m_per_s", "velocity_peak_m_per_s"),
+)
+_ROUNDED = 0.05  # of stated products: tables are rounded
+
+
 class RequirementsSection(Section):
-    """What the actuator must do, at the wheel (thesis Table 3.7); magnitudes, without the table's signs."""
+    """What the actuator must do, at the wheel (thesis Table 3.7); magnitudes, without the table's signs.
+
+    No damping, holding without motion and a peak force at standstill are zeros that mean something.
+    """
 
     maximum_damping_kNs_per_m: Annotated[float, Quantity("maximum regenerative damping", 0, 1e4)]
     force_rms_N: Annotated[float, Quantity("RMS actuator force", 1e-3, 1e6)]
-    velocity_rms_m_per_s: Annotated[float, Quantity("RMS actuator velocity", 1e-4, 1e2)]
-    power_rms_W: Annotated[float, Quantity("RMS actuator power", 1e-3, 1e6)]
+    velocity_rms_m_per_s: Annotated[float, Quantity("RMS actuator velocity", 0, 1e2)]
+    power_rms_W: Annotated[float, Quantity("RMS actuator power", 0, 1e6)]
     velocity_peak_m_per_s: Annotated[float, Quantity("peak actuator velocity", 1e-4, 1e2)]
     force_peak_N: Annotated[float, Quantity("peak actuator force", 1e-3, 1e6)]
-    velocity_at_force_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak force", 1e-4, 1e2)]
+    velocity_at_force_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak force", 0, 1e2)]
     power_peak_W: Annotated[float, Quantity("peak actuator power", 1e-3, 1e7)]
     force_at_power_peak_N: Annotated[float, Quantity("actuator force at the peak power", 1e-3, 1e6)]
     velocity_at_power_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak power", 1e-4, 1e2)]
+
+    @model_validator(mode="after")
+    def _no_mean_or_simultaneous_value_above_the_peak(self) -> Self:
+        for low, high in _BELOW_THEIR_PEAK:
+            _require_order(self, low, high, equal_allowed=True)
+        most = self.force_peak_N * self.velocity_peak_m_per_s
+        if self.power_peak_W > most * (1 + _ROUNDED):
+            raise ValueError(
+                f"has power_peak_W = {self.power_peak_W:g} above force_peak_N times velocity_peak_m_per_s = {most:g}; "
+                "reduce the power, or raise force or velocity"
+            )
+        return self
 
 
 class ChainSection(Section):
@@ -279,7 +306,7 @@ class ObstaclesSection(Section):
 
     @field_validator("amplitudes_mm", mode="after")
     @classmethod
-    def _every_obstacle_has_a_height(cls, amplitudes):
+    def _every_obstacle_has_a_height(cls, amplitudes: tuple[float, ...]) -> tuple[float, ...]:
         if 0 in amplitudes:
             raise ValueError("names an obstacle without amplitude; give millimetres above (bump) or below (pothole)")
         return amplitudes
@@ -313,7 +340,7 @@ class LinkageSection(Section):
     hardpoint_c_max_mm: Annotated[Optional[Point], _COORDINATE] = None
 
     @model_validator(mode="after")
-    def _ends_are_in_order(self):
+    def _ends_are_in_order(self) -> Self:
         _require_order(self, "ratio_nominal_mm_per_rad", "ratio_max_mm_per_rad", equal_allowed=True)
         return self
 
@@ -343,7 +370,7 @@ class LinkageSearchSection(Section):
     ] = None
 
     @model_validator(mode="after")
-    def _the_rule_has_its_number(self):
+    def _the_rule_has_its_number(self) -> Self:
         needed = {"smallest_ratio": "angles_worst_rad2", "best_angles": "ratio_max_mm_per_rad"}.get(self.choice)
         if needed and getattr(self, needed) is None:
             raise ValueError(f'has choice = "{self.choice}" without {needed}; add it')
@@ -496,7 +523,7 @@ class Study(Section):
         """The file that the study was read from."""
         return self._path
 
-    def subset(self, *sections: str) -> dict:
+    def subset(self, *sections: str) -> dict[str, Any]:
         """The named sections as plain data for a stage's input hash, without the path of the file."""
         present = {name: getattr(self, name) for name in sections}
         return {name: section and section.model_dump(mode="json") for name, section in present.items()}
@@ -505,4 +532,5 @@ class Study(Section):
 def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:
     low, high = getattr(section, low_key), getattr(section, high_key)
     if low > high or (low == high and not equal_allowed):
-        raise ValueError(f"has {low_key} = {low:g} not below {high_key} = {high:g}; exchange or change them")
+        relation = "above" if equal_allowed else "not below"
+        raise ValueError(f"has {low_key} = {low:g} {relation} {high_key} = {high:g}; exchange or change them")

@@ -95,3 +95,10 @@ def test_meshing_asks_first():
 
 def test_the_machines_of_the_studies_are_far_from_the_limit():
     assert expected_unknowns(machine(), MeshDensity()) < LARGEST_MESH / 20
+
+
+@pytest.mark.parametrize("drawn", [m for m in MACHINES.values()], ids=MACHINES.keys())
+def test_the_drawn_half_slot_has_the_area_of_the_meshed_one(drawn):
+    layout = star_of_slots(drawn.slots, drawn.pole_pairs)
+    meshed = mesh_cross_section(drawn, layout, DETAILED).half_slot_area
+    assert drawn.half_slot_area == pytest.approx(meshed, rel=0.02 if drawn.slots == 3 else 2e-3)

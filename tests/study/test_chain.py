@@ -7,7 +7,8 @@ import pytest
 from study import convert_linkage, convert_vehicle
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
-from study.read import STUDIES, check_study, read_study
+from study.read import STUDIES, read_study
+from study.usable import check_study
 from units import DEGREE
 from vehicle import thesis
 

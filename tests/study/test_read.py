@@ -23,7 +23,8 @@ from study.convert import (
     to_wire,
 )
 from study.errors import StudyError
-from study.read import STUDIES, check_study, read_study, study_files
+from study.read import STUDIES, read_study, study_files
+from study.usable import check_study
 from study.sentences import section_class
 from study.schema import Section, Study
 

@@ -65,7 +65,7 @@ def test_units_of_one_quantity_convert_back(row):
                 assert converted(converted(3.0, unit, other), other, unit) == pytest.approx(3.0)
 
 
-@pytest.mark.parametrize("key", numbers())
+@pytest.mark.parametrize("key", list(numbers()))
 def test_every_key_has_a_unit_of_the_table_or_is_a_pure_number(key):
     unit = split_unit(key.partition(".")[2])[1]
     assert (unit in FACTORS) != (key in PURE_NUMBERS), f"{key} has the unit {unit!r}"
