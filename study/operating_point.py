@@ -31,13 +31,13 @@ def asked_point(angle_deg: float, amplitude_A_per_mm2: float, current_angle_deg:
     for option, angle in (("--angle-deg", angle_deg), ("--current-angle-deg", current_angle_deg)):
         if not abs(angle) <= LARGEST_ANGLE:
             raise StudyError(
-                f"{option} {angle:g} makes no sense, the field repeats itself every turn; give degrees between "
-                f"{-LARGEST_ANGLE:g} and {LARGEST_ANGLE:g}."
+                f"{option} must be a finite number of degrees, at most {LARGEST_ANGLE:g} either way, found {angle:g}; the "
+                "field repeats itself every turn."
             )
     if not 0 <= amplitude_A_per_mm2 <= LARGEST_CURRENT_DENSITY:
         raise StudyError(
-            f"a current density of {amplitude_A_per_mm2:g} A/mm2 (amplitude) makes no sense, copper melts in a fifth of a "
-            f"second at {LARGEST_CURRENT_DENSITY:g}; give --j-rms or --j-amplitude between 0 and that."
+            f"the current density must be a finite number, zero or more and at most {LARGEST_CURRENT_DENSITY:g} A/mm2 "
+            f"(amplitude), found {amplitude_A_per_mm2:g}; at that copper melts in a fifth of a second."
         )
     return AskedPoint(
         angle_deg * DEGREE, amplitude_A_per_mm2 * AMPERE_PER_SQUARE_MILLIMETRE, current_angle_deg * DEGREE

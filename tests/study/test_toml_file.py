@@ -11,6 +11,7 @@ import pytest
 from study.errors import StudyError
 from study.read import STUDIES, read_study
 from study.toml_file import LARGEST_FILE
+from study.usable import check_study
 
 ROOT = STUDIES.parent
 RIGHT = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
@@ -143,3 +144,11 @@ def test_an_override_that_is_no_number_of_this_world(value, named):
 
 def test_an_integer_of_400_digits_where_an_integer_is_expected():
     assert "not a finite number" in refusal("motorcycle", ["machine.slots=" + "1" * 400])
+
+
+@posix
+@pytest.mark.parametrize("key", ["materials.steel", "dampers.maximum", "obstacles.shape"])
+def test_a_table_of_the_study_that_is_a_named_pipe(tmp_path, key):
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(StudyError, match=r"pipe\.csv"):
+        check_study(read_study("motorcycle", [f"{key}='{tmp_path / 'pipe.csv'}'"]))

@@ -115,12 +115,12 @@ def test_the_shipped_studies_are_usable(study, capsys):
 
 
 SENSELESS = {
-    "angle": ((1e300, 0.0, 0.0), "--angle-deg 1e+300"),
-    "angle, NaN": ((float("nan"), 0.0, 0.0), "--angle-deg nan"),
-    "current angle": ((0.0, 6.0, float("inf")), "--current-angle-deg inf"),
-    "current": ((0.0, 1e9, 0.0), "1e+09 A/mm2"),
-    "negative current": ((0.0, -1.0, 0.0), "-1 A/mm2"),
-    "current, NaN": ((0.0, float("nan"), 0.0), "nan A/mm2"),
+    "angle": ((1e300, 0.0, 0.0), "--angle-deg must be a finite number of degrees, at most 360000 either way, found 1e+300"),
+    "angle, NaN": ((float("nan"), 0.0, 0.0), "found nan"),
+    "current angle": ((0.0, 6.0, float("inf")), "--current-angle-deg must be"),
+    "current": ((0.0, 1e9, 0.0), "found 1e+09"),
+    "negative current": ((0.0, -1.0, 0.0), "zero or more and at most 1000 A/mm2 (amplitude), found -1"),
+    "current, NaN": ((0.0, float("nan"), 0.0), "found nan"),
 }
 
 
