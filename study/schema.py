@@ -285,7 +285,9 @@ class DampersSection(Section):
 class RideSection(Section):
     """Random road at cruise speed, and how much of the damping the actuator must give as a generator."""
 
-    maximum_regenerative_damping_kNs_per_m: Annotated[float, Quantity("damping without active power", 1e-3, 1e4)]
+    maximum_regenerative_damping_kNs_per_m: Annotated[
+        float, Quantity("damping without active power, 0: none is asked for", 0, 1e4)
+    ]
     road_class: Literal["A", "B", "C", "D", "E"]
     cruise_speed_km_per_h: Annotated[float, Quantity("speed on the random road", 1, 500)]
     road_duration_s: Annotated[float, Quantity("length of a run on the random road", 1, 600)]

@@ -18,10 +18,11 @@ from geometry.machine import GeometryError, Machine
 from geometry.mesh_size import check_mesh_size
 from materials.errors import MaterialError
 from materials.library import load_steel
-from study import convert_linkage, convert_vehicle
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
+from study.inputs_linkage import linkage_search, stated_hardpoints
 from study.inputs_machine import machine_family
+from study.inputs_vehicle import ride_case
 from study.read import MESH_NAMES, check_winding, sentence_part, with_keys
 from study.schema import Study
 from units import MILLIMETRE, SQUARE_MILLIMETRE
@@ -148,9 +149,7 @@ def check_libraries(study: Study) -> None:
 
 def _build(study: Study) -> None:
     if drives(study):
-        convert_vehicle.to_vehicle(study)
-        convert_vehicle.to_damping(study)
-        convert_vehicle.to_overload_scenarios(study)
+        ride_case(study)
     if searches_linkage(study):
-        convert_linkage.to_linkage_problem(study)
-        convert_linkage.to_stated_linkage(study.linkage)
+        linkage_search(study)
+    stated_hardpoints(study.linkage)

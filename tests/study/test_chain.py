@@ -4,9 +4,10 @@ import re
 
 import pytest
 
-from study import convert_linkage, convert_vehicle
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
+from study.inputs_linkage import linkage_problem, stated_hardpoints
+from study.inputs_vehicle import ride_case
 from study.read import STUDIES, read_study
 from study.usable import check_study
 from units import DEGREE
@@ -34,29 +35,27 @@ def refusal(path):
 
 
 def test_the_motorcycle_is_that_of_the_thesis():
-    study = read_study("motorcycle")
-    assert convert_vehicle.to_vehicle(study) == thesis.motorcycle()
-    curves = convert_vehicle.to_damping(study)
-    assert [curve.name for curve in curves] == ["maximum", "minimum", "mixed"]
-    assert all(curve.largest_damping <= 40e3 * (1 + 1e-9) for curve in curves)
-    assert len(convert_vehicle.to_overload_scenarios(study)) == 101
+    case = ride_case(read_study("motorcycle"))
+    assert case.vehicle == thesis.motorcycle()
+    assert [curve.name for curve in case.curves] == ["maximum", "minimum", "mixed"]
+    assert case.maximum_damping == 40e3
+    assert len(case.overload) == 101
 
 
 def test_the_quarter_car_is_that_of_the_thesis():
     study = read_study("automotive")
-    assert convert_vehicle.to_vehicle(study) == thesis.quarter_car()
-    assert convert_vehicle.to_overload_scenarios(study) == []
+    assert ride_case(study).vehicle == thesis.quarter_car() and not ride_case(study).overload
     assert drives(study) and not searches_linkage(study)
 
 
 def test_the_stated_linkage_has_its_printed_ratio():
     """Table 3.9 with the axle below the pivot: 170 mm/rad."""
     study = read_study("motorcycle")
-    linkage = convert_linkage.to_stated_linkage(study.linkage)
+    linkage = stated_hardpoints(study.linkage)
     assert linkage.motion([0.0]).transmission_ratio[0] == pytest.approx(0.170, abs=5e-4)
-    problem = convert_linkage.to_linkage_problem(study)
+    problem = linkage_problem(study)
     assert problem.travel.lowest == pytest.approx(-0.020) and problem.limits.angle_window == pytest.approx(50 * DEGREE)
-    assert convert_linkage.to_stated_linkage(read_study("automotive").linkage) is None
+    assert stated_hardpoints(read_study("automotive").linkage) is None
 
 
 WRONG = {

@@ -1,0 +1,1 @@
+"""What people read of each stage: its section of the report, tables and figures, in drawing units."""
