@@ -5,7 +5,7 @@ unit of their own inside: temperatures are in degrees Celsius and frequencies in
 """
 
 from math import pi
-from typing import Iterable, Mapping
+from typing import Any, Iterable, Mapping
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -76,7 +76,7 @@ def split_unit(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def to_si(name: str, value):
+def to_si(name: str, value: Any) -> tuple[str, Any]:
     """(quantity, value in SI) of a named value in drawing units; a tuple entry by entry, None and text as they are."""
     quantity, unit = split_unit(name)
     factor = FACTORS.get(unit, 1.0)
@@ -92,11 +92,10 @@ def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[s
     values: mapping or object with the quantity (``active_length``) as key or attribute
     names: with the unit to show as their end; None stays None
     """
-    read = values.__getitem__ if isinstance(values, Mapping) else lambda name: getattr(values, name)
-    found = {}
+    found: dict[str, object] = {}
     for name in names:
         quantity, unit = split_unit(name)
-        value = read(quantity)
+        value: Any = values[quantity] if isinstance(values, Mapping) else getattr(values, quantity)
         is_number = hasattr(value, "__truediv__") and unit != ""
         found[name] = value / FACTORS[unit] if is_number else value
     return found

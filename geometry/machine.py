@@ -103,9 +103,11 @@ class Machine:
         """Angle from the tooth axis at which the straight taper leaves the shoe [rad].
 
         That is the end of the opening, unless the shoe spans so wide an angle (few slots) that a straight line from
-        there would cut through it, or through the bore: then the shoe keeps its depth d_1 up to the line that touches it.
+        there would cut through it, or through the bore: then the shoe keeps its depth d_1 up to the line that touches
+        it.
         """
-        touching = asin(self.tooth_width / 2 / self.shoe_top_radius) + acos(self.opening_top_radius / self.shoe_top_radius)
+        flank = asin(self.tooth_width / 2 / self.shoe_top_radius)
+        touching = flank + acos(self.opening_top_radius / self.shoe_top_radius)
         return min(touching, self.opening_top_angle)
 
     @property
@@ -122,8 +124,8 @@ class Machine:
     def half_slot_area(self) -> float:
         """Area that one coil side may fill, from the axis of the slot to the tooth and down to its opening [m^2].
 
-        A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) + |sum of P x Q|)/2, by Green's theorem around the half slot; t: slot
-        pitch, f_sb and f_t: angles at which flank and taper end, P, Q: the ends of flank and taper.
+        A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) - P_sb x P_1 - P_1 x P_t)/2, Green's theorem around the half slot;
+        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between them.
         """
         flank_end, flank_start = self._flank(self.slot_bottom_radius), self._flank(self.shoe_top_radius)
         taper = rect(self.opening_top_radius, self.taper_angle)

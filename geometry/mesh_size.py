@@ -23,8 +23,8 @@ def check_mesh_size(machine: Machine, density: MeshDensity, sectors: int = 1) ->
     unknowns = expected_unknowns(machine, density, sectors)
     if unknowns > LARGEST_MESH:
         raise GeometryError(
-            f"the mesh would have about {_thousands(unknowns)} unknowns, more than the {_thousands(LARGEST_MESH)} that can "
-            f"be solved in reasonable time: {_advice(machine, density)}"
+            f"the mesh would have about {_thousands(unknowns)} unknowns, more than the {_thousands(LARGEST_MESH)} that "
+            f"can be solved in reasonable time: {_advice(machine, density)}"
         )
 
 

@@ -7,6 +7,8 @@ import json
 from math import sqrt
 from pathlib import Path
 
+from study.inputs_field import field_case
+
 from figures.export import write_vtu
 from figures.field_map import field_map
 from figures.whole_field import whole_field
@@ -17,7 +19,6 @@ from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from pipeline.arguments import add_overrides
 from study.errors import StudyError
-from study.inputs_field import field_case
 from study.operating_point import AskedPoint, asked_point
 from study.read import read_study
 from study.schema import Study

@@ -1,4 +1,4 @@
-"""The operating point that somebody asks for by hand: numbers that make no sense are refused before the field is solved."""
+"""The operating point that somebody asks for by hand: numbers without sense are refused before the field is solved."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from study.errors import StudyError
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
-# The field repeats itself with every turn; a larger number is a slip, and its rounding would soon be that of the result.
+# The field repeats itself with every turn; a larger number is a slip, and its rounding would soon be seen in the field.
 LARGEST_ANGLE = 3.6e5  # deg, a thousand turns
 # At 1000 A/mm2 copper melts in a fifth of a second: rho J^2 = 17 GW/m^3 on 3.4 MJ/(m^3 K) are 4900 K/s.
 LARGEST_CURRENT_DENSITY = 1000.0  # A/mm2, amplitude
@@ -31,8 +31,8 @@ def asked_point(angle_deg: float, amplitude_A_per_mm2: float, current_angle_deg:
     for option, angle in (("--angle-deg", angle_deg), ("--current-angle-deg", current_angle_deg)):
         if not abs(angle) <= LARGEST_ANGLE:
             raise StudyError(
-                f"{option} must be a finite number of degrees, at most {LARGEST_ANGLE:g} either way, found {angle:g}; the "
-                "field repeats itself every turn."
+                f"{option} must be a finite number of degrees, at most {LARGEST_ANGLE:g} either way, found {angle:g}; "
+                "the field repeats itself every turn."
             )
     if not 0 <= amplitude_A_per_mm2 <= LARGEST_CURRENT_DENSITY:
         raise StudyError(

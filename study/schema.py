@@ -55,12 +55,13 @@ class Section(BaseModel):
     @field_validator("*", mode="after")
     @classmethod
     def _stays_in_its_range(cls, value: Any, info: ValidationInfo) -> Any:
-        quantity = cls.quantity(info.field_name)
+        key = str(info.field_name)
+        quantity = cls.quantity(key)
         if quantity is None or value is None:
             return value
         for number in value if isinstance(value, tuple) else (value,):
             if not quantity.holds(number):
-                raise ValueError(_out_of_range(number, quantity, info.field_name))
+                raise ValueError(_out_of_range(number, quantity, key))
         return value
 
 
@@ -471,10 +472,12 @@ class PrintedActuatorSection(Section):
 
 
 class PrintedMachineSection(Section):
-    """What somebody else states for the machine of ``[machine]``; it is matched in the same way and shown beside ours."""
+    """What somebody else states for the machine of ``[machine]``; it is matched in the same way, shown beside ours."""
 
     source: Annotated[str, Field(min_length=1)]
-    torque_nominal_Nm_per_m: Annotated[float, Quantity("stated torque per length at the nominal current density", 0.01, 1e5)]
+    torque_nominal_Nm_per_m: Annotated[
+        float, Quantity("stated torque per length at the nominal current density", 0.01, 1e5)
+    ]
     half_slot_area_mm2: Annotated[float, Quantity("stated half-slot area", 0.01, 1e5)]
 
 

@@ -10,8 +10,8 @@ from typing import Any, Callable, get_args
 
 from pydantic import ValidationError
 
-from units import converted, same_quantity, split_unit
 from study.schema import Section, Study
+from units import converted, same_quantity, split_unit
 
 _TEMPLATE = "studies/template.toml"
 _LONGEST_SHOWN = 60

@@ -1,4 +1,4 @@
-"""The table in a TOML file, or one sentence about why there is none; whatever the path leads to, it is never waited for."""
+"""The table in a TOML file, or one sentence about why there is none; nothing that the path leads to is waited for."""
 
 from __future__ import annotations
 

@@ -42,8 +42,8 @@ def check_diameters(study: Study) -> None:
     diameters = study.sweep.stator_diameters_mm
     if len(diameters) < FEWEST_DIAMETERS:
         raise StudyError(
-            f"{study.path}: sweep.stator_diameters_mm names {len(diameters)}, but the polynomials over the diameter need "
-            f"{FEWEST_DIAMETERS}; add {FEWEST_DIAMETERS - len(diameters)} or more."
+            f"{study.path}: sweep.stator_diameters_mm names {len(diameters)}, but the polynomials over the diameter "
+            f"need {FEWEST_DIAMETERS}; add {FEWEST_DIAMETERS - len(diameters)} or more."
         )
 
 
@@ -65,7 +65,7 @@ def check_steel(study: Study) -> None:
 
 
 def check_sweep(study: Study) -> None:
-    """Every slot count and diameter must have a design that can be built and meshed, and one of all must take the wire."""
+    """Every slot count and diameter must have a design that can be built and meshed; one of all must take the wire."""
     largest = 0.0
     for slots, diameter in product(study.sweep.slots, study.sweep.stator_diameters_mm):
         machines = _buildable(study, slots, diameter)
@@ -100,9 +100,9 @@ def _buildable(study: Study, slots: int, diameter: float) -> list[Machine]:
             refused[_rule(error)] += 1
     if not found:
         raise StudyError(
-            f"{study.path}: no design of the sweep with sweep.slots = {slots} and sweep.stator_diameters_mm = {diameter:g} "
-            f"can be built, mostly since {refused.most_common(1)[0][0]}; change the ranges sweep.back_iron_fraction_* and "
-            "sweep.rotor_radius_fraction_*, or leave that number out."
+            f"{study.path}: no design of the sweep with sweep.slots = {slots} and sweep.stator_diameters_mm = "
+            f"{diameter:g} can be built, mostly since {refused.most_common(1)[0][0]}; change the ranges "
+            "sweep.back_iron_fraction_* and sweep.rotor_radius_fraction_*, or leave that number out."
         )
     return found
 
@@ -130,9 +130,9 @@ def _check_wire(study: Study, area: float) -> None:
     chosen, packing = study.winding_selection.si, study.winding.packing_factor
     if pi / 4 * chosen.wire_diameter**2 > packing * (1 + chosen.packing_tolerance) * area:
         raise StudyError(
-            f"{study.path}: winding_selection.wire_diameter_mm = {study.winding_selection.wire_diameter_mm:g} fits no slot "
-            f"of the sweep, a coil side has {area / SQUARE_MILLIMETRE:.3g} mm2 at most and winding.packing_factor = "
-            f"{packing:g} of that is copper; take a thinner wire."
+            f"{study.path}: winding_selection.wire_diameter_mm = {study.winding_selection.wire_diameter_mm:g} fits no "
+            f"slot of the sweep, a coil side has {area / SQUARE_MILLIMETRE:.3g} mm2 at most and winding.packing_factor "
+            f"= {packing:g} of that is copper; take a thinner wire."
         )
 
 

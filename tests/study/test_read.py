@@ -24,9 +24,9 @@ from study.convert import (
 )
 from study.errors import StudyError
 from study.read import STUDIES, read_study, study_files
-from study.usable import check_study
+from study.schema import Study
 from study.sentences import section_class
-from study.schema import Section, Study
+from study.usable import check_study
 
 
 @pytest.fixture(scope="module")
