@@ -1,13 +1,9 @@
-"""Which sections the design chain of a study needs, and whether its vehicle, linkage and gears can be."""
+"""Which sections the design chain of a study needs."""
 
 from __future__ import annotations
 
-from drivetrain.four_bar import LinkageError
 from study.errors import StudyError
-from study.inputs_linkage import linkage_search
-from study.inputs_vehicle import ride_case
 from study.schema import MatchSection, Study
-from vehicle.errors import VehicleError
 
 TEMPLATE = "studies/template.toml"
 _OF_A_WHEEL = (
@@ -107,28 +103,3 @@ def _linkage_problem(study: Study) -> str | None:
     if missing:
         return f'chain.linkage = "optimised" needs linkage.{missing[0]}; add it, or state the ratios and write "stated"'
     return None
-
-
-def check_libraries(study: Study) -> None:
-    """Build the vehicle, its dampers and scenarios, the linkage problem and the gear rules, as far as they are used.
-
-    StudyError with the sentence of the package that refuses them.
-    """
-    if drives(study):
-        _build_vehicle(study)
-    if searches_linkage(study):
-        _build_linkage(study)
-
-
-def _build_vehicle(study: Study) -> None:
-    try:
-        ride_case(study)
-    except VehicleError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error
-
-
-def _build_linkage(study: Study) -> None:
-    try:
-        linkage_search(study)
-    except LinkageError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error
