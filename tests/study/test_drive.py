@@ -70,7 +70,7 @@ def test_a_direct_drive_states_no_gears():
     [
         ("pump", "gearbox_stages = 0", "gearbox_stages = 1", "match.gearbox_stages = 1 needs the section [gearbox]"),
         ("robot_joint", "gear_poisson_ratio = 0.3\n", "", "needs match.gear_poisson_ratio"),
-        ("pump", "[assembly]", "[linkage]\nratio_nominal_mm_per_rad = 100.0\nratio_max_mm_per_rad = 100.0\n[assembly]",
+        ("pump", "[flux_map]", "[linkage]\nratio_nominal_mm_per_rad = 100.0\nratio_max_mm_per_rad = 100.0\n[flux_map]",
          "[drive] stands in the place of [linkage]"),
         ("automotive", "[linkage]\nratio_nominal_mm_per_rad = 115.0\nratio_max_mm_per_rad = 115.0\n", "",
          "or state a load on a shaft in [drive]"),
