@@ -5,7 +5,7 @@ unit of their own inside: temperatures are in degrees Celsius and frequencies in
 """
 
 from math import pi
-from typing import Iterable, Mapping
+from typing import Any, Iterable, Mapping
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -62,9 +62,10 @@ MICROHENRY = FACTORS["uH"]  # H
 MU_0 = 4e-7 * pi  # H/m, vacuum permeability (the 2019 SI value differs by 1e-10)
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 
-# How a unit is written where that is not its own name with "per" as a stroke.
-_WRITTEN = {"deg": "°", "degC": "°C", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "rad2": "rad²", "percent": "%", "ohm": "Ω",
-            "Ohm": "Ω", "mOhm": "mΩ", "mohm": "mΩ", "kOhm": "kΩ", "uH": "µH", "um": "µm"}  # fmt: skip
+# How the parts of a unit are written that are not their own names.
+_WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "m3": "m³", "cm3": "cm³",
+            "s2": "s²", "rad2": "rad²", "deg2": "deg²", "percent": "%", "ohm": "Ω", "Ohm": "Ω", "mOhm": "mΩ",
+            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm"}  # fmt: skip
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -75,7 +76,7 @@ def split_unit(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def to_si(name: str, value):
+def to_si(name: str, value: Any) -> tuple[str, Any]:
     """(quantity, value in SI) of a named value in drawing units; a tuple entry by entry, None and text as they are."""
     quantity, unit = split_unit(name)
     factor = FACTORS.get(unit, 1.0)
@@ -91,23 +92,23 @@ def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[s
     values: mapping or object with the quantity (``active_length``) as key or attribute
     names: with the unit to show as their end; None stays None
     """
-    read = values.__getitem__ if isinstance(values, Mapping) else lambda name: getattr(values, name)
-    found = {}
+    found: dict[str, object] = {}
     for name in names:
         quantity, unit = split_unit(name)
-        value = read(quantity)
+        value: Any = values[quantity] if isinstance(values, Mapping) else getattr(values, quantity)
         is_number = hasattr(value, "__truediv__") and unit != ""
         found[name] = value / FACTORS[unit] if is_number else value
     return found
 
 
 def written(unit: str) -> str:
-    """A unit as a heading writes it: ``mm/rad`` of ``mm_per_rad``, ``°`` of ``deg``."""
-    if unit in _WRITTEN:
-        return _WRITTEN[unit]
-    above, per, below = unit.partition("_per_")
-    text = "/".join(_WRITTEN.get(part, part.replace("_", " ")) for part in ((above, below) if per else (above,)))
-    return text.replace("s2", "s²").replace("m2", "m²").replace("m3", "m³")
+    """A unit as a heading writes it: ``mm/rad`` of ``mm_per_rad``, ``°`` of ``deg``, ``1/K`` of ``per_K``."""
+    return "/".join(_written_product(part) for part in f"_{unit}".split("_per_")) if unit else ""
+
+
+def _written_product(unit: str) -> str:
+    parts = unit.removeprefix("_").split("_")
+    return " ".join(_WRITTEN.get(part, part) for part in parts) or "1"
 
 
 def same_quantity(unit: str, other: str) -> bool:

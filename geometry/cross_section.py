@@ -17,6 +17,7 @@ from geometry.checks import check_machine
 from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import Machine
+from geometry.mesh_size import check_mesh_size
 from geometry.plane_mesh import PlaneMesh
 from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
@@ -115,6 +116,18 @@ class CrossSection:
         return self.machine.magnetisation.direction_angle(np.arctan2(points[1] - y, points[0] - x), centre_line)
 
     @cached_property
+    def rotor_elements(self) -> np.ndarray:
+        """Whether each element turns with the rotor (E,): all inside the middle of the air gap."""
+        centroids = self.mesh.p[:, self.mesh.t].mean(axis=1)
+        return np.hypot(*centroids) < self.machine.mid_gap_radius
+
+    @property
+    def rotor_band(self) -> np.ndarray:
+        """Elements of the gap on the rotor side of the sliding circle."""
+        gap = self.mesh.subdomains["gap"]
+        return gap[self.rotor_elements[gap]]
+
+    @cached_property
     def half_slot_area(self) -> float:
         """Area of one coil side as meshed [m^2]; the median, so that a defect of one slot does not count."""
         areas = _triangle_areas(self.mesh)
@@ -153,10 +166,11 @@ def mesh_cross_section(
 ) -> CrossSection:
     """Mesh the smallest sector that field and winding repeat on, or the whole machine.
 
-    Raises GeometryError when the machine cannot be built (see ``geometry/checks.py``).
+    Raises GeometryError when the machine cannot be built (see ``geometry/checks.py``) or its mesh would be too large.
     """
     check_machine(machine)
     sectors = 1 if whole or not sector_symmetric(layout, machine.sectors, machine.is_antiperiodic) else machine.sectors
+    check_mesh_size(machine, density, sectors)
     antiperiodic = sectors > 1 and machine.is_antiperiodic
     counts = 2 * machine.slots // sectors, 2 * machine.poles // sectors
     cells = half_cells(machine, density)

@@ -53,3 +53,10 @@ class MachineFamily:
             back_iron_width=back_iron_width,
             rotor_outer_radius=rotor_outer_radius,
         ).reference
+
+
+@dataclass(frozen=True)
+class MatchedMachine:
+    """The cross-section that gearbox and motor were matched to; its winding is chosen by the stages behind it."""
+
+    machine: Machine

@@ -107,6 +107,8 @@ class Morpher:
                 "a mesh of magnets that touch (magnet_arc_fraction = 1) cannot be moved onto magnets that do not, "
                 "nor back: mesh the machine anew, with magnet_arc_fraction below 1 where the arc is to change"
             )
+        if machine.taper_touches_shoe != base.taper_touches_shoe:
+            raise GeometryError("the tapers of these two machines have different corners: mesh the machine anew")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+from materials.curve_units import wrong_unit
 from materials.errors import MaterialError
 from materials.reluctivity import SplineReluctivity
 
@@ -26,11 +27,13 @@ def load_steel(name: str, folder: Path | str = ".") -> SplineReluctivity:
 
     name: a grade of ``known_steels()``, or the path of a curve file ending in ``.csv``
     folder: folder from which a relative path counts, that is the folder of the study file
-    Raises MaterialError: unknown grade (lists the known ones), missing file, or a curve that cannot be used (names
-    the file and the line).
+    Raises MaterialError: unknown grade (lists the known ones), missing file, a curve in other units than its columns
+    say, or one that cannot be used (names the file and the line).
     """
     path = steel_file(name, folder)
     lines, H, B = read_curve(path)
+    if said := wrong_unit(H, B):
+        raise MaterialError(f"{path.name}: {said}")
     try:
         return SplineReluctivity.from_points(Path(name).stem.removesuffix("_bh"), H, B)
     except MaterialError as error:

@@ -76,7 +76,7 @@ def _covariance_of_step(ride: LinearRide, step: float) -> np.ndarray:
 
 
 def _indices(ride: LinearRide, covariance: np.ndarray) -> RideIndices:
-    def root(row):
+    def root(row: np.ndarray) -> float:
         return sqrt(max(row @ covariance @ row, 0.0))
 
     return RideIndices(
