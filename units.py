@@ -125,8 +125,8 @@ def converted(value: float, unit: str, other: str) -> float | None:
     return value * from_unit / to_unit
 
 
-# What the last word of a name is measured in throughout the project, as docstrings write it; "1" is a pure number. Words
-# that mean several things (speed, density, ratio) are not here: a docstring states their unit.
+# What the last word of a name is measured in throughout the project, as docstrings write it; "1" is a pure number.
+# Words that mean several things (speed, density, ratio) are not here: a docstring states their unit.
 SYMBOLS: dict[str, str] = {
     word: unit
     for unit, words in {
@@ -151,7 +151,8 @@ SYMBOLS: dict[str, str] = {
         "s": "time duration",
         "degC": "temperature",
         "m/rad": "transmission_ratio linkage_ratio",
-        "1": "fraction factor share packing efficiency teeth planets slots poles pairs order turns strands layers count",
+        "1": "fraction factor share packing efficiency teeth planets slots poles pairs order turns strands layers "
+        "count",
     }.items()
     for word in words.split()
 }
