@@ -125,7 +125,7 @@ class Machine:
         """Area that one coil side may fill, from the axis of the slot to the tooth and down to its opening [m^2].
 
         A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) - P_sb x P_1 - P_1 x P_t)/2, Green's theorem around the half slot;
-        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between them.
+        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between.
         """
         flank_end, flank_start = self._flank(self.slot_bottom_radius), self._flank(self.shoe_top_radius)
         taper = rect(self.opening_top_radius, self.taper_angle)
