@@ -4,8 +4,13 @@
 unit of their own inside: temperatures are in degrees Celsius and frequencies in hertz.
 """
 
+from collections.abc import Iterable, Mapping
 from math import pi
-from typing import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -63,8 +68,10 @@ MU_0 = 4e-7 * pi  # H/m, vacuum permeability (the 2019 SI value differs by 1e-10
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 
 # How a unit is written where that is not its own name with "per" as a stroke.
-_WRITTEN = {"deg": "°", "degC": "°C", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "rad2": "rad²", "percent": "%", "ohm": "Ω",
-            "Ohm": "Ω", "mOhm": "mΩ", "mohm": "mΩ", "kOhm": "kΩ", "uH": "µH", "um": "µm"}  # fmt: skip
+_WRITTEN = {
+    "deg": "°", "degC": "°C", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "rad2": "rad²", "percent": "%",
+    "ohm": "Ω", "Ohm": "Ω", "mOhm": "mΩ", "mohm": "mΩ", "kOhm": "kΩ", "uH": "µH", "um": "µm",
+}  # fmt: skip
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -75,27 +82,27 @@ def split_unit(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def to_si(name: str, value):
+def to_si(name: str, value: object) -> tuple[str, object]:
     """(quantity, value in SI) of a named value in drawing units; a tuple entry by entry, None and text as they are."""
     quantity, unit = split_unit(name)
     factor = FACTORS.get(unit, 1.0)
     if isinstance(value, tuple):
         return quantity, tuple(to_si(name, one)[1] for one in value)
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return quantity, value * factor if is_number and factor != 1.0 else value
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and factor != 1.0:
+        return quantity, value * factor
+    return quantity, value
 
 
 def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[str, object]:
-    """Values in SI as a drawing or table shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
+    """Values in SI as a drawing shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
 
     values: mapping or object with the quantity (``active_length``) as key or attribute
     names: with the unit to show as their end; None stays None
     """
-    read = values.__getitem__ if isinstance(values, Mapping) else lambda name: getattr(values, name)
-    found = {}
+    found: dict[str, object] = {}
     for name in names:
         quantity, unit = split_unit(name)
-        value = read(quantity)
+        value: Any = values[quantity] if isinstance(values, Mapping) else getattr(values, quantity)
         is_number = hasattr(value, "__truediv__") and unit != ""
         found[name] = value / FACTORS[unit] if is_number else value
     return found

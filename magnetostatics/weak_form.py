@@ -12,7 +12,8 @@ sliding circle. Newton's method solves it: the step d from A follows from the re
     integral nu grad d . grad v + 2 nu' (grad A . grad d) (grad A . grad v)  =  R(v)
 
 ``magnetostatics/model.py`` solves the same problem on the same triangles by hand-written assembly and a factorisation
-whose symbolic part is kept, many times faster (``benchmarks/speed.py`` says how many); a test holds the two together.
+whose symbolic part is kept, six to ten times faster from the mesh on and up to eighteen times where its numbering is
+there already (``benchmarks/other_codes.py`` measures it); a test holds the two together.
 A new term, say eddy currents, an anisotropic nu or a magnet that demagnetises, is a form here before it is fast there.
 """
 
@@ -93,17 +94,23 @@ class WeakSolution:
 class WeakForm:
     """A meshed cross-section with its materials and its rotor at one angle [rad], mechanical, as in ``OperatingPoint``.
 
+    degree: of the polynomials that the quadrature integrates exactly; 2 is that of ``FieldModel``
     Arrays over the mesh are (E, Q) as in scikit-fem: element, quadrature point.
     """
 
     def __init__(
-        self, section: CrossSection, materials: MachineMaterials, angle: float, order: TriangleOrder = QUADRATIC
+        self,
+        section: CrossSection,
+        materials: MachineMaterials,
+        angle: float,
+        order: TriangleOrder = QUADRATIC,
+        degree: int = 2,
     ) -> None:
         topology = Topology(section, order)
         turn = topology.unknowns.turn(angle)
         column, sign = topology.unknowns.turned(turn.edges)
         self.section, self.materials, self.regions = section, materials, section.mesh.subdomains
-        self.basis = Basis(_sheared(section, topology.rotor_band, turn.rest), order.element, intorder=2)
+        self.basis = Basis(_sheared(section, topology.rotor_band, turn.rest), order.element, intorder=degree)
         self.stator_gap = np.setdiff1d(self.regions["gap"], topology.rotor_band)
         # a = P u: every degree of freedom is plus or minus a free unknown (sector, sliding circle), or zero (outside).
         self.P = sp.csr_matrix((sign, (np.arange(topology.size), column)), (topology.size, topology.unknowns.count))
@@ -151,7 +158,8 @@ class WeakForm:
         return WeakSolution(a, self.section.sectors * turns @ a, self._torque(a), residuals)
 
     def _newton(self, load: np.ndarray, tolerance: float) -> tuple[np.ndarray, tuple[float, ...]]:
-        u, scale, residuals = np.zeros(self.P.shape[1]), np.linalg.norm(self.P.T @ load), []
+        residuals: list[float] = []
+        u, scale = np.zeros(self.P.shape[1]), np.linalg.norm(self.P.T @ load)
         while len(residuals) < _MOST_ITERATIONS:
             r = self._residual(u, load)
             residuals.append(float(np.linalg.norm(r) / scale) if scale else 0.0)
@@ -182,7 +190,7 @@ class WeakForm:
         return {"a": field, "nu": nu, "slope": slope}
 
     def _torque(self, a: np.ndarray) -> float:
-        gap = Basis(self.basis.mesh, self.basis.elem, elements=self.stator_gap, intorder=2)
+        gap = Basis(self.basis.mesh, self.basis.elem, elements=self.stator_gap, quadrature=self.basis.quadrature)
         upwards = self.section.stator_gap.gradient(np.asarray(gap.global_coordinates()))
         return float(self.section.sectors * asm(ring_torque, gap, a=a, upwards=upwards))
 

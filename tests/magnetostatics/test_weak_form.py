@@ -29,7 +29,7 @@ from units import DEGREE
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.0, gap_layers=2, across_iron=1.0)
 RATED = 8.485e6  # A/m^2
 TOLERANCE = 1e-12  # of the residual; the tangent is a hundred times softer than the load in places
-SAME_POTENTIAL, SAME = 1e-9, 1e-11  # relative; flux linkage and torque are means, and closer than single nodes
+SAME_POTENTIAL, SAME = 1e-9, 1e-11  # relative; flux linkage and torque are means
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,8 @@ def sector(**changes) -> CrossSection:
 
 def with_defects() -> CrossSection:
     whole = section_of(reference_machine(), COARSE, whole=True)
-    return Morpher(whole).to(whole.machine, (StaticEccentricity(60e-6, 0.7), DynamicEccentricity(40e-6), MagnetPosition(3, 0.01)))
+    defects = StaticEccentricity(60e-6, 0.7), DynamicEccentricity(40e-6), MagnetPosition(3, 0.01)
+    return Morpher(whole).to(whole.machine, defects)
 
 
 def other_materials() -> MachineMaterials:
