@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearbox.errors import GearError
-from gearbox.train import GearTrain
+from gearbox.train import GearTrain, Stage
 from units import MILLIMETRE
 
 
@@ -75,7 +75,7 @@ def actuator_layout(train: GearTrain, machine: MachineEnvelope, housing: Housing
     return Layout((casing, lever, shaft, *parts), length, 2 * (inner + housing.wall))
 
 
-def _stage_parts(train, stage, number, start):
+def _stage_parts(train: GearTrain, stage: Stage, number: int, start: float) -> list[Part]:
     build, gears, width = train.construction, stage.gears, stage.face_width
     thick, orbit = build.flange_thickness(width), gears.centre_distance
     pin = build.bore_fraction * gears.planet.root_radius
@@ -91,7 +91,7 @@ def _stage_parts(train, stage, number, start):
     return [Part(f"{name} {number}", *rest) for name, *rest in rows]
 
 
-def _machine_parts(machine, start):
+def _machine_parts(machine: MachineEnvelope, start: float) -> list[Part]:
     stack, end = start + machine.end_winding_length, machine.end_winding_length
     slots = (machine.rotor_outer_radius, machine.stator_outer_radius)
     return [

@@ -70,7 +70,8 @@ class GearTrain:
     def efficiency(self) -> tuple[float, float]:
         """(slow drives fast, fast drives slow), meshing losses alone."""
         pairs = [stage_efficiency(stage.gears, self.friction) for stage in self.stages]
-        return tuple(float(prod(column)) for column in zip(*pairs, strict=True))
+        slow_drives, fast_drives = zip(*pairs, strict=True)
+        return float(prod(slow_drives)), float(prod(fast_drives))
 
     def loads(self, load: StageLoad) -> tuple[StageLoad, ...]:
         """Load of each stage when this one acts at the slow shaft."""
