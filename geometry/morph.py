@@ -2,8 +2,8 @@
 
 Nodes on the outline keep their place along their curve; those inside follow by a Laplace equation on the half cell,
 with small triangles stiffer than large ones; the gap layers are laid anew, so the sliding circle stays equally spaced.
-A design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a field
-solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
+A design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a
+field solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
 
 Manufacturing defects move nodes as well, on the mesh of the whole machine and each by a ``Defect`` of its own
 (``geometry/defects.py``): what they move is added up, so their order does not matter.

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
 from vehicle.ride import RideHistory
 
 
-def rms(values) -> float:
+def rms(values: np.ndarray) -> float:
     """Root mean square over the whole run, its start from rest included."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def at_largest(values) -> int:
+def at_largest(values: np.ndarray) -> int:
     """Position of the value of largest magnitude."""
     return int(np.argmax(np.abs(values)))
 
@@ -56,12 +57,12 @@ class RideSummary:
     at_power_peak: WorkingPoint
     energy_error: float
 
-    def as_dict(self) -> dict:
+    def as_dict(self) -> dict[str, Any]:
         """Plain numbers and words, for a file."""
         return asdict(self)
 
     @classmethod
-    def from_dict(cls, values: dict) -> RideSummary:
+    def from_dict(cls, values: dict[str, Any]) -> RideSummary:
         """The summary that ``as_dict`` came from."""
         points = {name: WorkingPoint(**values[name]) for name in ("at_force_peak", "at_power_peak")}
         return cls(**{**values, **points})

@@ -24,7 +24,7 @@ class Tyre:
 
     stiffness: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive("tyre", stiffness=self.stiffness)
 
 
@@ -36,7 +36,7 @@ class EndStops:
     rebound: float
     stiffness: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.bump < 0 < self.rebound:
             raise VehicleError(
                 f"end stops: bump must be below and rebound above the static position, found {self.bump:g} and "
@@ -63,7 +63,7 @@ class Axle:
     tyre: Tyre
     stops: EndStops = NO_STOPS
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive(
             "axle",
             sprung_mass=self.sprung_mass,
@@ -91,14 +91,21 @@ class Vehicle:
     """A body on axles, front first. The concrete vehicles give the attributes named here.
 
     sprung_mass [kg], pitch_inertia [kg m^2], cog_height: centre of gravity above the road [m];
-    axles: (n,); passive_dampers: curves of all axles but the last, (n - 1,).
     """
 
     sprung_mass: float
     pitch_inertia: float
     cog_height: float
-    axles: tuple[Axle, ...]
-    passive_dampers: tuple[DamperCurve, ...]
+
+    @property
+    def axles(self) -> tuple[Axle, ...]:
+        """All axles (n,), front first."""
+        raise NotImplementedError
+
+    @property
+    def passive_dampers(self) -> tuple[DamperCurve, ...]:
+        """Damper curves of all axles but the last, (n - 1,)."""
+        raise NotImplementedError
 
     @property
     def actuated(self) -> Axle:
@@ -161,7 +168,7 @@ class Motorcycle(Vehicle):
     rear: Axle
     front_damper: DamperCurve
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive("motorcycle", sprung_mass=self.sprung_mass, pitch_inertia=self.pitch_inertia)
         require_positive("motorcycle", cog_height=self.cog_height)
         carried = self.front.sprung_mass + self.rear.sprung_mass
@@ -220,7 +227,7 @@ class QuarterCar(Vehicle):
     cog_height = 0.0  # propulsion does not act on it
     passive_dampers = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive(
             "quarter car",
             sprung_mass=self.sprung_mass,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -114,7 +115,7 @@ def _nominal_point(runs: Sequence[RideSummary]) -> dict[str, Required]:
     return {name: Required(float(np.mean([getattr(run, name) for run in worst])), note) for name in names}
 
 
-def _peaks(runs: Sequence[RideSummary]) -> dict[str, Required | None]:
+def _peaks(runs: Sequence[RideSummary]) -> dict[str, Any]:
     if not runs:
         return dict.fromkeys(_PEAKS)
     fastest = max(runs, key=lambda run: abs(run.velocity_peak))
