@@ -4,8 +4,13 @@
 unit of their own inside: temperatures are in degrees Celsius and frequencies in hertz.
 """
 
+from collections.abc import Iterable, Mapping
 from math import pi
-from typing import Any, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -82,8 +87,9 @@ def to_si(name: str, value: Any) -> tuple[str, Any]:
     factor = FACTORS.get(unit, 1.0)
     if isinstance(value, tuple):
         return quantity, tuple(to_si(name, one)[1] for one in value)
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return quantity, value * factor if is_number and factor != 1.0 else value
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and factor != 1.0:
+        return quantity, value * factor
+    return quantity, value
 
 
 def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[str, object]:

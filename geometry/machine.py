@@ -9,6 +9,8 @@ from cmath import phase, rect
 from dataclasses import dataclass
 from math import acos, asin, gcd, pi
 
+import numpy as np
+
 
 class GeometryError(ValueError):
     """A machine that cannot be drawn; the message says what is wrong and which parameter to move."""
@@ -17,7 +19,7 @@ class GeometryError(ValueError):
 class Magnetisation:
     """Direction of the remanence inside one magnet; the concrete patterns are below."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         """Angle of the magnetisation vector of an outward magnet [rad].
 
         position_angle: polar angle of the point [rad], array of any shape
@@ -30,7 +32,7 @@ class Magnetisation:
 class ParallelMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along the magnet's centre line."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return 0.0 * position_angle + centre_angle
 
 
@@ -38,7 +40,7 @@ class ParallelMagnetisation(Magnetisation):
 class RadialMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along its own radius."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return position_angle + 0.0 * centre_angle
 
 
