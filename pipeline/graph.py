@@ -84,12 +84,14 @@ class Stage:
 
     name: as in ``make <name>``; function: typed values -> artefact; says: what it does, in a few words
     files: typed values -> ``figures.files.File``s, None where people have nothing to read of it
+    on_request: runs only when it is named
     """
 
     name: str
     function: Callable
     says: str
     files: Callable | None = None
+    on_request: bool = False
 
 
 Node = Source | View | Stage
@@ -118,6 +120,11 @@ class Graph:
     def stages(self) -> tuple[Stage, ...]:
         """Every stage after those it reads from, otherwise as declared."""
         return _ordered(self)
+
+    @property
+    def usual(self) -> tuple[Stage, ...]:
+        """The stages that run when none is named."""
+        return tuple(stage for stage in self.stages if not stage.on_request)
 
     def stage(self, name: str) -> Stage:
         """The stage of a name; KeyError for an unknown one."""
