@@ -57,7 +57,8 @@ class Output:
 
     def at_speed(self, speed: float) -> str:
         """``1.64 m/s`` of a speed in SI [m/s or rad/s]."""
-        return f"{speed / FACTORS[self.speed_unit]:.3g} {written(self.speed_unit)}"
+        shown = speed / FACTORS[self.speed_unit]
+        return f"{shown:.3g} {written(self.speed_unit)}" if shown < 1000 else f"{shown:.0f} {written(self.speed_unit)}"
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,6 @@ _REMEDIES = (
     "Which input would make a failing requirement hold, moved alone; a dash: not within a third to three times its "
     "value. Fewer turns at the same copper mean more current in the same proportion."
 )
-_ABOVE = 10.0  # times the inertia of the drive; a load beyond it is hard to control
 
 
 def files(found: Outcome, output: Output) -> Iterator[File]:
@@ -161,5 +160,4 @@ def _load(found: Outcome) -> tuple[str, ...]:
     ratio = found.load_inertia_ratio
     if ratio is None:
         return ()
-    said = f", above {_ABOVE:g}, which a stiff control copes with badly" if ratio > _ABOVE else ""
-    return (f"The inertia of the load is {ratio:.3g} times that of the drive, both at the shaft{said}.",)
+    return (f"The inertia of the load is {ratio:.3g} times that of the drive, both at the shaft.",)
