@@ -4,8 +4,13 @@
 unit of their own inside: temperatures are in degrees Celsius and frequencies in hertz.
 """
 
+from collections.abc import Iterable, Mapping
 from math import pi
-from typing import Any, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -82,12 +87,13 @@ def to_si(name: str, value: Any) -> tuple[str, Any]:
     factor = FACTORS.get(unit, 1.0)
     if isinstance(value, tuple):
         return quantity, tuple(to_si(name, one)[1] for one in value)
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return quantity, value * factor if is_number and factor != 1.0 else value
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and factor != 1.0:
+        return quantity, value * factor
+    return quantity, value
 
 
 def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[str, object]:
-    """Values in SI as a drawing or table shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
+    """Values in SI as a drawing shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
 
     values: mapping or object with the quantity (``active_length``) as key or attribute
     names: with the unit to show as their end; None stays None
@@ -123,3 +129,43 @@ def converted(value: float, unit: str, other: str) -> float | None:
     if from_unit is None or to_unit is None:
         return None
     return value * from_unit / to_unit
+
+
+# What the last word of a name is measured in throughout the project, as docstrings write it; "1" is a pure number.
+# Words that mean several things (speed, density, ratio) are not here: a docstring states their unit.
+SYMBOLS: dict[str, str] = {
+    word: unit
+    for unit, words in {
+        "m": "radius diameter length width depth airgap opening thickness distance stroke height wavelength",
+        "m^2": "area",
+        "rad": "angle swing",
+        "m/s": "velocity",
+        "N": "force",
+        "Nm": "torque",
+        "kg": "mass",
+        "kg m^2": "inertia",
+        "N/m": "stiffness",
+        "Ns/m": "damping",
+        "W": "power",
+        "V": "voltage",
+        "A": "i_d i_q current",
+        "Wb": "psi_d psi_q",
+        "ohm": "resistance",
+        "ohm m": "resistivity",
+        "H": "inductance inductance_d inductance_q",
+        "Hz": "frequency",
+        "s": "time duration",
+        "degC": "temperature",
+        "m/rad": "transmission_ratio linkage_ratio",
+        "1": "fraction factor share packing efficiency teeth planets slots poles pairs order turns strands layers "
+        "count",
+    }.items()
+    for word in words.split()
+}
+
+
+def usual_unit(name: str) -> str | None:
+    """Unit of a name by ``SYMBOLS``: that of the longest ending, None where it has none."""
+    words = name.split("_")
+    endings = ("_".join(words[first:]) for first in range(len(words)))
+    return next((SYMBOLS[ending] for ending in endings if ending in SYMBOLS), None)

@@ -58,7 +58,7 @@ class MeshDensity:
 class HalfCell:
     """Half a pitch of stator or rotor: how it is drawn for a machine, and how it is meshed."""
 
-    def __init__(self, density: MeshDensity, edges: int):
+    def __init__(self, density: MeshDensity, edges: int) -> None:
         self.density, self.edges = density, edges  # edges of the half pitch on the sliding circle
 
     def width(self, machine: Machine) -> float:
@@ -96,26 +96,26 @@ class HalfCell:
 class StatorHalfCell(HalfCell):
     """From the axis of tooth 0 (angle 0) to the centre of slot 0; regions iron, opening, copper, gap."""
 
-    def width(self, machine):
+    def width(self, machine: Machine) -> float:
         return machine.slot_pitch / 2
 
-    def rim_radius(self, machine):
+    def rim_radius(self, machine: Machine) -> float:
         return machine.stator_inner_radius
 
-    def draw(self, machine):
+    def draw(self, machine: Machine) -> Drawing:
         return _draw_stator(machine, self.density, self.edges)
 
 
 class RotorHalfCell(HalfCell):
     """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet, (between,) gap."""
 
-    def width(self, machine):
+    def width(self, machine: Machine) -> float:
         return machine.pole_pitch / 2
 
-    def rim_radius(self, machine):
+    def rim_radius(self, machine: Machine) -> float:
         return machine.rotor_outer_radius
 
-    def draw(self, machine):
+    def draw(self, machine: Machine) -> Drawing:
         return _draw_rotor(machine, self.density, self.edges)
 
 

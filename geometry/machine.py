@@ -9,6 +9,8 @@ from cmath import phase, rect
 from dataclasses import dataclass
 from math import acos, asin, gcd, pi
 
+import numpy as np
+
 
 class GeometryError(ValueError):
     """A machine that cannot be drawn; the message says what is wrong and which parameter to move."""
@@ -17,7 +19,7 @@ class GeometryError(ValueError):
 class Magnetisation:
     """Direction of the remanence inside one magnet; the concrete patterns are below."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         """Angle of the magnetisation vector of an outward magnet [rad].
 
         position_angle: polar angle of the point [rad], array of any shape
@@ -30,7 +32,7 @@ class Magnetisation:
 class ParallelMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along the magnet's centre line."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return 0.0 * position_angle + centre_angle
 
 
@@ -38,7 +40,7 @@ class ParallelMagnetisation(Magnetisation):
 class RadialMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along its own radius."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return position_angle + 0.0 * centre_angle
 
 
@@ -125,7 +127,7 @@ class Machine:
         """Area that one coil side may fill, from the axis of the slot to the tooth and down to its opening [m^2].
 
         A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) - P_sb x P_1 - P_1 x P_t)/2, Green's theorem around the half slot;
-        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between them.
+        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between.
         """
         flank_end, flank_start = self._flank(self.slot_bottom_radius), self._flank(self.shoe_top_radius)
         taper = rect(self.opening_top_radius, self.taper_angle)

@@ -60,7 +60,7 @@ def read_curve(path: Path) -> tuple[list[int], list[float], list[float]]:
     if not rows:
         raise MaterialError(f"{path.name} holds no data; expected the columns {FIELD_COLUMN},{FLUX_COLUMN}")
     reader = csv.DictReader((text for _, text in rows), skipinitialspace=True)
-    columns = [column.strip() for column in reader.fieldnames]
+    columns = [column.strip() for column in reader.fieldnames or ()]
     reader.fieldnames = columns
     _need_columns(path, columns)
     lines = [line for line, _ in rows[1:]]
@@ -68,14 +68,14 @@ def read_curve(path: Path) -> tuple[list[int], list[float], list[float]]:
     return lines, [point[0] for point in points], [point[1] for point in points]
 
 
-def _need_columns(path, columns) -> None:
+def _need_columns(path: Path, columns: list[str]) -> None:
     missing = [column for column in (FIELD_COLUMN, FLUX_COLUMN) if column not in columns]
     if missing:
         found = ", ".join(columns)
         raise MaterialError(f"{path.name}: column {' and '.join(missing)} missing; found {found}")
 
 
-def _point(path, line, row) -> tuple[float, float]:
+def _point(path: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
     try:
         return float(row[FIELD_COLUMN]), float(row[FLUX_COLUMN])
     except (TypeError, ValueError) as error:

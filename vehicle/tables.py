@@ -36,7 +36,7 @@ def _lines(path: Path) -> list[str]:
     return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
-def _number(path: Path, number: int, row: dict, name: str) -> float:
+def _number(path: Path, number: int, row: dict[str, str], name: str) -> float:
     try:
         value = float(row[name])
     except (TypeError, ValueError):
