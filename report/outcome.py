@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 import pandas as pd
 
@@ -34,7 +34,7 @@ def files(found: Outcome, output: Output) -> Iterator[File]:
 
 def section(found: Outcome, output: Output) -> Section:
     """The actuator on one screen, and which requirements hold."""
-    checks = (*found.checks, *found.gear_checks)
+    checks: list[Check | SafetyCheck] = [*found.checks, *found.gear_checks]
     held = sum(one.holds for one in checks)
     return Section(
         "Outcome",
@@ -100,7 +100,8 @@ def _remedy_row(one: Remedy, output: Output) -> dict[str, object]:
     if one.value is None:
         return {**row, "needed": None, "change_percent": None, "then fails": ""}
     fails = ", ".join(other.name(output) for other in one.fails_then) or "nothing else"
-    return {**row, "needed": in_unit(one.value, unit), "change_percent": 100 * (one.value / one.now - 1), "then fails": fails}
+    change = 100 * (one.value / one.now - 1)
+    return {**row, "needed": in_unit(one.value, unit), "change_percent": change, "then fails": fails}
 
 
 def features_table(found: Outcome, output: Output) -> pd.DataFrame:
@@ -114,7 +115,7 @@ def features_table(found: Outcome, output: Output) -> pd.DataFrame:
 
 
 def _drawn(features: Features, attribute: str, unit: str) -> float:
-    return in_unit(float(getattr(features, attribute)), unit)
+    return float(in_unit(getattr(features, attribute), unit))
 
 
 def masses_table(found: Outcome) -> pd.DataFrame:
