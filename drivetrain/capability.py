@@ -97,11 +97,11 @@ class ActuatorDesign:
         """Envelope per turn and metre [Nm/m]: v = N l v_1, i = i_1 / N, R = N^2 l R_1."""
         one_turn = self.resistance / (self.turns**2 * self.active_length)
         shape = np.broadcast_shapes(np.shape(rotor_speed), np.shape(one_turn), np.shape(self._volts_per_turn))
-        machine = replace(self.per_turn, resistance=np.broadcast_to(one_turn, shape))
+        machine = self.per_turn.with_resistance(np.broadcast_to(one_turn, shape))
         volts = np.broadcast_to(self._volts_per_turn, shape)
         limits = DriveLimits.from_dc_bus(self._ampere_turns(self.overload_density), volts)
         envelope = torque_speed_envelope(machine, limits, np.broadcast_to(rotor_speed, shape))
-        return np.nan_to_num(envelope.torque, nan=0.0)
+        return np.asarray(np.nan_to_num(envelope.torque, nan=0.0))
 
     @property
     def peak_torque(self) -> Values:
@@ -141,7 +141,7 @@ def together(designs: Sequence[ActuatorDesign]) -> ActuatorDesign:
     """One batch of designs that differ in turns, strands, length, voltage or transmission ratio; each may be one."""
     sizes = [np.broadcast_shapes((1,), *(np.shape(getattr(one, name)) for name in _IN_A_BATCH)) for one in designs]
     rows = list(zip(designs, sizes, strict=True))
-    changed = {
+    changed: dict[str, Any] = {
         name: np.concatenate([np.broadcast_to(getattr(one, name), size) for one, size in rows]) for name in _IN_A_BATCH
     }
     return replace(designs[0], **changed)

@@ -27,7 +27,8 @@ from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
 from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVERS, Remedy, remedies
 from drivetrain.requirements import Linkage, Requirements
 from electrical.flux_map_machine import FluxMapMachine
-from electrical.winding_stage import WindingOutcome, WoundMachine
+from electrical.winding_stage import WindingOutcome
+from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
 from gearbox.stage import GearboxOutcome, SafetyCheck
 from magnetostatics.flux_map_stage import FluxMap
@@ -97,8 +98,8 @@ class Outcome:
     """The designed actuator and how it stands against what is asked of it.
 
     checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
-    masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]; layout: parts along the axis
-    limits: effort over speed, inertia and friction at the output
+    masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
+    active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
     load_inertia_ratio: inertia of the load over that of the drive, both at the output; None without a load inertia
     """
 

@@ -180,10 +180,10 @@ def _nearest_shares(
     """
     steps = np.linspace(0, 1, _STEPS + 1)
     holds = _holds(design, requirement, ways, np.tile(steps[1:], (len(ways), 1)))
-    reached, first = holds.any(axis=1), holds.argmax(axis=1)
+    reached, first = np.asarray(holds.any(axis=1)), holds.argmax(axis=1)
     low, high = steps[first], steps[first + 1]
-    if reached.any():
-        some = [way for way, good in zip(ways, reached, strict=True) if good]
+    if np.any(reached):
+        some = [way for way, good in zip(ways, reached.tolist(), strict=True) if good]
         high[reached] = _bisected(design, requirement, some, low[reached], high[reached])
     return np.where(reached, high, np.inf)
 
@@ -204,8 +204,7 @@ def _holds(
     design: ActuatorDesign, requirement: Requirement, ways: Sequence[tuple[Lever, float]], shares: np.ndarray
 ) -> np.ndarray:
     """Whether the requirement holds at shares (ways, n) of each way."""
-    moved = [
-        lever.moved(design, lever.value(design) * factor**row) for (lever, factor), row in zip(ways, shares, strict=True)
-    ]
+    rows = zip(ways, shares, strict=True)
+    moved = [lever.moved(design, lever.value(design) * factor**row) for (lever, factor), row in rows]
     met = requirement.met(requirement.reached(together(moved)))
     return np.broadcast_to(met, shares.size).reshape(shares.shape)

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from drivetrain.output import Output, in_unit, labelled
 from figures.style import BLACK, FIELD_MAP, GREY, SERIES, VERMILION, letter, new_figure, show_grid, styled
-from units import MILLIMETRE, RPM
+from units import FACTORS, RPM
 
 _LINES = ("-", "--", "-.", ":")
 
@@ -27,7 +28,7 @@ class RequiredPoint:
 
 @dataclass(frozen=True)
 class WheelPoint:
-    """A demand at the wheel: velocity [m/s], force [N] and its name."""
+    """A demand at the output: velocity [m/s or rad/s], force [N or Nm] and its name."""
 
     name: str
     velocity: float
@@ -65,15 +66,17 @@ _HEADROOM = 1.05  # above the largest force, for the marker there
 
 @styled
 def force_velocity(
-    operating, transmission_ratio: float, *, title: str, required: tuple[WheelPoint, ...] = (), limits=None
+    operating, transmission_ratio: float, *, output: Output, title: str, required: tuple[WheelPoint, ...] = (),
+    limits=None,
 ) -> Figure:
-    """Peak phase voltage and current over velocity and force at the wheel; white where the machine cannot go.
+    """Peak phase voltage and current over speed and effort at the output; white where the machine cannot go.
 
     operating: torque [Nm], speed [rad/s], voltage_peak [V], current_peak [A], 2-D arrays, NaN out of reach
-        (``OperatingMap``); transmission_ratio: tau_t [m/rad]
+        (``OperatingMap``); transmission_ratio: tau_t [m/rad or 1]; output: words and units of the axes
     limits: voltage_peak, current_peak (``DriveLimits``), written into the titles
     """
-    force, velocity = operating.torque / transmission_ratio, operating.speed * transmission_ratio
+    force = operating.torque / transmission_ratio / FACTORS[output.axis_unit]
+    velocity = operating.speed * transmission_ratio / FACTORS[output.speed_unit]
     figure = new_figure(4.6)
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
     for axis, values, name, unit, limit in (
@@ -81,13 +84,13 @@ def force_velocity(
         (axes[1], operating.current_peak, "phase current", "A", getattr(limits, "current_peak", None)),
     ):
         _map(figure, axis, velocity, force, values, f"peak {name} / {unit}")
-        _mark_demands(axis, required)
+        _mark_demands(axis, required, output)
         axis.set_title(f"peak {name}" + (f", limit {limit:.3g} {unit}" if limit is not None else ""), loc="left")
-        axis.set_xlabel("velocity at the wheel / (m/s)")
-    highest = max([force.max(), *(point.force for point in required)]) / 1e3
-    axes[0].set(ylabel="force at the wheel / kN", ylim=(0, _HEADROOM * highest))
+        axis.set_xlabel(labelled(f"{output.speed} {output.place}", output.speed_unit))
+    highest = max([force.max(), *(in_unit(point.force, output.axis_unit) for point in required)])
+    axes[0].set(ylabel=labelled(f"{output.effort} {output.place}", output.axis_unit), ylim=(0, _HEADROOM * highest))
     letter(axes)
-    figure.suptitle(f"{title}, transmission ratio {transmission_ratio / MILLIMETRE:.3g} mm/rad")
+    figure.suptitle(f"{title}. {output.overall_ratio(transmission_ratio)}")
     if required:
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure
@@ -100,18 +103,19 @@ def _mark(axes, point: RequiredPoint) -> None:
 
 
 def _map(figure, axes, velocity, force, values, label: str) -> None:
-    colours = axes.contourf(velocity, force / 1e3, values, levels=12, cmap=FIELD_MAP)
-    lines = axes.contour(velocity, force / 1e3, values, levels=colours.levels[1:-1:3], colors="white", linewidths=0.6)
+    colours = axes.contourf(velocity, force, values, levels=12, cmap=FIELD_MAP)
+    lines = axes.contour(velocity, force, values, levels=colours.levels[1:-1:3], colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt="%g")
     reached = np.isfinite(values).astype(float)
     if reached.min() < 0.5 < reached.max():
-        axes.contour(velocity, force / 1e3, reached, levels=[0.5], colors=BLACK, linewidths=1.2)
+        axes.contour(velocity, force, reached, levels=[0.5], colors=BLACK, linewidths=1.2)
     axes.axhline(0.0, color=GREY, linewidth=0.7)
     axes.axvline(0.0, color=GREY, linewidth=0.7)
     figure.colorbar(colours, ax=axes, pad=0.02).set_label(label)
 
 
-def _mark_demands(axes, required: tuple[WheelPoint, ...]) -> None:
+def _mark_demands(axes, required: tuple[WheelPoint, ...], output: Output) -> None:
     for number, point in enumerate(required):
         look = {"marker": "Xo^Ds"[number % 5], "markersize": 9, "linestyle": "", "color": VERMILION}
-        axes.plot(point.velocity, point.force / 1e3, markeredgecolor="white", label=point.name, zorder=5, **look)
+        place = in_unit(point.velocity, output.speed_unit), in_unit(point.force, output.axis_unit)
+        axes.plot(*place, markeredgecolor="white", label=point.name, zorder=5, **look)

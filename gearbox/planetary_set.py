@@ -52,6 +52,11 @@ class PlanetarySet:
         """Distance between the tip circles of neighbouring planets [m]: 2 a sin(pi/N) - d_a."""
         return 2 * self.centre_distance * sin(pi / self.planets) - 2 * self.planet.tip_radius
 
+    @property
+    def plain(self) -> PlanetarySet:
+        """A single set with plain numbers in the place of numpy's, as results are written with."""
+        return _single(self).at(0)
+
     def at(self, index: int) -> PlanetarySet:
         """One set of a batch, its numbers plain."""
 
@@ -63,6 +68,11 @@ class PlanetarySet:
         return PlanetarySet(
             one(self.sun), one(self.planet), one(self.ring), float(self.centre_distance[index]), self.planets
         )
+
+
+def _single(gears: PlanetarySet) -> PlanetarySet:
+    """A set as a batch of one."""
+    return replace(gears, centre_distance=np.atleast_1d(gears.centre_distance))
 
 
 def equally_spaced(sun_teeth: Batch, ring_teeth: Batch, planets: int) -> Batch:

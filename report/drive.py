@@ -1,4 +1,4 @@
-"""The wound machine over speed for people: envelope, neighbouring windings by both models, the plane at the wheel."""
+"""The wound machine over speed for people: envelope, neighbouring windings by both models, the plane at the output."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Iterator
 
 import pandas as pd
 
+from drivetrain.output import Output
 from drivetrain.requirements import Requirements, Transmission
 from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.dq import Envelope
@@ -29,6 +30,7 @@ def files(
     flux_map: FluxMap,
     transmission: Transmission,
     required: Requirements,
+    output: Output,
 ) -> Iterator[File]:
     """Torque over speed, windings by both models, and the figures."""
     yield table_file(ENVELOPE, envelope_table(found))
@@ -38,13 +40,14 @@ def files(
     yield figure_file("flux_map", flux_maps(machine, mtpa, mtpv, found.envelope, limits.current_peak))
     title = _name(found.neighbour(winding.wound.turns))
     yield figure_file("field_envelope", field_envelope(found.envelope, found.constant_envelope, title=title))
-    yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), _demand(required, transmission)))
-    shown = {"title": title, "required": demands(required), "limits": limits}
+    demand = _demand(required, transmission, output)
+    yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), demand))
+    shown = {"output": output, "title": title, "required": demands(required, output), "limits": limits}
     yield figure_file("force_velocity", force_velocity(found.constant_plane, transmission.nominal, **shown))
     yield figure_file("force_velocity_field", force_velocity(found.plane, transmission.nominal, **shown))
 
 
-def section(found: DriveOutcome, winding: WindingOutcome) -> Section:
+def section(found: DriveOutcome, winding: WindingOutcome, output: Output) -> Section:
     """What the wound machine does over speed, and what constant parameters would have said."""
     table = windings_table(found, winding)
     return Section(
@@ -65,7 +68,8 @@ def section(found: DriveOutcome, winding: WindingOutcome) -> Section:
                 marked=tuple(table.index[table.chosen]),
             ),
             Picture(
-                picture_name("force_velocity_field"), "Peak phase voltage and current at the wheel, from the flux map."
+                picture_name("force_velocity_field"),
+                f"Peak phase voltage and current {output.place}, from the flux map.",
             ),
             Picture(picture_name("force_velocity"), "The same by constant parameters."),
         ),
@@ -84,10 +88,10 @@ def windings_table(found: DriveOutcome, winding: WindingOutcome) -> pd.DataFrame
     return pd.DataFrame([_row(one, winding.wound.turns) for one in found.neighbours])
 
 
-def demands(required: Requirements) -> tuple[WheelPoint, ...]:
-    """What is asked at the wheel."""
+def demands(required: Requirements, output: Output) -> tuple[WheelPoint, ...]:
+    """What is asked at the output."""
     return (
-        WheelPoint("peak force", required.velocity_at_force_peak, required.force_peak),
+        WheelPoint(f"peak {output.effort}", required.velocity_at_force_peak, required.force_peak),
         WheelPoint("peak power", required.velocity_at_power_peak, required.force_at_power_peak),
         WheelPoint("nominal (RMS)", required.velocity_rms, required.force_rms),
     )
@@ -131,9 +135,11 @@ def _envelopes(found: DriveOutcome, winding: WindingOutcome) -> tuple[dict[str, 
     return {_name(one): one.envelope for one in shown}, _name(found.neighbour(turns))
 
 
-def _demand(required: Requirements, transmission: Transmission) -> tuple[RequiredPoint, ...]:
+def _demand(
+    required: Requirements, transmission: Transmission, output: Output
+) -> tuple[RequiredPoint, ...]:
     speed = required.velocity_at_force_peak / transmission.nominal
-    return (RequiredPoint("peak force", speed, required.force_peak * transmission.nominal),)
+    return (RequiredPoint(f"peak {output.effort}", speed, required.force_peak * transmission.nominal),)
 
 
 def _name(pair: Neighbour) -> str:

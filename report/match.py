@@ -9,6 +9,7 @@ import pandas as pd
 from drivetrain.masses import PartMasses
 from drivetrain.match import Match
 from drivetrain.matching import MatchOutcome, NamedMatch
+from drivetrain.output import Output, in_unit
 from figures.files import File, figure_file, picture_name, table_file
 from figures.match import best_row, match_curves, match_over_radius, radius_table
 from figures.report import Picture, Remark, Section, Table
@@ -17,18 +18,19 @@ from units import FACTORS, MILLIMETRE
 TABLE, PARTS = "match.csv", "part_masses.csv"
 
 
-def files(found: MatchOutcome) -> Iterator[File]:
+def files(found: MatchOutcome, output: Output) -> Iterator[File]:
     """Matches over the stator radius, masses of the parts, and the figures."""
-    chosen, machine, table = found.chosen, found.machine, over_radius(found)
+    chosen, machine, table = found.chosen, found.machine, over_radius(found, output)
     yield table_file(TABLE, table)
     yield table_file(PARTS, parts_table(found.parts))
     title = f"{machine.slots} slots, Ø {2 * machine.stator_outer_radius / MILLIMETRE:.4g} mm"
-    yield figure_file("match_curves", match_curves(found.curves, chosen, title=title, length_limit=found.length_limit))
-    best = best_row(machine.slots, found.overload.name, machine.stator_outer_radius, chosen)
-    yield figure_file("match_over_radius", match_over_radius(table, best=best))
+    shown = {"output": output, "title": title, "length_limit": found.length_limit}
+    yield figure_file("match_curves", match_curves(found.curves, chosen, **shown))
+    best = best_row(machine.slots, found.overload.name, machine.stator_outer_radius, chosen, output)
+    yield figure_file("match_over_radius", match_over_radius(table, output, best=best))
 
 
-def section(found: MatchOutcome) -> Section:
+def section(found: MatchOutcome, output: Output) -> Section:
     """Gearbox and motor, what the motor weighs, and what stands beside the choice."""
     beside = [one for one in (found.reference, found.reference_cylinder, found.printed) if one is not None]
     caption = "The chosen machine beside the machine of the study file, which is matched as stated."
@@ -46,8 +48,8 @@ def section(found: MatchOutcome) -> Section:
             f"Decision: {found.reason}.",
             *(Remark(f"{_sentence(note)}.") for note in found.notes),
             *_refusals(found),
-            *_stated(found),
-            Table(_machines(found.chosen, beside), caption),
+            *_stated(found, output),
+            Table(_machines(found.chosen, beside, output), caption),
             *(Remark(f"{one.name}: {note}.") for one in beside for note in _notes(one)),
             *_assumption(found),
             _cylinder(found),
@@ -56,10 +58,10 @@ def section(found: MatchOutcome) -> Section:
     )
 
 
-def over_radius(found: MatchOutcome) -> pd.DataFrame:
+def over_radius(found: MatchOutcome, output: Output) -> pd.DataFrame:
     """One row per slot count, overload law and stator radius; NaN where there is no match."""
     tables = [
-        radius_table(one.slots, one.overload.name, one.over_radius)
+        radius_table(one.slots, one.overload.name, one.over_radius, output)
         for one in found.over_radius
         if one.over_radius is not None
     ]
@@ -72,25 +74,25 @@ def parts_table(parts: PartMasses) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["part", "mass_kg", "inertia_kg_mm2"])
 
 
-def _row(name: str, one: Match) -> dict[str, object]:
+def _row(name: str, one: Match, output: Output) -> dict[str, object]:
     section = one.section
     return {
         "machine": name,
         "stator_outer_radius_mm": section.machine.stator_outer_radius / MILLIMETRE,
         "torque_nominal_Nm_per_m": section.torque_per_length_nominal,
         "torque_overload_Nm_per_m": section.torque_per_length_overload,
-        "transmission_ratio_mm_per_rad": one.transmission_ratio / FACTORS["mm_per_rad"],
+        output.column("transmission_ratio", output.ratio_unit): in_unit(one.transmission_ratio, output.ratio_unit),
         "active_length_mm": one.active_length / MILLIMETRE,
         "cost": one.total_cost,
         "mass_kg": one.cost.mass,
-        "equivalent_mass_kg": one.cost.equivalent_mass,
+        output.column(output.inertia.replace(" ", "_"), output.inertia_unit): one.cost.equivalent_mass,
         "binding": one.binding.name,
     }
 
 
-def _machines(chosen: Match, beside: list[NamedMatch]) -> pd.DataFrame:
-    rows = [_row("chosen machine", chosen)]
-    return pd.DataFrame(rows + [_row(one.name, one.match) for one in beside if one.match is not None])
+def _machines(chosen: Match, beside: list[NamedMatch], output: Output) -> pd.DataFrame:
+    rows = [_row("chosen machine", chosen, output)]
+    return pd.DataFrame(rows + [_row(one.name, one.match, output) for one in beside if one.match is not None])
 
 
 def _notes(one: NamedMatch) -> tuple[str, ...]:
@@ -104,14 +106,14 @@ def _refusals(found: MatchOutcome) -> tuple[Remark, ...]:
     return tuple(Remark(f"{one.slots} slots, overload torque {one.overload.name}: {why}.") for one, why in said)
 
 
-def _stated(found: MatchOutcome) -> tuple[Table | Remark, ...]:
+def _stated(found: MatchOutcome, output: Output) -> tuple[Table | Remark, ...]:
     """The chosen cross-section under either feed."""
     other = found.stated
     if other is None:
         return ()
     if other.match is None:
         return (Remark(f"With the stated requirements and linkage there is no match: {other.refusal}."),)
-    rows = [_row("vehicle and front", found.chosen), _row(other.name, other.match)]
+    rows = [_row("vehicle and front", found.chosen, output), _row(other.name, other.match, output)]
     fed = pd.DataFrame(rows).rename(columns={"machine": "fed by"})
     shown = fed.drop(columns=["stator_outer_radius_mm", "torque_nominal_Nm_per_m", "torque_overload_Nm_per_m"])
     notes = (Remark(f"With the stated values: {note}.") for note in other.match.notes)

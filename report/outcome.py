@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 import pandas as pd
 
 from drivetrain.asked import Check
 from drivetrain.outcome import Features, Outcome
-from drivetrain.output import Output
+from drivetrain.output import Output, in_unit, labelled
 from drivetrain.remedies import Remedy
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
@@ -20,7 +20,6 @@ _REMEDIES = (
     "Which input would make a failing requirement hold, moved alone; a dash: not within a third to three times its "
     "value. Fewer turns at the same copper mean more current in the same proportion."
 )
-_ABOVE = 10.0  # times the inertia of the drive; a load beyond it is hard to control
 
 
 def files(found: Outcome, output: Output) -> Iterator[File]:
@@ -35,7 +34,7 @@ def files(found: Outcome, output: Output) -> Iterator[File]:
 
 def section(found: Outcome, output: Output) -> Section:
     """The actuator on one screen, and which requirements hold."""
-    checks = (*found.checks, *found.gear_checks)
+    checks: list[Check | SafetyCheck] = [*found.checks, *found.gear_checks]
     held = sum(one.holds for one in checks)
     return Section(
         "Outcome",
@@ -96,13 +95,13 @@ def remedies_table(found: Outcome, output: Output) -> pd.DataFrame:
 
 def _remedy_row(one: Remedy, output: Output) -> dict[str, object]:
     unit = one.lever.unit(output)
-    factor = FACTORS.get(unit, 1.0)
     row = {"requirement": one.requirement.name(output), "input": one.lever.name(), "unit": written(unit),
-           "now": one.now / factor}  # fmt: skip
+           "now": in_unit(one.now, unit)}  # fmt: skip
     if one.value is None:
         return {**row, "needed": None, "change_percent": None, "then fails": ""}
     fails = ", ".join(other.name(output) for other in one.fails_then) or "nothing else"
-    return {**row, "needed": one.value / factor, "change_percent": 100 * (one.value / one.now - 1), "then fails": fails}
+    change = 100 * (one.value / one.now - 1)
+    return {**row, "needed": in_unit(one.value, unit), "change_percent": change, "then fails": fails}
 
 
 def features_table(found: Outcome, output: Output) -> pd.DataFrame:
@@ -110,18 +109,13 @@ def features_table(found: Outcome, output: Output) -> pd.DataFrame:
     stated = None if found.stated is None else found.stated.features
     rows = []
     for attribute, words, unit in output.features:
-        row: dict[str, object] = {"feature": _heading(words, unit), "ours": _drawn(found.features, attribute, unit)}
+        row: dict[str, object] = {"feature": labelled(words, unit), "ours": _drawn(found.features, attribute, unit)}
         rows.append(row if stated is None else {**row, "stated": _drawn(stated, attribute, unit)})
     return pd.DataFrame(rows)
 
 
-def _heading(words: str, unit: str) -> str:
-    shown = written(unit)
-    return f"{words} / {f'({shown})' if '/' in shown else shown}" if unit else words
-
-
 def _drawn(features: Features, attribute: str, unit: str) -> float:
-    return float(getattr(features, attribute)) / FACTORS.get(unit, 1.0)
+    return float(in_unit(getattr(features, attribute), unit))
 
 
 def masses_table(found: Outcome) -> pd.DataFrame:
@@ -167,5 +161,4 @@ def _load(found: Outcome) -> tuple[str, ...]:
     ratio = found.load_inertia_ratio
     if ratio is None:
         return ()
-    said = f", above {_ABOVE:g}, which a stiff control copes with badly" if ratio > _ABOVE else ""
-    return (f"The inertia of the load is {ratio:.3g} times that of the drive, both at the shaft{said}.",)
+    return (f"The inertia of the load is {ratio:.3g} times that of the drive, both at the shaft.",)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from drivetrain.output import Output, in_unit, labelled
 from drivetrain.requirements import Requirements, StatedRequirements
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Section, Table, heading
@@ -65,11 +66,14 @@ def section(found: RideRequirements, case: RideCase, stated: StatedRequirements 
     )
 
 
-def stated_section(requirements: Requirements) -> Section:
+def stated_section(requirements: Requirements, output: Output) -> Section:
     """The requirements of a study that drives no vehicle."""
-    rows = [(heading(name), value) for name, value in drawn(requirements, _REQUIRED).items()]
+    rows = [
+        (labelled(words, unit), in_unit(getattr(requirements, name), unit)) for name, words, unit in output.demands
+    ]
     table = pd.DataFrame(rows, columns=["requirement", "value"])
-    return Section("Requirements", ("As stated in the study file.", Table(table, "At the wheel.")))
+    place = output.place[:1].upper() + output.place[1:]
+    return Section("Requirements", ("As stated in the study file.", Table(table, f"{place}.")))
 
 
 def runs_table(found: RideRequirements) -> pd.DataFrame:

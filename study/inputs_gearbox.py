@@ -13,12 +13,14 @@ from gearbox.rating import Rules
 from gearbox.search import Safety
 from gearbox.stage import GearCost, GearInputs, StatedGears
 from study.inputs_drive import largest_equivalent_mass
+from study.needed import needed
 from study.schema import GearboxSection, Study
 
 
 def gear_inputs(study: Study) -> GearInputs:
     """Strength, construction and cost of the gears that are searched."""
-    section, match, si = study.gearbox, study.match, study.gearbox.si
+    section, match = needed(study.gearbox, "gearbox"), study.match
+    si = section.si
     return GearInputs(
         rules=gear_rules(section),
         safety=Safety(si.safety_flank, si.safety_root, si.safety_static_flank, si.safety_static_root),
@@ -60,4 +62,4 @@ def stated_gears(section: GearboxSection) -> StatedGears | None:
         return None
     sun, planet, ring = si.printed_teeth
     gears = planetary_set((sun, planet, -ring), si.printed_shifts, si.printed_module, planets=si.planets)
-    return StatedGears(gears.at(()), si.printed_face_widths)
+    return StatedGears(gears.plain, si.printed_face_widths)

@@ -97,6 +97,7 @@ def test_words_and_units_are_those_of_the_output():
     wheel, shaft = Wheel(), Shaft()
     assert PeakEffort(1.0, 1.64).name(wheel) == "peak force at 1.64 m/s"
     assert PeakEffort(1.0, 100 * FACTORS["rpm"]).name(shaft) == "peak torque at 100 rpm"
+    assert PeakEffort(1.0, 2500 * FACTORS["rpm"]).name(shaft) == "peak torque at 2500 rpm"
     for one in EVERY:
         assert one.unit(wheel) in FACTORS and one.unit(shaft) in FACTORS
         assert "force" not in one.name(shaft) and "wheel" not in one.name(shaft)

@@ -52,7 +52,7 @@ def inputs(printed):
         torque_class_width=10.0,
         life=750 * 3600.0,
         swing=7.6 * DEGREE,
-        stated=StatedGears(printed.at(()), (12 * MM, 4.5 * MM)),
+        stated=StatedGears(printed.plain, (12 * MM, 4.5 * MM)),
     )
 
 

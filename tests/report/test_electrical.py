@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from drivetrain.output import Wheel
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
 from figures.report import render_report
@@ -48,7 +49,7 @@ def test_table_of_windings(winding, tmp_path):
 
 
 def test_files_of_the_drive(driven, winding, tmp_path):
-    folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED), tmp_path)
+    folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED, Wheel()), tmp_path)
     envelope = pd.read_csv(folder / "flux_map_envelope.csv")
     wanted = [f"{q}_{model}_{unit}" for model in ("field", "constant")
               for q, unit in (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))]  # fmt: skip
@@ -62,7 +63,7 @@ def test_files_of_the_drive(driven, winding, tmp_path):
 
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
     said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
-    assert said in drive.section(driven, winding).content[0]
+    assert said in drive.section(driven, winding, Wheel()).content[0]
     key = next(one for one in winding_report.section(winding, INPUTS).content[0].numbers if one.name == "peak torque")
     assert key.value == winding.peak_torque
     assert winding_report.windings_table(winding).query("chosen").peak_torque_Nm.item() == pytest.approx(key.value)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drivetrain.output import Wheel
 from drivetrain.actuator_limits import ActuatorLimits
 from drivetrain.requirements import Requirements, StatedRequirements
 from figures.report import Picture, Table
@@ -113,7 +114,7 @@ def test_no_regenerative_damping_can_be_shown(case):
 
 def test_stated_requirements_have_a_section_of_their_own():
     numbers = Requirements(0.0, 300.0, 0.1, 37.4, 3.4, 2614.0, 1.6, 4253.0, 1343.0, 3.2)
-    (table,) = tables(report.stated_section(numbers))
+    (table,) = tables(report.stated_section(numbers, Wheel()))
     assert table.value.tolist() == [0.0, 300.0, 0.1, 37.4, 3.4, 2614.0, 1.6, 4253.0, 1343.0, 3.2]
 
 
