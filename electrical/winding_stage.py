@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from drivetrain.requirements import Requirements, Transmission
 from electrical.dq import DriveLimits, mtpa_currents
 from electrical.final_length import FinalLength, LengthNeed, final_length, length_for_damping, length_for_force
 from electrical.flux_map_machine import FluxMapMachine
@@ -26,7 +27,6 @@ from electrical.winding_selection import (
     with_maximum_power,
 )
 from electrical.wound_machine import WoundMachine, machine_end_turn
-from drivetrain.requirements import Requirements, Transmission
 from geometry.family import MatchedMachine
 from magnetostatics.flux_map_stage import FluxMap
 

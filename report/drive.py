@@ -7,8 +7,8 @@ from typing import Iterator
 import pandas as pd
 
 from drivetrain.requirements import Requirements, Transmission
-from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.dq import Envelope
+from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
 from figures.flux_map import Curve, field_envelope, flux_maps
@@ -74,7 +74,7 @@ def section(found: DriveOutcome, winding: WindingOutcome) -> Section:
 
 def envelope_table(found: DriveOutcome) -> pd.DataFrame:
     """Torque over speed of the flux map and of the constant parameters, and the MTPV current of the flux map."""
-    columns = {"speed_rpm": found.envelope.speed / RPM}
+    columns: dict[str, object] = {"speed_rpm": found.envelope.speed / RPM}
     columns |= _envelope_columns("field", found.envelope) | _envelope_columns("constant", found.constant_envelope)
     return pd.DataFrame({**columns, "i_d_mtpv_A": found.mtpv_direct, "i_q_mtpv_A": found.mtpv_quadrature})
 
@@ -103,13 +103,19 @@ def _text(found: DriveOutcome, winding: WindingOutcome) -> str:
     )  # fmt: skip
     return (
         f"At full current the flux map gives {winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm, the mean "
-        f"over one electrical period (± bounds the error of the mesh), with {winding.peak_torque_ripple:.2f} Nm between "
-        f"its largest and its smallest value. With saturation in every number the chosen winding has a base speed of "
-        f"{field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters say "
-        f"{100 * (constant.base_speed / field.base_speed - 1):+.1f} % in base speed, "
-        f"{100 * (constant.peak_torque / field.peak_torque - 1):+.1f} % in peak torque and "
-        f"{100 * (constant.maximum_power / field.maximum_power - 1):+.1f} % in largest power; {comparison}."
+        f"over one electrical period (± bounds the error of the mesh), with {winding.peak_torque_ripple:.2f} Nm "
+        "between its largest and its smallest value. With saturation in every number the chosen winding has a base "
+        f"speed of {field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters say "
+        f"{_difference(constant.base_speed, field.base_speed)} in base speed, "
+        f"{_difference(constant.peak_torque, field.peak_torque)} in peak torque and "
+        f"{_difference(constant.maximum_power, field.maximum_power)} in largest power; {comparison}."
     )
+
+
+def _difference(value: float | None, reference: float | None) -> str:
+    if value is None or not reference:
+        return "nothing to compare"
+    return f"{100 * (value / reference - 1):+.1f} %"
 
 
 def _envelope_columns(name: str, envelope: Envelope) -> dict[str, object]:

@@ -44,7 +44,8 @@ def flux_map(machine=LINEAR, angles=6, points=15) -> FluxMap:
     psi_d, psi_q = machine.flux_linkage(d, q)
     wave = np.cos(2 * pi * np.arange(angles) / angles)[:, None, None]
     torque = 1.5 * POLE_PAIRS * (psi_d * q - psi_q * d) + RIPPLE / 2 * q / AMPERE_TURNS * wave
-    tables = {"psi_d": psi_d + 1e-4 * wave, "psi_q": psi_q + 1e-4 * wave, "torque": torque, "iterations": 4 + 0 * torque}
+    tables = {"psi_d": psi_d + 1e-4 * wave, "psi_q": psi_q + 1e-4 * wave, "torque": torque}
+    tables["iterations"] = 4 + 0 * torque
     data = xr.Dataset(
         {name: (("angle", "id", "iq"), table) for name, table in tables.items()},
         {"angle": np.arange(angles) * pi / 3 / POLE_PAIRS / angles, "id": i_d, "iq": i_q},

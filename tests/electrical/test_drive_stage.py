@@ -5,7 +5,7 @@ import pytest
 
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, Saturating, TRANSMISSION, flux_map
+from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 
 
 def driven(machine_map):

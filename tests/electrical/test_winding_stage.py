@@ -18,8 +18,8 @@ from tests.electrical.analytic_map import (
     MATCHED,
     REQUIRED,
     RIPPLE,
-    Saturating,
     TRANSMISSION,
+    Saturating,
     flux_map,
 )
 from units import MILLIMETRE

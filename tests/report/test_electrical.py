@@ -7,8 +7,10 @@ import pytest
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
 from figures.report import render_report
-from report import drive, flux_map as map_report, winding as winding_report
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, Saturating, TRANSMISSION, flux_map
+from report import drive
+from report import flux_map as map_report
+from report import winding as winding_report
+from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 from units import RPM
 
 MAP = flux_map(Saturating())
@@ -50,8 +52,8 @@ def test_table_of_windings(winding, tmp_path):
 def test_files_of_the_drive(driven, winding, tmp_path):
     folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED), tmp_path)
     envelope = pd.read_csv(folder / "flux_map_envelope.csv")
-    wanted = [f"{q}_{model}_{unit}" for model in ("field", "constant")
-              for q, unit in (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))]  # fmt: skip
+    columns = (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))
+    wanted = [f"{quantity}_{model}_{unit}" for model in ("field", "constant") for quantity, unit in columns]
     assert list(envelope) == ["speed_rpm", *wanted, "i_d_mtpv_A", "i_q_mtpv_A"]
     assert envelope.torque_field_Nm[0] == pytest.approx(winding.peak_torque)
     both = pd.read_csv(folder / "windings_field.csv")
