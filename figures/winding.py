@@ -43,7 +43,8 @@ def torque_speed(envelopes: dict[str, Envelope], chosen: str, required: tuple[Re
     figure = new_figure(4.4)
     axes = figure.subplots(1, 2)
     for number, (name, envelope) in enumerate(envelopes.items()):
-        look: dict[str, Any] = {"color": SERIES[number % len(SERIES)], "linestyle": _LINES[number // len(SERIES) % len(_LINES)]}
+        look: dict[str, Any] = {"color": SERIES[number % len(SERIES)]}
+        look["linestyle"] = _LINES[number // len(SERIES) % len(_LINES)]
         look |= {"linewidth": 3.0 if name == chosen else 1.3, "label": name + (" (chosen)" if name == chosen else "")}
         axes[0].plot(envelope.speed / RPM, envelope.torque, **look)
         axes[1].plot(envelope.speed / RPM, envelope.power / 1e3, **look)
@@ -98,7 +99,8 @@ def force_velocity(
 
 
 def _mark(axes: Iterable[Axes], point: RequiredPoint) -> None:
-    look: dict[str, Any] = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION, "markeredgecolor": "white"}
+    look: dict[str, Any] = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION}
+    look["markeredgecolor"] = "white"
     for axis, value in zip(axes, (point.torque, point.torque * point.speed / 1e3), strict=True):
         axis.plot(point.speed / RPM, value, label=point.name, zorder=5, **look)
 
@@ -107,7 +109,8 @@ def _map(
     figure: Figure, axes: Axes, velocity: np.ndarray, force: np.ndarray, values: np.ndarray, label: str
 ) -> None:
     colours = axes.contourf(velocity, force / 1e3, values, levels=12, cmap=FIELD_MAP)
-    lines = axes.contour(velocity, force / 1e3, values, levels=np.asarray(colours.levels)[1:-1:3], colors="white", linewidths=0.6)
+    levels = np.asarray(colours.levels)[1:-1:3]
+    lines = axes.contour(velocity, force / 1e3, values, levels=levels, colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt="%g")
     reached = np.isfinite(values).astype(float)
     if reached.min() < 0.5 < reached.max():

@@ -89,7 +89,7 @@ class PartOfPeriod:
         balanced = [point for point in points if isinstance(point, OperatingPoint)]
         currents = {(point.current_density, point.current_angle, point.packing_factor) for point in balanced}
         if len(currents) > 1 or len(balanced) < len(points):
-            raise ValueError("all solutions of a period must be at the same balanced current")
+            raise ValueError("all solutions of a period must be at the same current, balanced and sinusoidal")
 
     @property
     def model(self) -> FieldModel:
