@@ -1,23 +1,21 @@
-# The data flow as rules. STUDY is the name of a file in studies/ or the path of one.
+# What a user does, as rules. STUDY is the name of a file in studies/ or the path of one.
 STUDY ?= motorcycle
 
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
-# One script pipeline/<stage>.py a stage; a stage whose inputs did not change says so and ends.
-STAGES := requirements linkage sweep optima limits fits match gearbox winding flux_map drive fields figures outcome
-STAGES += report
+# The stages of the graph that pipeline/stages.py declares; a test holds the two together.
+STAGES := requirements linkage sweep optima limits fits match flux_map gearbox winding drive losses fields outcome ride
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help pipeline $(STAGES) losses optimise inspect check compare diagnose ledger test benchmark blind-score clean
+.PHONY: help pipeline $(STAGES) optimise inspect check compare diagnose ledger test benchmark blind-score clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make pipeline   all stages, results in results/<study>/ (report.html first)"
 	@echo "make <stage>    one stage with those before it: $(STAGES)"
-	@echo "make losses     loss and efficiency map of the wound machine"
 	@echo "make optimise   radius, slots, length, ratio and linkage together, beside the stage-by-stage design"
 	@echo "make inspect    the machine and its field in a window, or as PNG and HTML without a display"
 	@echo "make check      is the study file usable?"
@@ -30,39 +28,18 @@ help:
 	@echo "make clean      delete the results of all studies (not results/reference)"
 	@echo "STUDY=<name>    another study than $(STUDY): a file of studies/ or a path"
 
-pipeline: report
+pipeline: $(SET_UP)
+	@.venv/bin/airgap run "$(STUDY)"
 
-# What a stage reads is written by the stages on the right.
-requirements: $(SET_UP)
-linkage: $(SET_UP)
-sweep: $(SET_UP)
-optima: sweep
-limits: $(SET_UP)
-fits: optima
-match: requirements linkage fits
-winding: gearbox
-flux_map: winding
-drive: flux_map
-gearbox: match
-fields: winding
-figures: fields limits
-outcome: drive
-report: figures outcome
-
-$(STAGES):
-	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
-
-losses: winding
-	@$(PYTHON) -m pipeline.$@ "$(STUDY)"
-
-optimise: outcome
-	@$(PYTHON) -m pipeline.optimise "$(STUDY)"
+# One process runs a stage with those before it; what did not change is not run again.
+$(STAGES) optimise: $(SET_UP)
+	@.venv/bin/airgap run "$(STUDY)" --to $@
 
 inspect: $(SET_UP)
-	@$(PYTHON) -m pipeline.inspect_fields "$(STUDY)"
+	@.venv/bin/airgap inspect "$(STUDY)"
 
 check: $(SET_UP)
-	@$(PYTHON) -m study.check "$(STUDY)"
+	@.venv/bin/airgap check "$(STUDY)"
 
 compare diagnose ledger: $(SET_UP)
 	@test -n "$(CAMPAIGN)" || { echo "say which campaign: make $@ CAMPAIGN=measurements/<folder>" >&2; exit 2; }
@@ -85,7 +62,7 @@ $(BENCHMARK_SET_UP): benchmarks/peer_requirements.txt benchmarks/set_up
 
 clean:
 	find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
-	find . -path ./.venv -prune -o \( -name __pycache__ -o -name .pytest_cache \) -type d -exec rm -rf {} +
+	find . -path ./.venv -prune -o \( -name __pycache__ -o -name .pytest_cache -o -name .mypy_cache -o -name .ruff_cache \) -type d -exec rm -rf {} +
 
 $(SET_UP): pyproject.toml constraints.txt pipeline/setup
 	@sh pipeline/setup

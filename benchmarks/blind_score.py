@@ -31,7 +31,7 @@ from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
 from benchmarks.virtual_benches.hiding import hide
 from effects.library import library
 from pipeline.checkpoint import Checkpoint
-from pipeline.parallel import Interrupted, default_workers, run_parallel
+from pipeline.pools import Interrupted, Pool, PooledWorkers, Processes
 from workbench.base_models import nominal_model
 from workbench.campaign import read_campaign
 from workbench.diagnosis import diagnose
@@ -100,8 +100,7 @@ def advice(task: dict) -> list[dict]:
 def all_advice(benches: list[str], checkpoint: Path) -> RecommenderScore:
     """The advice on all lumped benches of these."""
     chosen = {f"advice {b}": {"bench": b, "start": SCORED_START} for b in benches if b != "machine"}
-    done = Checkpoint(checkpoint, fingerprint())
-    found = run_parallel(advice, chosen, default_workers(), done, "advice what to measure")
+    found = workers_of(Processes(), checkpoint).map("advice", advice, chosen)
     return score_advice(Tried(**case) for cases in found.values() for case in cases)
 
 
@@ -146,10 +145,15 @@ def tasks(start: int, counts: dict[str, dict[str, int]], crime: bool = False, fi
     }
 
 
-def all_cases(chosen: dict[str, dict], checkpoint: Path, what: str) -> list[dict]:
-    done = Checkpoint(checkpoint, fingerprint())
-    results = run_parallel(score_case, chosen, default_workers(), done, what)
+def all_cases(chosen: dict[str, dict], checkpoint: Path, what: str, pool: Pool | None = None) -> list[dict]:
+    """Every case diagnosed, on the processes of this machine or on another pool."""
+    results = workers_of(pool or Processes(), checkpoint).map(what, score_case, chosen)
     return list(with_noise(list(results.values())))
+
+
+def workers_of(pool: Pool, checkpoint: Path) -> PooledWorkers:
+    """Workers whose finished cases are kept in one file."""
+    return PooledWorkers("blind score", pool, lambda what: Checkpoint(checkpoint, fingerprint()))
 
 
 def with_noise(cases: list[dict]) -> list[dict]:

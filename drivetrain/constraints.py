@@ -168,7 +168,7 @@ def largest_stage_ratio(planets: int) -> float:
 class PlanetClearance(Constraint):
     """tau_t >= tau_l / i_max^N: neighbouring planets of N equal stages clear each other.
 
-    stage_count: N; planets: of a stage; linkage_ratio: tau_l [m/rad]
+    stage_count: N, 0 for a direct drive, whose only ratio is tau_l; planets: of a stage; linkage_ratio: tau_l [m/rad]
     """
 
     stage_count: int
@@ -177,6 +177,8 @@ class PlanetClearance(Constraint):
     name: str = "planet clearance"
 
     def minimum_ratio(self) -> float:
+        if self.stage_count == 0:
+            return 0.0
         touching = self.linkage_ratio / largest_stage_ratio(self.planets) ** self.stage_count
         return touching * (1 + CAPABILITY_SLACK)
 

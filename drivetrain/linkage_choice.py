@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from drivetrain.four_bar import LinkageError
-from drivetrain.linkage_front import LinkageFront
+from drivetrain.linkage_front import ParetoFront
 from units import MILLIMETRE
 
 
 class ChoiceRule:
     """Picks one point of a front."""
 
-    def pick(self, front: LinkageFront) -> int:
+    def pick(self, front: ParetoFront) -> int:
         """Index of the chosen point; raises LinkageError when the rule excludes every point."""
         raise NotImplementedError
 
@@ -40,7 +40,7 @@ class SmallestRatio(ChoiceRule):
 
     worst_quality: float
 
-    def pick(self, front):
+    def pick(self, front: ParetoFront) -> int:
         ratio, quality = front.objectives.T
         return _least(
             ratio,
@@ -50,7 +50,7 @@ class SmallestRatio(ChoiceRule):
         )
 
     @property
-    def reason(self):
+    def reason(self) -> str:
         return f"smallest transmission ratio with transmission angles no worse than f2 = {self.worst_quality:g}"
 
 
@@ -60,8 +60,8 @@ class BestAngles(ChoiceRule):
 
     largest_ratio: float
 
-    def pick(self, front):
-        ratio = front.linkages.motion(np.zeros(1)).transmission_ratio[:, 0]
+    def pick(self, front: ParetoFront) -> int:
+        ratio = front.nominal_ratios
         return _least(
             front.objectives[:, 1],
             ratio <= self.largest_ratio,
@@ -70,7 +70,7 @@ class BestAngles(ChoiceRule):
         )
 
     @property
-    def reason(self):
+    def reason(self) -> str:
         return f"best transmission angles with a nominal ratio of at most {self.largest_ratio / MILLIMETRE:g} mm/rad"
 
 
@@ -78,11 +78,11 @@ class BestAngles(ChoiceRule):
 class Knee(ChoiceRule):
     """The point farthest from the straight line between the ends of the front, both objectives scaled to 0 ... 1."""
 
-    def pick(self, front):
+    def pick(self, front: ParetoFront) -> int:
         low, high = front.objectives.min(axis=0), front.objectives.max(axis=0)
         scaled = (front.objectives - low) / np.where(high > low, high - low, 1)
         return int(np.argmin(scaled.sum(axis=1)))
 
     @property
-    def reason(self):
+    def reason(self) -> str:
         return "knee of the front, where either objective costs most of the other"

@@ -36,7 +36,7 @@ class GeneticSettings:
 
 
 @dataclass(frozen=True)
-class LinkageFront:
+class ParetoFront:
     """Non-dominated linkages in the order of rising f1 (falling f2).
 
     designs: (points, 4) x_B, y_B, x_C, y_C [m]; objectives: (points, 2); seed: the run that found each, (points,)
@@ -51,6 +51,11 @@ class LinkageFront:
     def linkages(self) -> FourBar:
         """All linkages of the front, hardpoints (points,)."""
         return self.problem.linkage(self.designs)
+
+    @property
+    def nominal_ratios(self) -> np.ndarray:
+        """Transmission ratio of every linkage in the nominal position [m/rad], (points,)."""
+        return self.linkages.motion(np.zeros(1)).transmission_ratio[:, 0]
 
     def linkage(self, index: int) -> FourBar:
         """One linkage."""
@@ -95,7 +100,7 @@ class _Population(Problem):
         out["G"] = scores.constraints
 
 
-def pareto_front(problem: LinkageProblem, settings: GeneticSettings = GeneticSettings()) -> LinkageFront:
+def pareto_front(problem: LinkageProblem, settings: GeneticSettings = GeneticSettings()) -> ParetoFront:
     """Front of the feasible linkages, merged over the seeds and sharpened; the same settings give the same front.
 
     The genetic algorithm finds where the front is, but stays up to 2 % above it; a gradient search for the least f2 at
@@ -117,10 +122,10 @@ def _front(problem, designs, seeds):
     """The non-dominated among feasible designs."""
     objectives = problem.score(problem.linkage(designs)).objectives
     keep = non_dominated(objectives)
-    return LinkageFront(problem, designs[keep], objectives[keep], seeds[keep])
+    return ParetoFront(problem, designs[keep], objectives[keep], seeds[keep])
 
 
-def sharpened(front: LinkageFront, points: int) -> LinkageFront:
+def sharpened(front: ParetoFront, points: int) -> ParetoFront:
     """The front with a point of least f2 at each of so many evenly spaced f1, from the smallest to the largest.
 
     Each search starts at the nearest point of the front, which stays where the search finds nothing feasible.
@@ -185,7 +190,7 @@ def _nothing_feasible(problem, constraints):
     )
 
 
-def standing(front: LinkageFront, linkage: FourBar) -> Standing:
+def standing(front: ParetoFront, linkage: FourBar) -> Standing:
     """Where a linkage stands against a front, with the problem of the front."""
     scores = front.problem.score(FourBar(linkage.arm, np.array([linkage.hardpoint_b]), np.array([linkage.hardpoint_c])))
     own = scores.objectives[0]

@@ -176,6 +176,11 @@ class Match:
     bound: str | None
     notes: tuple[str, ...]
 
+    @property
+    def total_cost(self) -> float:
+        """F_cost."""
+        return self.cost.total
+
 
 @dataclass(frozen=True)
 class MatchCurves:
@@ -330,14 +335,21 @@ def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tu
 
     Raises MatchError when they leave none, naming the constraint that asks for too much length.
     """
-    low = _sets_the_smallest_ratio(enforced).minimum_ratio()
-    high = gearbox.largest_transmission_ratio * (1 - PLANET_MARGIN)
-    low = low or high * PLANET_MARGIN
+    low, high = _gear_bounds(enforced, gearbox)
     longest = min(constraint.maximum_length() for constraint in enforced)
     _check_start(enforced, low, high, longest)
-    if active_length(enforced, high) <= longest:
+    if low == high or active_length(enforced, high) <= longest:
         return low, high
     return low, brentq(lambda ratio: active_length(enforced, ratio) - longest, low, high, xtol=1e-15)
+
+
+def _gear_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
+    """Smallest and largest transmission ratio that speed and gears leave [m/rad]; both tau_l for a direct drive."""
+    least = _sets_the_smallest_ratio(enforced).minimum_ratio()
+    if gearbox.stage_count == 0:
+        return max(least * (1 - BOUND_SLACK), gearbox.linkage_ratio), gearbox.linkage_ratio
+    high = gearbox.largest_transmission_ratio * (1 - PLANET_MARGIN)
+    return least or high * PLANET_MARGIN, high
 
 
 def match(
@@ -479,8 +491,8 @@ def _check_start(enforced: tuple[Constraint, ...], low: float, high: float, long
     if low > high:
         raise MatchError(
             f"the {lowest.name} asks for at least {low / MILLIMETRE:.4g} mm/rad, the planets vanish at "
-            f"{high / MILLIMETRE:.4g} mm/rad (stage ratio 2): use fewer gear stages (match.gearbox_stages) or allow a "
-            "faster rotor (match.speed_max_rad_per_s)"
+            f"{high / MILLIMETRE:.4g} mm/rad (stage ratio 2, none in a direct drive): use fewer gear stages "
+            "(match.gearbox_stages) or allow a faster rotor (match.speed_max_rad_per_s)"
         )
     if not active_length(enforced, high) > 0:
         raise MatchError(
@@ -507,6 +519,8 @@ def _lowers(lowest: Constraint) -> str:
 
 def _bound_sentence(ratio: float, bounds: tuple[float, float], enforced: tuple[Constraint, ...]) -> str | None:
     low, high = bounds
+    if low == high:
+        return None
     if ratio <= low * (1 + BOUND_SLACK):
         lowest = _sets_the_smallest_ratio(enforced)
         return (
@@ -555,7 +569,8 @@ def _best_radius(at: Callable[[float], Match], radii: np.ndarray, costs: np.ndar
         result = _attempt(at, radius)
         return inf if isinstance(result, str) else result.cost.total
 
-    return _refine(cost, radii, int(np.nanargmin(costs)))
+    with np.errstate(invalid="ignore"):  # the parabola of the search through a radius without a match
+        return _refine(cost, radii, int(np.nanargmin(costs)))
 
 
 def _edge_sentence(best: Match, radii: np.ndarray) -> str | None:

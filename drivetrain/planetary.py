@@ -202,7 +202,7 @@ class Gearbox:
 class GearboxDesign:
     """What a gearbox is sized from.
 
-    stage_count: N
+    stage_count: N, 0 for a direct drive
     linkage_ratio: tau_l [m/rad]; one number for a linkage whose ratio varies over the wheel travel. The thesis's match
         follows from the nominal value (170 mm/rad); the largest (175 mm/rad) widens the teeth by 4 %
     force_rms, velocity_rms: fatigue load at the wheel [N, m/s]
@@ -218,7 +218,7 @@ class GearboxDesign:
 
     @property
     def largest_transmission_ratio(self) -> float:
-        """tau_t at which the stage ratio falls to 2 and the planets vanish [m/rad]."""
+        """tau_t at which the stage ratio falls to 2 and the planets vanish [m/rad]; tau_l without stages."""
         return self.linkage_ratio / 2**self.stage_count
 
     def stage_ratio(self, transmission_ratio: float) -> float:
@@ -230,6 +230,8 @@ class GearboxDesign:
 
         Raises GearboxError when the stage ratio is not above 2.
         """
+        if self.stage_count == 0:
+            return Gearbox((), self.linkage_ratio)
         ring = self.laws.ring_fraction * 2 * envelope_radius  # 3.103
         shape = StageShape(self.stage_ratio(transmission_ratio), ring, self.planets)
         widths = (face_width(shape, *self._carrier_load(shape.ratio, j), self.laws) for j in range(self.stage_count))

@@ -28,6 +28,13 @@ class Requirements:
 
 
 @dataclass(frozen=True)
+class StatedRequirements:
+    """What a study states of its own beside what its vehicle asks for, for the comparison."""
+
+    requirements: Requirements
+
+
+@dataclass(frozen=True)
 class Linkage:
     """Transmission from wheel travel to the lever of the actuator, tau_l [m/rad].
 
@@ -49,3 +56,10 @@ class Transmission:
 
     nominal: float
     largest: float
+
+
+@dataclass(frozen=True)
+class InstallationSpace:
+    """Room for the actuator; radius_max: its largest outer radius [m], None where nothing limits it."""
+
+    radius_max: float | None

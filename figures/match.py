@@ -5,8 +5,11 @@ The functions take the results of ``drivetrain.match`` by their attributes and i
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures.style import (
@@ -24,17 +27,45 @@ from figures.style import (
 from units import MILLIMETRE
 
 _TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
+Look = dict[str, object]
 _OVERLOADS = (("field", "-"), ("linear", "--"))  # where the overload torque comes from, and its line
 _MOST_MARKERS = 10  # on one line
 _WORST_COST_SHOWN = 1.6  # times the least one; the cost has a pole towards small ratios
 
 
+class Curves(Protocol):
+    """``drivetrain.match.MatchCurves``: ratio [m/rad], lengths [m], costs, all over the ratio (n,)."""
+
+    ratio: np.ndarray
+    minimum_length: dict[str, np.ndarray]
+    active_length: np.ndarray
+    feasible: np.ndarray
+    cost: np.ndarray
+
+
+class Optimum(Protocol):
+    """What is drawn of ``drivetrain.match.Match``: ratio and its bounds [m/rad], length [m], cost."""
+
+    transmission_ratio: float
+    active_length: float
+    ratio_bounds: tuple[float, float]
+    total_cost: float
+
+
+class OverRadius(Protocol):
+    """``drivetrain.match.RadiusMatches``: radii, active_length [m], transmission_ratio [m/rad], cost (n,), NaN: none."""
+
+    radii: np.ndarray
+    transmission_ratio: np.ndarray
+    active_length: np.ndarray
+    cost: np.ndarray
+
+
 @styled
-def match_curves(curves, match, *, length_limit: float) -> Figure:
+def match_curves(curves: Curves, match: Optimum, *, title: str, length_limit: float) -> Figure:
     """Active length that each constraint asks for, and the cost with its parts, over the transmission ratio.
 
-    curves: ratio, minimum_length (by constraint), active_length, feasible, cost and its terms (``MatchCurves``)
-    match: transmission_ratio, active_length, cost.total, ratio_bounds, section (``Match``); length_limit [m]
+    curves, match: in SI, see the protocols; title: which machine; length_limit [m]
     """
     figure = new_figure(5.4)
     axes = figure.subplots(1, 2)
@@ -45,8 +76,7 @@ def match_curves(curves, match, *, length_limit: float) -> Figure:
         axis.set_xlim(curves.ratio.min() / MILLIMETRE, curves.ratio.max() / MILLIMETRE)
     letter(axes)
     show_grid(*axes)
-    section = match.section
-    figure.suptitle(f"{section.slots} slots, Ø {2 * section.stator_outer_radius / MILLIMETRE:.4g} mm")
+    figure.suptitle(title)
     handles, names = (sum(parts, []) for parts in zip(*(axis.get_legend_handles_labels() for axis in axes)))
     figure.legend(handles, names, loc="outside lower center", ncols=4, frameon=False)
     return figure
@@ -79,35 +109,40 @@ def match_over_radius(table: pd.DataFrame, *, best: pd.DataFrame | None = None) 
     return figure
 
 
-def radius_table(slots: int, overload: str, result) -> pd.DataFrame:
-    """Rows for ``match_over_radius`` from a ``RadiusMatches``.
+def radius_table(slots: int, overload: str, result: OverRadius) -> pd.DataFrame:
+    """Rows for ``match_over_radius`` in drawing units.
 
     overload: where the overload torque of these matches comes from, "field" or "linear"
     """
-    rows = [_row(slots, overload, radius, found) for radius, found in zip(result.radii, result.matches, strict=True)]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(
+        {
+            "slots": slots,
+            "overload": overload,
+            "stator_outer_radius_mm": result.radii / MILLIMETRE,
+            "transmission_ratio_mm_per_rad": result.transmission_ratio / MILLIMETRE,
+            "active_length_mm": result.active_length / MILLIMETRE,
+            "cost": result.cost,
+        }
+    )
 
 
-def best_row(slots: int, overload: str, match) -> pd.DataFrame:
-    """One match as a row of the same columns."""
-    return pd.DataFrame([_row(slots, overload, match.section.stator_outer_radius, match)])
-
-
-def _row(slots: int, overload: str, radius: float, found) -> dict:
-    return {
+def best_row(slots: int, overload: str, radius: float, match: Optimum) -> pd.DataFrame:
+    """One match at a stator outer radius [m] as a row of the same columns."""
+    row = {
         "slots": slots,
         "overload": overload,
         "stator_outer_radius_mm": radius / MILLIMETRE,
-        "transmission_ratio_mm_per_rad": np.nan if found is None else found.transmission_ratio / MILLIMETRE,
-        "active_length_mm": np.nan if found is None else found.active_length / MILLIMETRE,
-        "cost": np.nan if found is None else found.cost.total,
+        "transmission_ratio_mm_per_rad": match.transmission_ratio / MILLIMETRE,
+        "active_length_mm": match.active_length / MILLIMETRE,
+        "cost": match.total_cost,
     }
+    return pd.DataFrame([row])
 
 
 # ---- over the transmission ratio ------------------------------------------------------------------------------------
 
 
-def _draw_lengths(axes, curves, match, length_limit: float) -> None:
+def _draw_lengths(axes: Axes, curves: Curves, match: Optimum, length_limit: float) -> None:
     ratio = curves.ratio / MILLIMETRE
     for number, (name, length) in enumerate(curves.minimum_length.items()):
         enforced = np.all(length <= curves.active_length * (1 + 1e-9))
@@ -116,7 +151,7 @@ def _draw_lengths(axes, curves, match, length_limit: float) -> None:
     active = np.where(curves.feasible, curves.active_length, np.nan) / MILLIMETRE
     axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, label="possible solutions")
     bound = {"color": GREY, "linewidth": 1.2}
-    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, linestyle="--", label="rotor speed limit", **bound)
+    axes.axvline(match.ratio_bounds[0] / MILLIMETRE, linestyle="--", label="smallest allowed ratio", **bound)
     axes.axhline(length_limit / MILLIMETRE, linestyle="-.", label="active length limit", **bound)
     axes.plot(match.transmission_ratio / MILLIMETRE, match.active_length / MILLIMETRE, label="optimum", **_cross())
     axes.set_ylim(0.0, 1.2 * length_limit / MILLIMETRE)
@@ -125,7 +160,7 @@ def _draw_lengths(axes, curves, match, length_limit: float) -> None:
     axes.set_title(f"active length, optimum {place}", loc="left")
 
 
-def _draw_cost(axes, curves, match) -> None:
+def _draw_cost(axes: Axes, curves: Curves, match: Optimum) -> None:
     ratio = curves.ratio / MILLIMETRE
     axes.plot(ratio, curves.cost, color=LIGHT_GREY, linewidth=2.4)
     axes.plot(ratio, np.where(curves.feasible, curves.cost, np.nan), color=SERIES[0], linewidth=2.4, label="cost")
@@ -133,13 +168,13 @@ def _draw_cost(axes, curves, match) -> None:
         axes.plot(ratio, getattr(curves, term), color=SERIES[number], linestyle="--", label=f"cost of the {name}")
     axes.axvline(match.ratio_bounds[0] / MILLIMETRE, color=GREY, linestyle="--", linewidth=1.2)
     axes.axvline(match.ratio_bounds[1] / MILLIMETRE, color=GREY, linestyle="-.", linewidth=1.2)
-    axes.plot(match.transmission_ratio / MILLIMETRE, match.cost.total, **_cross())
-    axes.set_ylim(0.0, _WORST_COST_SHOWN * match.cost.total)
+    axes.plot(match.transmission_ratio / MILLIMETRE, match.total_cost, **_cross())
+    axes.set_ylim(0.0, _WORST_COST_SHOWN * match.total_cost)
     axes.set_ylabel("cost (dimensionless)")
-    axes.set_title(f"cost and its parts, optimum {match.cost.total:.3f}", loc="left")
+    axes.set_title(f"cost and its parts, optimum {match.total_cost:.3f}", loc="left")
 
 
-def _cross() -> dict:
+def _cross() -> Look:
     look = {"marker": "X", "markersize": 11, "color": VERMILION, "markeredgecolor": "white", "linestyle": ""}
     return look | {"zorder": 5}
 
@@ -147,7 +182,7 @@ def _cross() -> dict:
 # ---- over the stator radius -----------------------------------------------------------------------------------------
 
 
-def _draw_over_radius(axes, table: pd.DataFrame, column: str, style: dict) -> None:
+def _draw_over_radius(axes: Axes, table: pd.DataFrame, column: str, style: dict[int, Look]) -> None:
     for slots, look in style.items():
         for overload, line in _OVERLOADS:
             rows = table[(table.slots == slots) & (table.overload == overload)].sort_values("stator_outer_radius_mm")
@@ -159,7 +194,7 @@ def _draw_over_radius(axes, table: pd.DataFrame, column: str, style: dict) -> No
             axes.plot(rows.stator_outer_radius_mm, rows[column], **shape)
 
 
-def _draw_best(axes, best: pd.DataFrame | None, column: str) -> None:
+def _draw_best(axes: Axes, best: pd.DataFrame | None, column: str) -> None:
     if best is None or best.empty:
         return
     look = {"marker": "*", "markersize": 14, "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}

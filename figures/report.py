@@ -62,21 +62,20 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure, or the PNG of one (bytes or the path of a file), with its caption."""
+    """A figure, or the PNG of one (bytes, or the path of a file from the report's folder), with its caption."""
 
     kind: ClassVar[str] = "picture"
-    image: Figure | bytes | Path
+    image: Figure | bytes | Path | str
     caption: str
 
-    @property
-    def source(self) -> str:
-        """The PNG as a data address."""
-        return "data:image/png;base64," + b64encode(self._png()).decode("ascii")
+    def source(self, folder: Path) -> str:
+        """The PNG as a data address; folder: from which the path of a file counts."""
+        return "data:image/png;base64," + b64encode(self._png(folder)).decode("ascii")
 
-    def _png(self) -> bytes:
+    def _png(self, folder: Path) -> bytes:
         if isinstance(self.image, Figure):
             return png_bytes(self.image)
-        return self.image if isinstance(self.image, bytes) else Path(self.image).read_bytes()
+        return self.image if isinstance(self.image, bytes) else (folder / self.image).read_bytes()
 
 
 @dataclass(frozen=True)
@@ -125,6 +124,7 @@ class Section:
 def write_report(
     path: Path,
     sections: tuple[Section, ...],
+    folder: Path = Path(),
     *,
     title: str,
     subtitle: str = "",
@@ -132,16 +132,23 @@ def write_report(
 ) -> None:
     """Write the page.
 
-    sections: in reading order; provenance: name -> value for the foot of the page, such as versions and input hashes
+    sections: in reading order; folder: from which the paths of pictures count; provenance: name -> value for the foot of the page, such as versions and input hashes
     """
-    html = render_report(sections, title=title, subtitle=subtitle, provenance=provenance)
+    html = render_report(sections, folder, title=title, subtitle=subtitle, provenance=provenance)
     Path(path).write_text(html, encoding="utf-8")
 
 
-def render_report(sections, *, title: str, subtitle: str = "", provenance: dict[str, str] | None = None) -> str:
+def render_report(
+    sections: tuple[Section, ...],
+    folder: Path = Path(),
+    *,
+    title: str,
+    subtitle: str = "",
+    provenance: dict[str, str] | None = None,
+) -> str:
     """The page as text; arguments as in ``write_report``."""
-    template = template_environment().get_template(TEMPLATE)
-    return template.render(sections=tuple(sections), title=title, subtitle=subtitle, provenance=provenance or {})
+    page = {"title": title, "subtitle": subtitle, "provenance": provenance or {}, "folder": folder}
+    return template_environment().get_template(TEMPLATE).render(sections=tuple(sections), **page)
 
 
 def template_environment():

@@ -7,7 +7,7 @@ scikit-fem's and VTK's.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, singledispatch
 from math import pi
 
 import numpy as np
@@ -17,9 +17,11 @@ from scipy.spatial import cKDTree
 
 from figures.style import degrees
 from geometry.cross_section import CrossSection
-from geometry.gap import GapHalf
+from magnetostatics.case import FieldCase
+from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, refine_order
-from magnetostatics.model import FieldSolution, OperatingPoint
+from magnetostatics.model import FieldSolution, OperatingPoint, OperatingState
+from magnetostatics.rotation_stage import STATES, NullFields
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
 # Reference coordinates of the six nodes and the gradients of the six functions there (function, direction, node).
@@ -27,6 +29,7 @@ _NODES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]], dtype=float)
 _REFERENCE = QUADRATIC.gradients_at(_NODES)
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # a quadratic triangle as four straight ones
 _SAME_PLACE = 1e-8  # m; nodes closer than that are one node
+_NONE = "no current"
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,17 +105,27 @@ class SmoothField:
 def whole_field(solution: FieldSolution) -> WholeField:
     """The whole machine around a solution, rotor turned to its angle; nodes that meet are one node."""
     model, angle = solution.model, solution.point.angle
-    a = refine_order(model.section.mesh, solution.a) if model.order is LINEAR else solution.a
-    return _copied_around(model.section, a, angle, model.unknowns.turn(angle).rest, describe(solution.point))
+    a = refine_order(model.topology.facets, solution.a) if model.order is LINEAR else solution.a
+    return copied_around(model.section, a, angle, model.unknowns.turn(angle).rest, describe(solution.point))
+
+
+def null_field(fields: NullFields, case: FieldCase, state: str) -> WholeField:
+    """The whole machine of a kept field, in one of ``magnetostatics.rotation_stage.STATES``."""
+    point = fields.points[STATES.index(state)]
+    return copied_around(fields.section(case), fields.potential(state), point.angle, fields.rest, describe(point))
 
 
 def whole_geometry(section: CrossSection, angle: float = 0.0) -> WholeField:
     """The whole machine without a field (A = 0 everywhere), rotor at this mechanical angle [rad]."""
     _, size = element_dofs(section.mesh, QUADRATIC)
-    return _copied_around(section, np.zeros(size), angle, 0.0, "")
+    return copied_around(section, np.zeros(size), angle, 0.0, "")
 
 
-def _copied_around(section: CrossSection, a: np.ndarray, angle: float, rest: float, description: str) -> WholeField:
+def copied_around(section: CrossSection, a: np.ndarray, angle: float, rest: float, description: str) -> WholeField:
+    """The whole machine from the potential a (n,) [Wb/m] of the quadratic elements of a section.
+
+    angle: of the rotor [rad]; rest: what is left of it between two nodes of the sliding circle [rad]
+    """
     cells, _ = element_dofs(section.mesh, QUADRATIC)
     points = _nodes_in_space(section, cells, angle, rest)
     copies = range(section.sectors)
@@ -136,17 +149,34 @@ def whole_region(section: CrossSection) -> Region:
     return Region(np.concatenate(indices), tuple(all_names))
 
 
-def describe(point: OperatingPoint) -> str:
+def describe(point: OperatingState) -> str:
     """The operating point in words."""
+    return f"rotor at {degrees(point.angle / DEGREE)}, {current_in_words(point)}"
+
+
+@singledispatch
+def current_in_words(point: OperatingState) -> str:
+    """What flows, for each kind of operating state."""
+    return "currents as given"
+
+
+@current_in_words.register
+def _(point: OperatingPoint) -> str:
     density = point.current_density / AMPERE_PER_SQUARE_MILLIMETRE
-    current = f"{density:.3f} A/mm² (peak), current angle {degrees(point.current_angle / DEGREE)}"
-    return f"rotor at {degrees(point.angle / DEGREE)}, {current if density else 'no current'}"
+    return f"{density:.3f} A/mm² (peak), current angle {degrees(point.current_angle / DEGREE)}" if density else _NONE
 
 
-def rotor_cells(section: CrossSection) -> np.ndarray:
-    """Whether each cell of the sector turns with the rotor (E,): everything inside the middle of the air gap."""
-    corners = section.mesh.p[:, section.mesh.t]
-    return np.hypot(*corners.mean(axis=1)) < section.machine.mid_gap_radius
+@current_in_words.register
+def _(point: PhaseCurrents) -> str:
+    if not any(point.currents):
+        return _NONE
+    return ", ".join(f"{current * point.turns:.4g}" for current in point.currents) + " ampere-turns in phases A, B, C"
+
+
+@current_in_words.register
+def _(point: CoilCurrents) -> str:
+    largest = max(abs(turns) for turns in point.coil_ampere_turns)
+    return f"coils with up to {largest:.4g} ampere-turns" if largest else _NONE
 
 
 def _renamed(name: str, sector: int, section: CrossSection) -> str:
@@ -166,19 +196,13 @@ def _nodes_in_space(section: CrossSection, cells: np.ndarray, angle: float, rest
     both sides meet, exactly as in the solution.
     """
     corners = section.mesh.p.copy()
-    moving = np.unique(section.mesh.t[:, rotor_cells(section)])
-    corners[:, moving] = _turned_rotor(corners[:, moving], angle, rest, section.rotor_gap)
+    moving = np.unique(section.mesh.t[:, section.rotor_elements])
+    corners[:, moving] = _turn(section.rotor_gap.sheared(corners[:, moving], -rest), angle)
     points = np.empty((2, cells.max() + 1))
     points[:, : corners.shape[1]] = corners
     for middle, (start, end) in zip(cells[3:], ((0, 1), (1, 2), (2, 0)), strict=True):
         points[:, middle] = (corners[:, cells[start]] + corners[:, cells[end]]) / 2
     return points
-
-
-def _turned_rotor(points: np.ndarray, angle: float, rest: float, gap: GapHalf) -> np.ndarray:
-    radius = np.hypot(*points)
-    direction = np.arctan2(points[1], points[0]) + angle - rest * np.clip(1 - gap.height(points), 0.0, 1.0)
-    return radius * np.stack([np.cos(direction), np.sin(direction)])
 
 
 def _turn(points: np.ndarray, angle: float) -> np.ndarray:

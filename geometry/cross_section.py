@@ -115,6 +115,18 @@ class CrossSection:
         return self.machine.magnetisation.direction_angle(np.arctan2(points[1] - y, points[0] - x), centre_line)
 
     @cached_property
+    def rotor_elements(self) -> np.ndarray:
+        """Whether each element turns with the rotor (E,): all inside the middle of the air gap."""
+        centroids = self.mesh.p[:, self.mesh.t].mean(axis=1)
+        return np.hypot(*centroids) < self.machine.mid_gap_radius
+
+    @property
+    def rotor_band(self) -> np.ndarray:
+        """Elements of the gap on the rotor side of the sliding circle."""
+        gap = self.mesh.subdomains["gap"]
+        return gap[self.rotor_elements[gap]]
+
+    @cached_property
     def half_slot_area(self) -> float:
         """Area of one coil side as meshed [m^2]; the median, so that a defect of one slot does not count."""
         areas = _triangle_areas(self.mesh)

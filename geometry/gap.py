@@ -36,6 +36,13 @@ class GapHalf:
         root = np.sqrt(np.maximum(square, 0.0))  # zero at the axis, but for rounding
         return rest / (half + np.copysign(root, depth))
 
+    def sheared(self, points: np.ndarray, angle: float) -> np.ndarray:
+        """Points (2, ...) [m] turned about the axis by an angle [rad] on the sliding circle and beyond, by nothing on
+        the rim, in between by as much as they are close to the circle."""
+        radius = np.hypot(*points)
+        direction = np.arctan2(points[1], points[0]) + angle * np.clip(1 - self.height(points), 0.0, 1.0)
+        return radius * np.stack([np.cos(direction), np.sin(direction)])
+
     def gradient(self, points: np.ndarray) -> np.ndarray:
         """grad h = q/(D + q.c) with q the unit vector from the centre h c to the point (2, ...) [1/m]."""
         centre = np.array(self.rim_centre).reshape(2, *[1] * (np.ndim(points) - 1))

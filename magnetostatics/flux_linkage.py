@@ -30,6 +30,20 @@ def coil_flux_linkage(solution: FieldSolution) -> np.ndarray:
     return solution.model.coil_loads @ solution.a
 
 
+def flux_linkage_torque(solution: FieldSolution) -> float:
+    """Mean torque that the flux linkages of one rotor position stand for [Nm/m], whole machine, on the rotor.
+
+    T/l = 1.5 p (psi_d i_q - psi_q i_d),  i the ampere-turns of a coil, psi per turn and metre
+    The energy of the field is the same after one electrical period, so the mean of this over a period is that of the
+    torque (to 0.1 % at 9 and 12 slots); cogging is not in it. For states with ``ampere_turns``, such as OperatingPoint.
+    """
+    section, point = solution.model.section, solution.point
+    electrical = section.machine.pole_pairs * point.angle
+    psi_d, psi_q = park(phase_flux_linkage(solution), electrical, section.layout.phase_axis)
+    i_d, i_q = park(point.ampere_turns(section), electrical, section.layout.phase_axis)
+    return float(1.5 * section.machine.pole_pairs * (psi_d * i_q - psi_q * i_d))
+
+
 def park(phases: np.ndarray, electrical_angle: float, phase_axis: float) -> np.ndarray:
     """(d, q) of three phase values, amplitude-invariant; the d axis lies on magnet 0.
 

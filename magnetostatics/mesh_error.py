@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Sequence
 
 import numpy as np
 from skfem import MeshTri
@@ -28,6 +29,16 @@ def torque_with_error(model: FieldModel, point: OperatingState) -> tuple[float, 
     return arkkio_torque(solution), torque_error(solution, refined_solution(solution))
 
 
+def torque_errors(model: FieldModel, points: Sequence[OperatingState]) -> list[float]:
+    """The bound of ``torque_with_error`` [Nm/m] for several states; those at one rotor angle share much of the work."""
+    finer, errors = refined_model(model), []
+    coarse = fine = None
+    for point in points:
+        coarse, fine = model.solve(point, start=coarse), finer.solve(point, start=fine)
+        errors.append(torque_error(coarse, fine))
+    return errors
+
+
 def flux_linkage_with_error(model: FieldModel, point: OperatingState) -> tuple[np.ndarray, float]:
     """Flux linkage of the phases (3,) and a bound of what the mesh may have put any of them off by [Wb/m per turn].
 
@@ -47,9 +58,12 @@ def torque_error(solution: FieldSolution, finer: FieldSolution) -> float:
 
 def refined_solution(solution: FieldSolution) -> FieldSolution:
     """The same operating point on the refined mesh."""
-    model = solution.model
-    finer = FieldModel(refined(model.section), model.materials, model.settings, model.order)
-    return finer.solve(solution.point)
+    return refined_model(solution.model).solve(solution.point)
+
+
+def refined_model(model: FieldModel) -> FieldModel:
+    """The same problem on the refined mesh."""
+    return FieldModel(refined(model.section), model.materials, model.settings, model.order)
 
 
 def refined(section: CrossSection) -> CrossSection:

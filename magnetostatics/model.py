@@ -11,7 +11,6 @@ from typing import Callable, Protocol
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from geometry.gap import GapHalf
 from geometry.machine import GeometryError
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
@@ -217,7 +216,7 @@ class FieldModel:
         """The rotor side of the gap, sheared so that the sliding circle moves by -rest [rad] against the rotor."""
         corners = self.section.mesh.p[:, self.section.mesh.t[:, self.rotor_band]]
         if rest != 0.0:
-            corners = _shear(corners, rest, self.section.rotor_gap)
+            corners = self.section.rotor_gap.sheared(corners, -rest)
         return Elements.of(self.order, corners, self.elements.dofs[:, self.rotor_band])
 
     @cached_property
@@ -273,7 +272,7 @@ class FieldModel:
         """The same problem with linear elements, None where they are the elements of this model."""
         if self.order is LINEAR:
             return None
-        return self._coarse_model._solve(point, lower_order(self.topology.facets, load), start and start.coarse)
+        return self.coarse_model._solve(point, lower_order(self.topology.facets, load), start and start.coarse)
 
     def _first_guess(self, coarse: FieldSolution | None, start: FieldSolution | None) -> np.ndarray:
         """Potential to start from (n,): that of linear elements, or the start and what they changed since."""
@@ -294,7 +293,8 @@ class FieldModel:
         return TangentSystem(problem, problem.factorise(problem.free_values(solution.a)))
 
     @cached_property
-    def _coarse_model(self) -> FieldModel:
+    def coarse_model(self) -> FieldModel:
+        """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
         return FieldModel(self.section, self.materials, _COARSE, topology=self._coarse_topology)
 
     @cached_property
@@ -374,11 +374,3 @@ def _check_magnets(section: CrossSection, materials: MachineMaterials) -> None:
             f"magnets that differ break the symmetry of the machine, but 1/{section.sectors} of it is meshed: "
             "mesh the whole machine (mesh_cross_section(..., whole=True))"
         )
-
-
-def _shear(corners: np.ndarray, rest: float, gap: GapHalf) -> np.ndarray:
-    """Turn points (2, 3, E) of the rotor-side gap by -rest in proportion to their height above the rotor."""
-    x, y = corners
-    radius = np.hypot(x, y)
-    angle = np.arctan2(y, x) - rest * np.clip(1 - gap.height(corners), 0.0, 1.0)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle)])

@@ -30,7 +30,7 @@ class Topology:
         self.unknowns = number_unknowns(section, order)
         self.facets = section.mesh.facets
         self.regions = section.mesh.subdomains
-        self.rotor_band = _rotor_band(section)
+        self.rotor_band = section.rotor_band  # the only elements that change with the angle
         self._patterns: dict[int, JoinedPattern] = {}
 
     @cached_property
@@ -82,10 +82,3 @@ class Topology:
     def _band_entries(self, edges: int) -> Entries:
         column, sign = self.unknowns.turned(edges)
         return Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
-
-
-def _rotor_band(section: CrossSection) -> np.ndarray:
-    """Elements of the gap on the rotor side of the sliding circle: the only ones that change with the angle."""
-    gap = section.mesh.subdomains["gap"]
-    centroids = section.mesh.p[:, section.mesh.t[:, gap]].mean(axis=1)
-    return gap[np.hypot(*centroids) < section.machine.mid_gap_radius]

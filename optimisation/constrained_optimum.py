@@ -9,12 +9,15 @@ alone. At the end the machine is meshed anew and a last step in the width puts t
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import nan
+from typing import Sequence
 
 import numpy as np
 from scipy.optimize import minimize
 
 from geometry.machine import GeometryError
-from optimisation.design import Design, DesignSolver, Judge, MachineFamily
+from optimisation.design import Design, DesignSolver, Judge
+from units import MILLIMETRE
 
 _FIRST_BOX = (0.06, 0.045)  # half widths of the trust box relative to (w_bi, R_ro)
 _LAST_BOX = (0.02, 0.015)
@@ -35,13 +38,13 @@ _LIMIT_TOLERANCE = 2e-4  # relative, of the limited flux density at the optimum
 _MOST_CORRECTIONS = 6
 
 
-class NoOptimumError(RuntimeError):
+class NoOptimumError(ValueError):
     """No design of the family holds the limit, or the search did not settle; the message says which."""
 
 
 @dataclass(frozen=True)
-class Optimum:
-    """The best design, whether the limit binds, and what it cost."""
+class BestDesign:
+    """The design of the largest torque, whether the limit binds, and how many designs were solved."""
 
     design: Design
     limit_binds: bool
@@ -53,7 +56,6 @@ class _Search:
     """Field solutions by (width, radius) for one slot count and stator radius; every point is solved once."""
 
     solver: DesignSolver
-    family: MachineFamily
     slots: int
     stator_outer_radius: float
     limit: float
@@ -69,7 +71,8 @@ class _Search:
         key = (float(width), float(radius))
         if key not in self.known:
             try:
-                self.known[key] = self.solver.design(self.family.machine(self.slots, self.stator_outer_radius, *key))
+                family = self.solver.judge.case.family
+                self.known[key] = self.solver.design(family.machine(self.slots, self.stator_outer_radius, *key))
             except GeometryError:
                 self.known[key] = None
         return self.known[key]
@@ -83,19 +86,19 @@ class _Search:
 
 def find_optimum(
     judge: Judge,
-    family: MachineFamily,
     slots: int,
     stator_outer_radius: float,
     limit: float,
     start: tuple[float, float],
-) -> Optimum:
+) -> BestDesign:
     """Largest torque with the limited flux density at most ``limit`` [T].
 
-    stator_outer_radius [m]; start: (back-iron width, rotor radius) [m], for example ``DesignMap.best_point``
-    Returns the optimum with the limit held to 0.02 %.
+    judge: its objective says which torque; stator_outer_radius [m]
+    start: (back-iron width, rotor radius) [m], for example ``DesignMap.best_point``
+    Returns the best design with the limit held to 0.02 %.
     Raises NoOptimumError.
     """
-    search = _Search(DesignSolver(judge), family, slots, stator_outer_radius, limit)
+    search = _Search(DesignSolver(judge), slots, stator_outer_radius, limit)
     point, box = np.array(start), np.array(_FIRST_BOX)
     for _ in range(_MOST_ROUNDS):
         target, on_edge = _round(search, point, box * point)
@@ -115,10 +118,17 @@ def _round(search: _Search, centre: np.ndarray, half: np.ndarray) -> tuple[np.nd
     built = [k for k, design in enumerate(designs) if design is not None]
     if len(built) < 6:
         raise NoOptimumError(_where(search, centre) + "too few designs can be built to look for an optimum there")
-    torque = _quadratic(offsets[built], [designs[k].torque for k in built])
-    limited = _quadratic(offsets[built], [designs[k].limited for k in built])
+    torque, limited = (_quadratic(offsets[built], [read(designs[k]) for k in built]) for read in (_torque, _limited))
     best = _maximise(torque, limited, search.limit)
     return centre + half * best, bool(np.any(np.abs(best) > 0.999))
+
+
+def _torque(design: Design | None) -> float:
+    return design.torque if design is not None else nan
+
+
+def _limited(design: Design | None) -> float:
+    return design.limited if design is not None else nan
 
 
 def _terms(x: np.ndarray) -> np.ndarray:
@@ -146,18 +156,18 @@ def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarr
     return min(feasible, key=lambda r: r.fun).x
 
 
-def _settle(search: _Search, point: np.ndarray) -> Optimum:
+def _settle(search: _Search, point: np.ndarray) -> BestDesign:
     """Put the width on the limit (secant) where it binds, and return the design."""
     width, radius = point
     search.start_anew()
     design = _require(search, width, radius)
     if design.limited < search.limit * (1 - 5e-3):
-        return Optimum(design, False, search.all_solves)
+        return BestDesign(design, False, search.all_solves)
     other_width = width * 1.01
     other = _require(search, other_width, radius)
     for _ in range(_MOST_CORRECTIONS):
         if abs(design.limited / search.limit - 1) < _LIMIT_TOLERANCE:
-            return Optimum(design, True, search.all_solves)
+            return BestDesign(design, True, search.all_solves)
         slope = (other.limited - design.limited) / (other_width - width)
         other_width, other = width, design
         width = width + (search.limit - design.limited) / slope
@@ -175,8 +185,9 @@ def _require(search: _Search, width: float, radius: float) -> Design:
     return design
 
 
-def _where(search: _Search, point) -> str:
+def _where(search: _Search, point: Sequence[float]) -> str:
+    width, radius = (length / MILLIMETRE for length in point)
     return (
-        f"{search.slots} slots, stator radius {search.stator_outer_radius * 1e3:g} mm, near back iron {point[0] * 1e3:.3f} mm "
-        f"and rotor radius {point[1] * 1e3:.3f} mm: "
+        f"{search.slots} slots, stator radius {search.stator_outer_radius / MILLIMETRE:g} mm, near back iron {width:.3f} mm "
+        f"and rotor radius {radius:.3f} mm: "
     )

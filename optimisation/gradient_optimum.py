@@ -11,8 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import minimize
 
-from optimisation.constrained_optimum import NoOptimumError, Optimum
-from optimisation.design import Design, DesignSolver, Judge, MachineFamily
+from geometry.machine import Machine
+from optimisation.constrained_optimum import BestDesign, NoOptimumError
+from optimisation.design import Design, DesignSolver, Judge
+from units import MILLIMETRE
 
 _FARTHEST = 0.35  # relative change of a dimension in one search
 _STEPS = np.full(2, 1e-4)  # relative changes for the derivatives
@@ -25,16 +27,15 @@ class _Problem:
     """Torque and limited flux density, relative, over relative changes x (2,) of the dimensions at ``centre``."""
 
     solver: DesignSolver
-    family: MachineFamily
     slots: int
     stator_outer_radius: float
     limit: float
     centre: np.ndarray
     known: dict[bytes, tuple[Design, np.ndarray, np.ndarray]] = field(default_factory=dict)
 
-    def machine(self, x: np.ndarray):
+    def machine(self, x: np.ndarray) -> Machine:
         width, radius = self.centre * (1 + x)
-        return self.family.machine(self.slots, self.stator_outer_radius, float(width), float(radius))
+        return self.solver.judge.case.family.machine(self.slots, self.stator_outer_radius, float(width), float(radius))
 
     def look(self, x: np.ndarray) -> tuple[Design, np.ndarray, np.ndarray]:
         """(design, torque slopes, limited slopes) at x, each solved once."""
@@ -64,19 +65,18 @@ class _Problem:
         )
         if not found.success:
             raise NoOptimumError(
-                f"{self.slots} slots, stator radius {self.stator_outer_radius * 1e3:g} mm: {found.message}"
+                f"{self.slots} slots, stator radius {self.stator_outer_radius / MILLIMETRE:g} mm: {found.message}"
             )
         return found.x
 
 
 def find_optimum_by_gradients(
     judge: Judge,
-    family: MachineFamily,
     slots: int,
     stator_outer_radius: float,
     limit: float,
     start: tuple[float, float],
-) -> Optimum:
+) -> BestDesign:
     """Largest torque with the limited flux density at most ``limit`` [T]; arguments as ``find_optimum``.
 
     start: (back-iron width, rotor radius) [m], within a third of the optimum
@@ -84,9 +84,9 @@ def find_optimum_by_gradients(
     """
     solves, centre = 0, np.array(start)
     for _ in range(2):  # the second time on a mesh of the optimum itself
-        problem = _Problem(DesignSolver(judge), family, slots, stator_outer_radius, limit, centre)
+        problem = _Problem(DesignSolver(judge), slots, stator_outer_radius, limit, centre)
         x = problem.search()
         solves += len(problem.known)
         centre = centre * (1 + x)
     design = problem.look(x)[0]
-    return Optimum(design, design.limited > limit * (1 - _BINDS), solves)
+    return BestDesign(design, design.limited > limit * (1 - _BINDS), solves)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Sequence
 
 import numpy as np
 
+from units import MILLIMETRE
+
 ORDER = 2
 _LARGEST_RELATIVE_RESIDUAL = 0.03
+_ROUNDING = 1e-9  # m, beyond the range
 
 
 class FitRefused(ValueError):
@@ -16,61 +20,83 @@ class FitRefused(ValueError):
 
 @dataclass(frozen=True)
 class PolynomialFit:
-    """y = p2 x^2 + p1 x + p0 over the fitted range of x.
+    """y = c2 t^2 + c1 t + c0 with t = (R - centre)/scale, over the fitted range of the stator radius R [m].
 
-    coefficients (p2, p1, p0); x_range; r_squared; rms_residual and largest_residual in the unit of y; refused: the
-    reason why the fit must not be used, empty when it may
+    The radius is centred and scaled, so that the coefficients are of one size and well determined.
+    coefficients (c2, c1, c0), rms_residual, largest_residual: in the unit of y; centre, scale, x_range [m]
+    refused: the reason why the fit must not be used, empty when it may
     """
 
     quantity: str
     coefficients: tuple[float, float, float]
+    centre: float
+    scale: float
     x_range: tuple[float, float]
     r_squared: float
     rms_residual: float
     largest_residual: float
     refused: str = ""
 
-    def __call__(self, x):
-        """Value at x. Raises FitRefused for a bad fit or outside the fitted range."""
+    @property
+    def powers(self) -> tuple[float, float, float]:
+        """(p2, p1, p0) of y = p2 R^2 + p1 R + p0 with R in metres."""
+        c2, c1, c0 = self.coefficients
+        p2, p1 = c2 / self.scale**2, c1 / self.scale
+        return p2, p1 - 2 * p2 * self.centre, c0 - p1 * self.centre + p2 * self.centre**2
+
+    def __call__(self, radius: float | np.ndarray) -> float | np.ndarray:
+        """Value at a stator radius [m]. Raises FitRefused for a bad fit or outside the fitted range."""
         if self.refused:
             raise FitRefused(f"the fit of {self.quantity} is refused: {self.refused}")
         low, high = self.x_range
-        if np.any(np.asarray(x) < low - 1e-9) or np.any(np.asarray(x) > high + 1e-9):
-            raise FitRefused(f"the fit of {self.quantity} holds from {low:g} to {high:g}, asked for {x}")
-        return np.polyval(self.coefficients, x)
+        if np.any(np.asarray(radius) < low - _ROUNDING) or np.any(np.asarray(radius) > high + _ROUNDING):
+            asked = np.asarray(radius) / MILLIMETRE
+            raise FitRefused(
+                f"the fit of {self.quantity} holds from {low / MILLIMETRE:g} to {high / MILLIMETRE:g} mm of stator radius, "
+                f"asked for {asked} mm: widen sweep.stator_diameters_mm"
+            )
+        return np.polyval(self.coefficients, (radius - self.centre) / self.scale)
 
 
-def fit_polynomial(quantity: str, x: np.ndarray, y: np.ndarray) -> PolynomialFit:
-    """Least-squares second-order polynomial with its residuals and R^2.
+def fit_polynomial(quantity: str, radii: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> PolynomialFit:
+    """Least-squares second-order polynomial over the stator radius [m] with its residuals and R^2.
 
     The fit is marked as refused when there are too few points for its order to be tested, or when a
     residual exceeds 3 % of the mean (a flat quantity may have a low R^2 and still be described well).
     """
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    x, y = np.asarray(radii, dtype=float), np.asarray(y, dtype=float)
     if len(x) < ORDER + 2:
-        reason = f"{len(x)} points cannot test a polynomial of order {ORDER}; at least {ORDER + 2} are needed"
-        nothing = (np.nan, np.nan, np.nan)
-        return PolynomialFit(quantity, nothing, _range(x), np.nan, np.nan, np.nan, reason)
-    coefficients = np.polyfit(x, y, ORDER)
-    residual = y - np.polyval(coefficients, x)
+        return _too_few(quantity, x)
+    centre, scale = float((x.min() + x.max()) / 2), float(np.ptp(x) / 2)
+    coefficients = np.polyfit((x - centre) / scale, y, ORDER)
+    residual = y - np.polyval(coefficients, (x - centre) / scale)
     spread = ((y - y.mean()) ** 2).sum()
-    r_squared = 1 - (residual**2).sum() / spread if spread > 0 else 1.0
+    r_squared = float(1 - (residual**2).sum() / spread) if spread > 0 else 1.0
     worst = int(np.argmax(np.abs(residual)))
     reason = _reason_to_refuse(x[worst], abs(residual[worst]) / np.mean(np.abs(y)), r_squared)
-    rms = float(np.sqrt((residual**2).mean()))
-    return PolynomialFit(
-        quantity, tuple(coefficients), _range(x), float(r_squared), rms, float(abs(residual[worst])), reason
+    rms, largest = float(np.sqrt((residual**2).mean())), float(abs(residual[worst]))
+    c2, c1, c0 = coefficients.tolist()
+    return PolynomialFit(quantity, (c2, c1, c0), centre, scale, _range(x), r_squared, rms, largest, reason)
+
+
+def _too_few(quantity: str, x: np.ndarray) -> PolynomialFit:
+    reason = (
+        f"{len(x)} points cannot test a polynomial of order {ORDER}; at least {ORDER + 2} are needed: "
+        "add to sweep.stator_diameters_mm"
     )
+    unknown = float("nan")
+    return PolynomialFit(quantity, (unknown,) * 3, unknown, unknown, _range(x), unknown, unknown, unknown, reason)
 
 
 def _range(x: np.ndarray) -> tuple[float, float]:
-    return (float(x.min()), float(x.max())) if len(x) else (np.nan, np.nan)
+    return (float(x.min()), float(x.max())) if len(x) else (float("nan"), float("nan"))
 
 
 def _reason_to_refuse(where: float, relative: float, r_squared: float) -> str:
     if relative <= _LARGEST_RELATIVE_RESIDUAL:
         return ""
     return (
-        f"the point at {where:g} is {relative:.1%} of the mean away from the curve (R^2 = {r_squared:.4f}), more than "
-        f"{_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit a narrower range"
+        f"the point at {where / MILLIMETRE:g} mm is {relative:.1%} of the mean away from the curve (R^2 = {r_squared:.4f}), "
+        f"more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit a narrower range "
+        "(sweep.stator_diameters_mm)"
     )

@@ -2,43 +2,23 @@
 
 from __future__ import annotations
 
-import dataclasses
-import hashlib
 import json
 import os
 from pathlib import Path
+from typing import Any
 
-
-def canonical(value) -> str:
-    """One text for one value: JSON with sorted keys, dataclasses and arrays included."""
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), default=_plain)
-
-
-def digest(value) -> str:
-    """SHA-256 of the canonical text of a value."""
-    return hashlib.sha256(canonical(value).encode()).hexdigest()
-
-
-def _plain(value):
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-        return {"type": type(value).__qualname__, **fields}
-    if hasattr(value, "tolist"):  # numpy arrays and scalars
-        return value.tolist()
-    if isinstance(value, Path):
-        return str(value)
-    raise TypeError(f"{value!r} of type {type(value).__name__} cannot be written as JSON; use numbers, texts, lists, "
-                    "dictionaries, arrays or dataclasses")
+from pipeline.codec import CodecError, decoded, encoded
 
 
 class Checkpoint:
     """Append-only file of finished points: a header with the hash of the inputs, then one JSON line a point.
 
-    Each line is on disk before ``add`` returns. A last line that was cut by a killed process is dropped; a file
-    written for other inputs is started anew, so that a stale point is never taken for a result.
+    Each line is on disk before ``add`` returns. A line that was cut by a killed process, or that is not one of ours, is
+    dropped with all after it; a file written for other inputs is started anew, so that a stale point is never taken for
+    a result.
 
     path: the file; made with its folder when the first point is added
-    inputs: hash of everything that a point depends on besides its own arguments
+    inputs: hash of everything that the points depend on
     """
 
     def __init__(self, path: Path, inputs: str):
@@ -52,14 +32,14 @@ class Checkpoint:
     def __contains__(self, key: str) -> bool:
         return key in self._results
 
-    def __getitem__(self, key: str):
-        return self._results[key]
+    def __getitem__(self, key: str) -> Any:
+        return decoded(self._results[key])
 
-    def add(self, key: str, result) -> None:
-        """Keep the result of a finished point; it comes back as JSON gives it (lists for arrays)."""
-        text = canonical(result)
-        self._append({"point": key, "result": json.loads(text)})
-        self._results[key] = json.loads(text)
+    def add(self, key: str, result: Any) -> None:
+        """Keep the result of a finished point; CodecError where it cannot be written."""
+        content = encoded(result)
+        self._append({"point": key, "result": content})
+        self._results[key] = content
 
     def remove(self) -> None:
         """Delete the file once the results stand elsewhere."""
@@ -76,7 +56,7 @@ class Checkpoint:
             os.fsync(file.fileno())
             self._good_bytes = file.tell()
 
-    def _read(self) -> tuple[dict, int]:
+    def _read(self) -> tuple[dict[str, Any], int]:
         """Results of the intact lines and the number of bytes that they fill."""
         if not self.path.is_file():
             return {}, 0
@@ -86,7 +66,7 @@ class Checkpoint:
         results, good_bytes = {}, len(lines[0])
         for line in lines[1:]:
             entry = _entry(line)
-            if entry is None:
+            if entry is None or not _is_point(entry):
                 break
             results[entry["point"]] = entry["result"]
             good_bytes += len(line)
@@ -94,10 +74,22 @@ class Checkpoint:
 
 
 def _entry(line: bytes) -> dict | None:
-    """The JSON of one whole line, None for a line that was cut."""
+    """The JSON object of one whole line, None for a line that was cut or is something else."""
     if not line.endswith(b"\n"):
         return None
     try:
-        return json.loads(line)
-    except ValueError:
+        found = json.loads(line)
+    except (ValueError, RecursionError):
         return None
+    return found if isinstance(found, dict) else None
+
+
+def _is_point(entry: dict) -> bool:
+    """Whether an entry is one that ``add`` wrote."""
+    if entry.keys() != {"point", "result"} or not isinstance(entry["point"], str):
+        return False
+    try:
+        decoded(entry["result"])
+    except CodecError:
+        return False
+    return True

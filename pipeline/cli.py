@@ -1,190 +1,65 @@
-"""The command ``airgap``."""
+"""The command ``airgap``: one table of commands; what a command needs is loaded when it is the one that is asked for."""
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from math import sqrt
-from pathlib import Path
+from dataclasses import dataclass
+from importlib import import_module
 
-from pipeline.workbench_commands import add_commands
-from study.errors import StudyError, exit_on_wrong_study
+from study.errors import exit_on_wrong_study
+
+
+@dataclass(frozen=True)
+class Command:
+    """Module and function that add the arguments of a command, and what it answers."""
+
+    module: str
+    adds: str
+    help: str
+
+
+COMMANDS = {
+    "run": Command("pipeline.run_command", "add_run", "run the stages of a study"),
+    "check": Command("pipeline.study_commands", "add_check", "is a study file usable?"),
+    "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
+    "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
+    "graph": Command("pipeline.study_commands", "add_graph", "draw the stages of a study and what flows between them"),
+    "compare": Command("pipeline.workbench_commands", "add_compare", "where does the model fail against a campaign?"),
+    "diagnose": Command("pipeline.workbench_commands", "add_diagnose",
+                        "which effect is missing, how sure, what to measure next?"),
+    "add": Command("pipeline.workbench_commands", "add_add",
+                   "add an effect to the model: accepted only if the held-out error falls"),
+    "ledger": Command("pipeline.workbench_commands", "add_ledger",
+                      "diagnose and add by itself until nothing more is named; the ledger"),
+    "effects": Command("pipeline.workbench_commands", "add_effects",
+                       "what the library knows, one line each; a name shows its equation"),
+    "new-effect": Command("pipeline.workbench_commands", "add_new_effect",
+                          "a skeleton of one's own effect, from the residual of a campaign"),
+    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for a plain CSV file"),
+}  # fmt: skip
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Entry of the console script. Exit codes: 0 done, 2 wrong input, 1 the field did not converge."""
-    options = _parser().parse_args(arguments)
+    """Entry of the console script.
+
+    Exit codes: 0 done, 1 a stage could not go on or the field did not converge, 2 wrong input, 130 Ctrl-C.
+    """
+    given = sys.argv[1:] if arguments is None else arguments
+    options = _parser(given).parse_args(given)
     with exit_on_wrong_study():
         options.run(options)
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(given: list[str]) -> argparse.ArgumentParser:
+    """The parser of all commands; only the one that is asked for has its arguments."""
     parser = argparse.ArgumentParser(prog="airgap", description="Design electric machines, test the design, meet the bench.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    _add_solve(commands.add_parser("solve", help="solve the field of one operating point"))
-    _add_check(commands.add_parser("check", help="is a study file usable?"))
-    add_commands(commands)
+    for name, command in COMMANDS.items():
+        own = commands.add_parser(name, help=command.help)
+        if given[:1] == [name]:
+            getattr(import_module(command.module), command.adds)(own)
     return parser
-
-
-def _add_check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("study", help="name of a file in studies/ or a path")
-    _add_overrides(parser)
-    parser.set_defaults(run=_check)
-
-
-def _add_solve(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Solve the field of one operating point; angles and signs as in README.md."
-    parser.add_argument("study", help="name of a file in studies/ or a path")
-    _add_overrides(parser)
-    parser.add_argument("--angle-deg", type=float, default=0.0, help="mechanical rotor angle; 0: magnet 0 on tooth 0")
-    density = parser.add_mutually_exclusive_group()
-    density.add_argument("--j-amplitude", type=float, help="amplitude of the current density in the copper / A/mm2")
-    density.add_argument("--j-rms", type=float, help="RMS current density in the copper / A/mm2")
-    parser.add_argument(
-        "--current-angle-deg", type=float, default=0.0, help="electrical, from the q axis; > 0 weakens the field"
-    )
-    parser.add_argument("--json", metavar="FILE", help="write the result as JSON; - for standard output")
-    parser.add_argument("--vtu", metavar="FILE", help="write the field for ParaView or pyvista")
-    parser.add_argument("--png", metavar="FILE", help="write a picture of the field")
-    parser.add_argument(
-        "--sweep-mesh", action="store_true", help="use the mesh of the sweep instead of twice its resolution"
-    )
-    parser.set_defaults(run=_solve)
-
-
-def _add_overrides(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="SECTION.KEY=VALUE",
-        help="replace a value of the study; repeatable",
-    )
-
-
-def _check(options) -> None:
-    from study.check import summary
-    from study.read import check_study, read_study
-
-    study = read_study(options.study, options.set)
-    check_study(study)
-    print(summary(study))
-
-
-def _solve(options) -> None:
-    from study.read import check_steel, read_study
-
-    study = read_study(options.study, options.set)
-    check_steel(study)
-    solution = _field(study, options)
-    result = _result(solution)
-    _print(result, options.json)
-    if options.vtu:
-        from figures.export import write_vtu
-
-        write_vtu(_writable(options.vtu), solution)
-    if options.png:
-        from figures.field_map import field_map
-        from figures.whole_field import whole_field
-
-        field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
-
-
-def _field(study, options):
-    from magnetostatics.model import OperatingPoint
-    from pipeline.models import detail_density, field_model
-    from study.convert import to_machine, to_mesh_density
-    from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
-
-    amplitude = _amplitude(options)
-    density = to_mesh_density(study.mesh) if options.sweep_mesh else detail_density(study)
-    point = OperatingPoint(
-        options.angle_deg * DEGREE,
-        amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
-        options.current_angle_deg * DEGREE,
-        study.winding.packing_factor,
-    )
-    return field_model(study, to_machine(study.machine), density).solve(point)
-
-
-def _amplitude(options) -> float:
-    """Amplitude of the current density [A/mm2]; none stated means no current."""
-    from math import isfinite
-
-    if options.j_rms is not None:
-        amplitude = sqrt(2) * options.j_rms
-    else:
-        amplitude = options.j_amplitude or 0.0
-    for name in ("angle_deg", "current_angle_deg"):
-        if not isfinite(getattr(options, name)):
-            raise StudyError(
-                f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}."
-            )
-    if not isfinite(amplitude) or amplitude < 0:
-        raise StudyError(f"the current density must be a finite number, zero or more A/mm2, found {amplitude:g}.")
-    return amplitude
-
-
-def _result(solution) -> dict:
-    """Everything a user may want to know of one solved state, units in the keys."""
-    from magnetostatics.flux_linkage import park, phase_flux_linkage
-    from magnetostatics.mesh_error import refined_solution, torque_error
-    from magnetostatics.probes import probe_reader
-    from magnetostatics.torque import arkkio_torque, maxwell_torque
-    from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, SQUARE_MILLIMETRE
-
-    model, point = solution.model, solution.point
-    section = model.section
-    linkage = phase_flux_linkage(solution)
-    dq = park(linkage, section.machine.pole_pairs * point.angle, section.layout.phase_axis)
-    densities = point.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
-    return {
-        "torque_per_length_Nm_per_m": {"arkkio": arkkio_torque(solution), "maxwell": maxwell_torque(solution)},
-        "torque_error_Nm_per_m": torque_error(solution, refined_solution(solution)),
-        "flux_linkage_Wb_per_turn_per_m": dict(zip("abc", linkage.tolist())),
-        "flux_linkage_dq_Wb_per_turn_per_m": dict(zip("dq", dq.tolist())),
-        "probes_T": probe_reader(model).read(solution),
-        "operating_point": {
-            "angle_deg": point.angle / DEGREE,
-            "current_angle_deg": point.current_angle / DEGREE,
-            "j_phase_A_per_mm2": dict(zip("abc", (densities / AMPERE_PER_SQUARE_MILLIMETRE).tolist())),
-        },
-        "half_slot_area_mm2": section.half_slot_area / SQUARE_MILLIMETRE,
-        "sectors": section.sectors,
-        "unknowns": model.unknowns.count,
-        "newton": {"residuals": list(solution.newton.residuals), "steps": list(solution.newton.steps)},
-        "cpu_seconds": solution.cpu_seconds,
-    }
-
-
-def _print(result: dict, target: str | None) -> None:
-    text = json.dumps(result, indent=2)
-    if target == "-":
-        print(text)
-        return
-    if target:
-        _writable(target).write_text(text + "\n", encoding="utf-8")
-    torque = result["torque_per_length_Nm_per_m"]
-    print(
-        f"torque per length   {torque['arkkio']:.3f} ± {result['torque_error_Nm_per_m']:.3f} Nm/m (ring average; ± bounds the "
-        f"error of the mesh), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
-    )
-    linkage = result["flux_linkage_Wb_per_turn_per_m"]
-    print(
-        "flux linkage        " + ", ".join(f"{k} {1e3 * v:.4f}" for k, v in linkage.items()) + " mWb per turn and metre"
-    )
-    worst = sorted(result["probes_T"].items(), key=lambda item: -item[1])[:3]
-    print("highest probes      " + ", ".join(f"{name} {value:.3f} T" for name, value in worst))
-    print(f"unknowns            {result['unknowns']}, Newton iterations {len(result['newton']['residuals'])}")
-
-
-def _writable(target: str) -> Path:
-    path = Path(target)
-    if not path.resolve().parent.is_dir():
-        raise StudyError(f"cannot write {target}: the folder {path.parent} does not exist; create it first.")
-    return path
 
 
 if __name__ == "__main__":

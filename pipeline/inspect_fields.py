@@ -1,4 +1,4 @@
-"""``python -m pipeline.inspect_fields STUDY``: look into the solved fields of a study.
+"""``airgap inspect STUDY``: look into the solved fields of a study.
 
 Opens a window where there is a display. Without one it writes a PNG of every field and ``scene.html``, a page with all
 fields to zoom into that needs nothing but a browser.
@@ -13,8 +13,16 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from pipeline.stage import StageError, command, results_folder
+import numpy as np
+
+from figures.export import FieldFileError, read_vtu
+from figures.field_map import FLUX_LINES, colour_limit, field_map, outlines
+from figures.scene import write_scene
+from figures.style import FIELD_MAP, save_png
+from pipeline.results import ResultsError, results_of
+from pipeline.sentences import sentences
 from study.read import read_study
+from units import MILLIMETRE
 
 SYSTEM_LIBRARIES = "libglu1-mesa libgl1 libxft2 libxcursor1 libxinerama1 libgomp1 libegl1"
 _WINDOW_PROBE = """
@@ -28,34 +36,35 @@ raise SystemExit(0 if any(system in kind for system in ("XOpenGL", "Win32", "Coc
 """
 
 
-def main(arguments: list[str] | None = None) -> None:
-    """Entry point; see the module's text."""
-    parser = argparse.ArgumentParser(prog="python -m pipeline.inspect_fields", description=__doc__)
+def add_inspect(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``airgap inspect``."""
     parser.add_argument("study", help="path of a study file, or the name of one in studies/")
     parser.add_argument("--out", type=Path, help="folder for the pictures (default: results/<study>/inspect)")
     parser.add_argument("--no-window", action="store_true", help="write the files even where there is a display")
-    chosen = parser.parse_args(arguments)
-    with command():
-        study = read_study(chosen.study)
-        results = results_folder(study.study.id)
-        fields = read_fields(results)
+    parser.set_defaults(run=inspect)
+
+
+def inspect(chosen: argparse.Namespace) -> None:
+    """See the module's text."""
+    study = read_study(chosen.study)
+    with sentences():
+        folder = results_of(study).folder
+        fields = read_fields(folder)
         if not chosen.no_window and wants_window():
             show(fields)
         else:
-            write_files(fields, chosen.out or results / "inspect", study.study.title)
+            write_files(fields, chosen.out or folder / "inspect", study.study.title)
 
 
 def read_fields(folder: Path) -> dict:
-    """Name -> field of every .vtu file in the folder; StageError when there is none or one cannot be read."""
-    from figures.export import FieldFileError, read_vtu
-
+    """Name -> field of every .vtu file in the folder; ResultsError when there is none or one cannot be read."""
     paths = sorted(path for path in folder.glob("*.vtu") if not path.name.startswith("."))
     if not paths:
-        raise StageError("there are no fields to look at yet; run `make pipeline`, or `make fields`, first.")
+        raise ResultsError("there are no fields to look at yet; run `make pipeline`, or `make fields`, first.")
     try:
         return {path.stem: read_vtu(path) for path in paths}
     except FieldFileError as error:
-        raise StageError(f"{error}; delete it and run `make fields`.") from None
+        raise ResultsError(f"{error}; delete it and run `make fields`.") from None
 
 
 def wants_window() -> bool:
@@ -90,10 +99,6 @@ def window_opens() -> bool:
 
 def write_files(fields: dict, folder: Path, title: str) -> list[Path]:
     """A PNG of every field and one page with all of them; returns what was written."""
-    from figures.field_map import field_map
-    from figures.scene import write_scene
-    from figures.style import save_png
-
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.png" for name in fields] + [folder / "scene.html"]
     for path, field in zip(paths, fields.values()):
@@ -106,7 +111,7 @@ def write_files(fields: dict, folder: Path, title: str) -> list[Path]:
 
 def show(fields: dict) -> None:
     """A window with |B| and flux lines; a slider chooses the field."""
-    import pyvista
+    import pyvista  # noqa: PLC0415
 
     plotter = pyvista.Plotter(title="flux density and flux lines", window_size=(1000, 1000))
     add_field(plotter, next(iter(fields.values())))
@@ -119,9 +124,6 @@ def show(fields: dict) -> None:
 
 def add_field(plotter, field) -> None:
     """Put a field into the window, in place of the one before."""
-    from figures.field_map import FLUX_LINES, colour_limit, outlines
-    from figures.style import FIELD_MAP
-
     surface = surface_of(field)
     colours = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
     bar = {"title": "flux density / T", "vertical": True, "position_x": 0.88, "position_y": 0.25, "height": 0.5}
@@ -134,10 +136,7 @@ def add_field(plotter, field) -> None:
 
 def surface_of(field):
     """The field as triangles [mm] with |B| [T] and A [Wb/m] at their corners."""
-    import numpy as np
-    import pyvista
-
-    from units import MILLIMETRE
+    import pyvista  # noqa: PLC0415 - a second of start-up that only this command needs
 
     smooth = field.smooth
     points = np.column_stack([*(smooth.points / MILLIMETRE), np.zeros(smooth.points.shape[1])])
@@ -148,12 +147,8 @@ def surface_of(field):
 
 def pieces_of(pieces):
     """Straight pieces (k, 2, 2) as lines in the plane."""
-    import numpy as np
-    import pyvista
+    import pyvista  # noqa: PLC0415
 
     ends = np.concatenate([pieces.reshape(-1, 2), np.zeros((2 * len(pieces), 1))], axis=1)
     return pyvista.line_segments_from_points(ends)
 
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -5,30 +5,67 @@ from __future__ import annotations
 import argparse
 import sys
 from contextlib import contextmanager
+from inspect import cleandoc
 from pathlib import Path
+
+from tqdm import tqdm
+
+from effects.library import effects_of_file, library
+from effects.parameter import parameters_of
+from workbench.as_json import comparison_json, diagnosis_json
+from workbench.base_models import nominal_model
+from workbench.campaign import read_campaign
+from workbench.comparison import compare
+from workbench.diagnosis import SEED, diagnose
+from workbench.draft import write_draft
+from workbench.errors import WorkbenchError
+from workbench.model_file import NAME, with_effects_of
+from workbench.report import write_comparison_report, write_diagnosis_report, write_ledger_report
+from workbench.report.sentences import conclusions, readings, verdict_sentence
+from workbench.skeleton import write_new
+from workbench.walk import add_effect, skeleton_for, walk
 
 EXIT_WRONG_INPUT = 2
 
 
-def add_commands(commands) -> None:
-    """Adds the commands to the parser of ``airgap``; nothing heavy is imported before one is run."""
-    _bench(commands.add_parser("compare", help="where does the model fail against a campaign?"), _compare)
-    _diagnose_parser(commands.add_parser("diagnose", help="which effect is missing, how sure, what to measure next?"))
-    adding = commands.add_parser("add", help="add an effect to the model: accepted only if the held-out error falls")
-    adding.add_argument("effect", help="name of an effect, see `airgap effects`")
-    _diagnose_parser(adding, _add)
-    walking = commands.add_parser("ledger", help="diagnose and add by itself until nothing more is named; the ledger")
-    _diagnose_parser(walking, _ledger)
-    listing = commands.add_parser("effects", help="what the library knows, one line each; a name shows its equation")
-    listing.add_argument("name", nargs="?")
-    _own_effects(listing)
-    listing.set_defaults(run=_effects)
-    own = commands.add_parser("new-effect", help="a skeleton of one's own effect, from the residual of a campaign")
-    own.add_argument("file", help="Python file to write, my_effect.py")
-    _bench(own, _new_effect, positional=False)
-    importing = commands.add_parser("import", help="write campaign.toml for a plain CSV file")
-    importing.add_argument("csv", help="CSV file, one column a quantity; it is only read")
-    importing.set_defaults(run=_import)
+def add_compare(parser: argparse.ArgumentParser) -> None:
+    """Where does the model fail against a campaign?"""
+    _bench(parser, _compare)
+
+
+def add_diagnose(parser: argparse.ArgumentParser) -> None:
+    """Which effect is missing, how sure, what to measure next?"""
+    _diagnose_parser(parser, _diagnose)
+
+
+def add_add(parser: argparse.ArgumentParser) -> None:
+    """Add an effect to the model: accepted only if the held-out error falls."""
+    parser.add_argument("effect", help="name of an effect, see `airgap effects`")
+    _diagnose_parser(parser, _add)
+
+
+def add_ledger(parser: argparse.ArgumentParser) -> None:
+    """Diagnose and add until nothing more is named."""
+    _diagnose_parser(parser, _ledger)
+
+
+def add_effects(parser: argparse.ArgumentParser) -> None:
+    """What the library knows; a name shows its equation."""
+    parser.add_argument("name", nargs="?")
+    _own_effects(parser)
+    parser.set_defaults(run=_effects)
+
+
+def add_new_effect(parser: argparse.ArgumentParser) -> None:
+    """A skeleton of one's own effect."""
+    parser.add_argument("file", help="Python file to write, my_effect.py")
+    _bench(parser, _new_effect, positional=False)
+
+
+def add_import(parser: argparse.ArgumentParser) -> None:
+    """A ``campaign.toml`` for a plain CSV file."""
+    parser.add_argument("csv", help="CSV file, one column a quantity; it is only read")
+    parser.set_defaults(run=_import)
 
 
 def _bench(parser: argparse.ArgumentParser, run, positional: bool = True) -> None:
@@ -42,8 +79,8 @@ def _bench(parser: argparse.ArgumentParser, run, positional: bool = True) -> Non
     parser.set_defaults(run=run)
 
 
-def _diagnose_parser(parser: argparse.ArgumentParser, run=None) -> None:
-    _bench(parser, run or _diagnose)
+def _diagnose_parser(parser: argparse.ArgumentParser, run) -> None:
+    _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
 
 
@@ -60,8 +97,6 @@ def _own_effects(parser: argparse.ArgumentParser) -> None:
 @contextmanager
 def exit_on_wrong_campaign():
     """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
-    from workbench.errors import WorkbenchError
-
     try:
         yield
     except WorkbenchError as error:
@@ -70,9 +105,6 @@ def exit_on_wrong_campaign():
 
 
 def _library(options):
-    from effects.library import library
-    from workbench.errors import WorkbenchError
-
     for file in options.effects_from:
         if not Path(file).exists():
             raise WorkbenchError(f"--effects-from {file}: there is no such file.")
@@ -83,9 +115,6 @@ def _library(options):
 
 def _must_hold_an_effect(file: str) -> None:
     """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    from effects.library import effects_of_file
-    from workbench.errors import WorkbenchError
-
     path, found = Path(file), {}
     for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
         try:
@@ -101,10 +130,6 @@ def _must_hold_an_effect(file: str) -> None:
 
 def _set_up(options):
     """Campaign, library, model with its effects, and the folder of the results."""
-    from workbench.base_models import nominal_model
-    from workbench.campaign import read_campaign
-    from workbench.model_file import NAME, with_effects_of
-
     campaign, effects = read_campaign(options.campaign), _library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
@@ -116,8 +141,6 @@ def _set_up(options):
 
 def _compare(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.comparison import compare
-
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
             comparison = compare(model, campaign, effects, progress)
@@ -127,8 +150,6 @@ def _compare(options) -> None:
 
 def _diagnose(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.diagnosis import SEED, diagnose
-
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
@@ -138,8 +159,6 @@ def _diagnose(options) -> None:
 
 def _add(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.walk import add_effect
-
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
@@ -152,8 +171,6 @@ def _add(options) -> None:
 
 def _ledger(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.walk import walk
-
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
@@ -165,8 +182,6 @@ def _ledger(options) -> None:
 
 def _effects(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.errors import WorkbenchError
-
         found = _library(options)
         if options.name is None:
             width = max(len(name) for name in found)
@@ -185,10 +200,6 @@ def _equation(cls) -> str:
 
 
 def _print_effect(cls) -> None:
-    from inspect import cleandoc
-
-    from effects.parameter import parameters_of
-
     print(f"{cls.name()}: {cls.title}\n\n{cleandoc(cls.__doc__ or '')}\n\n{cls.looks_like}")
     for name, p in parameters_of(cls).items():
         print(f"  {name} [{p.unit}]: null {p.null:g}, from {p.low:g} to {p.high:g}; prior {p.prior}; {p.source}")
@@ -198,9 +209,6 @@ def _print_effect(cls) -> None:
 
 def _new_effect(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.skeleton import write_new
-        from workbench.walk import skeleton_for
-
         path = Path(options.file)
         if options.campaign is None:
             text = skeleton_for(path, None, None, None)
@@ -213,45 +221,31 @@ def _new_effect(options) -> None:
 
 def _import(options) -> None:
     with exit_on_wrong_campaign():
-        from workbench.draft import write_draft
-
         print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
 
 
 @contextmanager
 def _progress():
     """A bar on a terminal, nothing elsewhere."""
-    from tqdm import tqdm
-
     with tqdm(bar_format="{desc} {elapsed}", leave=False, disable=not sys.stderr.isatty()) as bar:
         yield bar.set_description_str
 
 
 def _write_comparison(out: Path, comparison) -> None:
-    from workbench.as_json import comparison_json
-    from workbench.report import write_comparison_report
-
     (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
     write_comparison_report(out / "comparison.html", comparison)
 
 
 def _write_diagnosis(out: Path, diagnosis) -> None:
-    from workbench.as_json import diagnosis_json
-    from workbench.report import write_diagnosis_report
-
     (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
     write_diagnosis_report(out / "diagnosis.html", diagnosis)
 
 
 def _write_ledger(out: Path, ledger) -> None:
-    from workbench.report import write_ledger_report
-
     write_ledger_report(out / "ledger.html", ledger)
 
 
 def _print_comparison(c, out: Path) -> None:
-    from workbench.report.sentences import readings
-
     print(
         f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'held out':>8}"
     )
@@ -269,8 +263,6 @@ def _print_comparison(c, out: Path) -> None:
 
 
 def _print_diagnosis(d, out: Path) -> None:
-    from workbench.report.sentences import conclusions, verdict_sentence
-
     print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
     for r in d.ranking[:8]:
         held = (

@@ -105,8 +105,8 @@ def _text(found: DriveOutcome, winding: WindingOutcome) -> str:
         f"At full current the flux map gives {winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm, the mean "
         f"over one electrical period (± bounds the error of the mesh), with {winding.peak_torque_ripple:.2f} Nm "
         "between its largest and its smallest value. With saturation in every number the chosen winding has a base "
-        f"speed of {field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters say "
-        f"{_difference(constant.base_speed, field.base_speed)} in base speed, "
+        f"speed of {field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters "
+        f"say {_difference(constant.base_speed, field.base_speed)} in base speed, "
         f"{_difference(constant.peak_torque, field.peak_torque)} in peak torque and "
         f"{_difference(constant.maximum_power, field.maximum_power)} in largest power; {comparison}."
     )

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from drivetrain.four_bar import LinkageError
 from study.errors import StudyError
+from study.inputs_linkage import linkage_search
+from study.inputs_vehicle import ride_case
 from study.schema import Study
+from vehicle.errors import VehicleError
 
 TEMPLATE = "studies/template.toml"
 _HARDPOINTS = ("hardpoint_a", "wheel_axle", "hardpoint_b_min", "hardpoint_b_max", "hardpoint_c_min", "hardpoint_c_max")
@@ -85,23 +89,14 @@ def check_libraries(study: Study) -> None:
 
 
 def _build_vehicle(study: Study) -> None:
-    from study import convert_vehicle
-    from vehicle.errors import VehicleError
-
     try:
-        convert_vehicle.to_vehicle(study)
-        convert_vehicle.to_damping(study)
-        convert_vehicle.to_overload_scenarios(study)
+        ride_case(study)
     except VehicleError as error:
         raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error
 
 
 def _build_linkage(study: Study) -> None:
-    from drivetrain.four_bar import LinkageError
-    from study import convert_linkage
-
     try:
-        convert_linkage.to_linkage_problem(study)
-        convert_linkage.to_stated_linkage(study.linkage)
+        linkage_search(study)
     except LinkageError as error:
         raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error

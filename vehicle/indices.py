@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
 from vehicle.ride import RideHistory
 
 
-def rms(values) -> float:
+def rms(values: np.ndarray) -> float:
     """Root mean square over the whole run, its start from rest included."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def at_largest(values) -> int:
+def at_largest(values: np.ndarray) -> int:
     """Position of the value of largest magnitude."""
     return int(np.argmax(np.abs(values)))
 
@@ -36,11 +36,13 @@ class WorkingPoint:
 class RideSummary:
     """The numbers of one run that Tables 3.4-3.6 of the thesis list; peaks keep their sign.
 
+    scenario, damping: names; seed: of a random road, None where the scenario has none
     comfort_rms, comfort_peak: weighted acceleration [m/s^2]; road_holding_rms, road_holding_peak: dimensionless;
     stroke_peak [m]; force_rms [N], velocity_rms [m/s], power_rms, power_mean [W]; energy_error: of the balance.
     """
 
     scenario: str
+    seed: int | None
     damping: str
     comfort_rms: float
     comfort_peak: float
@@ -56,16 +58,6 @@ class RideSummary:
     at_power_peak: WorkingPoint
     energy_error: float
 
-    def as_dict(self) -> dict:
-        """Plain numbers and words, for a file."""
-        return asdict(self)
-
-    @classmethod
-    def from_dict(cls, values: dict) -> RideSummary:
-        """The summary that ``as_dict`` came from."""
-        points = {name: WorkingPoint(**values[name]) for name in ("at_force_peak", "at_power_peak")}
-        return cls(**{**values, **points})
-
 
 def summary(history: RideHistory) -> RideSummary:
     """Numbers of one run."""
@@ -77,6 +69,7 @@ def summary(history: RideHistory) -> RideSummary:
 
     return RideSummary(
         scenario=history.run.scenario.name,
+        seed=history.run.scenario.road.random_seed,
         damping=history.run.damping.name,
         comfort_rms=rms(felt),
         comfort_peak=float(felt[at_largest(felt)]),

@@ -24,6 +24,7 @@ BALANCE_TOLERANCE = 5e-3  # of the energy that went through the vehicle
 class Scenario:
     """What the vehicle does: a road at a speed, or an acceleration.
 
+    name: the same for random roads that differ by their seed alone
     speed [m/s], duration [s], road; longitudinal: acceleration a_x that the propulsion force gives [m/s^2] (3.25);
     time_step [s] of the history; the integration divides it where the motion is stiffer.
     """
@@ -41,6 +42,12 @@ class Scenario:
         require_positive(owner, duration=self.duration, time_step=self.time_step)
         if self.speed == 0 and not isinstance(self.road, FlatRoad):
             raise VehicleError(f"{owner}: a road with heights needs a speed above zero, found 0; give a speed")
+
+    @property
+    def title(self) -> str:
+        """The name with the seed of a random road, which tells one run from another."""
+        seed = self.road.random_seed
+        return self.name if seed is None else f"{self.name}, seed {seed}"
 
 
 @dataclass(frozen=True)
@@ -117,7 +124,7 @@ class RideHistory:
 
     @property
     def road_holding(self) -> np.ndarray:
-        """Missing tyre load of the actuated axle over its static load (3.24): 1 when the wheel is in the air."""
+        """Missing tyre load of the actuated axle over its static load (3.24), (t,): 1 when the wheel is in the air."""
         return 1 - self.tyre_loads[-1] / self.run.vehicle.actuated.static_load
 
 
@@ -223,7 +230,7 @@ def _require_known_velocities(run: Run, forces: AxleForces) -> None:
     for curve, rate in zip(curves, forces.rate, strict=True):
         if rate.min() < curve.velocity[0] or rate.max() > curve.velocity[-1]:
             raise VehicleError(
-                f"scenario '{run.scenario.name}': the suspension moves at {rate.min():.3g} to {rate.max():.3g} m/s, "
+                f"scenario '{run.scenario.title}': the suspension moves at {rate.min():.3g} to {rate.max():.3g} m/s, "
                 f"the damper curve '{curve.name}' is known from {curve.velocity[0]:g} to {curve.velocity[-1]:g} m/s; "
                 "extend the curve"
             )
@@ -233,6 +240,6 @@ def _require_balance(history: RideHistory) -> None:
     scenario, error = history.run.scenario, history.energy.error
     if not error <= BALANCE_TOLERANCE:
         raise VehicleError(
-            f"scenario '{scenario.name}': the energy balance is off by {100 * error:.2g} %, more than "
+            f"scenario '{scenario.title}': the energy balance is off by {100 * error:.2g} %, more than "
             f"{100 * BALANCE_TOLERANCE:g} %; give a time step below {scenario.time_step:g} s"
         )

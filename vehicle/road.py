@@ -36,6 +36,11 @@ class Road:
         """Height [m] at these times [s], zero before t = 0; speed [m/s]."""
         raise NotImplementedError
 
+    @property
+    def random_seed(self) -> int | None:
+        """Which of many equally likely roads this is, None for one that leaves nothing to chance."""
+        return None
+
 
 @dataclass(frozen=True)
 class FlatRoad(Road):
@@ -69,6 +74,10 @@ class IsoRoad(Road):
             sample_time=self.sample_time,
             cutoff_wavelength=self.cutoff_wavelength,
         )
+
+    @property
+    def random_seed(self) -> int:
+        return self.seed
 
     def cutoff(self, speed: float) -> float:
         """omega_0 [rad/s] at a speed [m/s]."""

@@ -173,6 +173,19 @@ def test_planets_bind_where_the_optimum_lies_beyond_them(thesis):
     assert "set by the planet clearance (more match.gearbox_stages)" in found.bound and found.gearbox.notes == ()
 
 
+def test_a_direct_drive_has_the_ratio_of_its_linkage(thesis):
+    """1000 N at 5 mm/rad without gears: one ratio, its length, no gear mass; a fast wheel is refused."""
+    gearbox = replace(thesis.gearbox, stage_count=0, linkage_ratio=5 * MILLIMETRE)
+    small = replace(thesis.requirements, force_peak=1000.0, force_rms=100.0)
+    enforced = (*constraints_of(thesis, requirements=small).enforced, planet_clearance(gearbox))
+    found = match(thesis.section, enforced=enforced, gearbox=gearbox, model=thesis.model)
+    assert found.transmission_ratio == 5 * MILLIMETRE and found.bound is None and found.cost.gearbox_mass == 0
+    assert found.active_length == pytest.approx(1000 * 5e-3 / (500 / 3), rel=1e-9)
+    fast = constraints_of(thesis, requirements=replace(small, velocity_peak=100.0)).enforced
+    with pytest.raises(MatchError, match="rotor speed asks for at least"):
+        match(thesis.section, enforced=fast, gearbox=gearbox, model=thesis.model)
+
+
 def test_no_damping_leaves_the_match_to_the_forces(thesis, optimum):
     found = run(thesis, DampingEnforced(), requirements=replace(thesis.requirements, maximum_damping=0.0))
     assert found.transmission_ratio == pytest.approx(optimum.transmission_ratio, rel=1e-9) and found.notes == ()

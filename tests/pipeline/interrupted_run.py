@@ -6,10 +6,11 @@ from pathlib import Path
 from worker_tasks import slow_square
 
 from pipeline.checkpoint import Checkpoint
-from pipeline.parallel import run_parallel
-from pipeline.stage import command
+from pipeline.pools import PooledWorkers, Processes
+from pipeline.sentences import sentences
 
 if __name__ == "__main__":
-    with command():
+    with sentences():
         tasks = {f"task {number}": number for number in range(30)}
-        run_parallel(slow_square, tasks, 2, Checkpoint(Path(sys.argv[1]), "inputs"), "slow run")
+        pool = Processes(2)
+        PooledWorkers("slow run", pool, lambda what: Checkpoint(Path(sys.argv[1]), "inputs")).map("squares", slow_square, tasks)

@@ -38,28 +38,6 @@ def refusal(tmp_path, stage, changes, code=1):
 
 
 STATED = {'requirements = "vehicle"': 'requirements = "stated"', 'linkage = "optimised"': 'linkage = "stated"'}
-QUICK = {
-    "seeds = [1, 2, 3, 4]\n": "seeds = [1]\n",
-    "population = 100": "population = 12",
-    "generations = 150": "generations = 4",
-}
-
-
-def test_a_box_without_a_linkage(folder, tmp_path):
-    box = {"hardpoint_b_min_mm = [0.0, 0.0]": "hardpoint_b_min_mm = [60.0, 125.0]",
-           "hardpoint_b_max_mm = [220.0, 170.0]": "hardpoint_b_max_mm = [62.0, 127.0]"}  # fmt: skip
-    said = refusal(tmp_path, "linkage", {**QUICK, **box})
-    assert said.startswith("no linkage: ") and "where the miss is smallest" in said and "widen the boxes" in said
-
-
-def test_a_damper_that_is_not_known_far_enough(folder, tmp_path):
-    (tmp_path / "short.csv").write_text("velocity_m_per_s,force_N\n-0.1,-200\n0,0\n0.1,200\n")
-    quick = {"road_seeds = [0, 1, 2, 3, 4, 5]": "road_seeds = [0]", "road_duration_s = 30.0": "road_duration_s = 1.0",
-             "[obstacles]": "[obstacles]\n", 'maximum = "rear_maximum"': 'maximum = "short.csv"'}  # fmt: skip
-    start, end = RIGHT.index("\namplitudes_mm"), RIGHT.index("\nduration_s = 2.0")
-    quick[RIGHT[start:end]] = "\namplitudes_mm = [10]\nspeeds_km_per_h = [50]"
-    said = refusal(tmp_path, "requirements", quick)
-    assert "the damper curve 'maximum' is known from -0.1 to 0.1 m/s" in said and "extend the curve" in said
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import os
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 
@@ -32,3 +33,13 @@ def threads(_):
 def slow_square(number):
     time.sleep(0.3)
     return number**2
+
+
+@dataclass(frozen=True)
+class Design:
+    radius: float
+    probes: tuple[float, ...]
+
+
+def design(radius):
+    return Design(radius, (radius, float("inf")))

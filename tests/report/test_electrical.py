@@ -1,5 +1,7 @@
 """What people read of flux map, winding and drive: files under their names, sections with the one peak torque."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -65,13 +67,14 @@ def test_files_of_the_drive(driven, winding, tmp_path):
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
     said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
     assert said in drive.section(driven, winding).content[0]
-    key = next(one for one in winding_report.section(winding, INPUTS).content[0].numbers if one.name == "peak torque")
+    key = next(one for one in winding_report.section(winding, INPUTS, None).content[0].numbers if one.name == "peak torque")
     assert key.value == winding.peak_torque
     assert winding_report.windings_table(winding).query("chosen").peak_torque_Nm.item() == pytest.approx(key.value)
     assert drive.windings_table(driven, winding).query("chosen").peak_torque_field_Nm.item() == pytest.approx(key.value)
 
 
 def test_sections_can_be_printed(winding):
-    sections = (map_report.section(MAP), winding_report.section(winding, INPUTS))
+    match = SimpleNamespace(chosen=SimpleNamespace(active_length=0.04))
+    sections = (map_report.section(MAP), winding_report.section(winding, INPUTS, match))
     page = render_report(sections, title="", subtitle="")
-    assert "Newton iterations" in page and "set by the peak force" in page
+    assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak force" in page

@@ -1,0 +1,249 @@
+"""Constrained optimum of every slot count and stator radius, refined with the field solver beyond the grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+
+from geometry.machine import Machine
+from magnetostatics.case import FieldCase
+from magnetostatics.mesh_error import torque_errors
+from magnetostatics.model import FieldModel, FieldSolution
+from magnetostatics.positions import period_points
+from magnetostatics.torque import arkkio_torque, maxwell_torque
+from optimisation.constrained_optimum import BestDesign, NoOptimumError, find_optimum
+from optimisation.design import Judge
+from optimisation.states import STEPS_OVER_PERIOD
+from optimisation.sweep import DesignMaps, SaturationLimit, SweepGrid
+from optimisation.torque import QuickMeanTorque
+from tasks import Workers
+from units import MILLIMETRE
+
+_ON_THE_EDGE = 0.02  # of the range of the grid: an optimum closer to its end may lie beyond
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best cross-section of one slot count and stator radius under the limit; lengths in m, torques in Nm/m.
+
+    half_slot_area: of one coil side [m^2]
+    torque_nominal, torque_overload: mean over one electrical period (``MeanTorque``) at the two current densities, with
+        the bound of their mesh errors; torque_nominal_ring: the first by the ring average
+    torque_overload_linear: scaled from the nominal one (thesis eq. 3.68)
+    torque_null: in the thesis's null state at the nominal current density; NaN where the reading does not look at it
+    limited, tooth_worst, back_iron_worst: flux densities in the states of the reading [T]
+    field_solutions: designs solved on the way; newton_iterations: of the last one
+    """
+
+    slots: int
+    stator_outer_radius: float
+    back_iron_width: float
+    rotor_outer_radius: float
+    tooth_width: float
+    half_slot_area: float
+    torque_nominal: float
+    torque_nominal_error: float
+    torque_nominal_ring: float
+    torque_overload: float
+    torque_overload_error: float
+    torque_overload_linear: float
+    torque_null: float
+    limited: float
+    limit_binds: bool
+    tooth_worst: float
+    back_iron_worst: float
+    field_solutions: int
+    newton_iterations: int
+
+
+@dataclass(frozen=True)
+class NoOptimum:
+    """A slot count and stator radius [m] without an optimum, and why."""
+
+    slots: int
+    stator_outer_radius: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class GridEdge:
+    """An optimum on or beyond the edge of the sweep's grid.
+
+    key: of the study, to be moved so that the grid holds the optimum; edge, found: shares of the stator radius
+    """
+
+    slots: int
+    stator_outer_radius: float
+    key: str
+    edge: float
+    found: float
+
+    @property
+    def sentence(self) -> str:
+        """Where the optimum lies and what to widen."""
+        way = "lower" if self.key.endswith("_min") else "raise"
+        return (
+            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at {self.found:.4f} of "
+            f"the stator radius, on or beyond the edge of the sweep at {self.edge:g}: {way} {self.key}"
+        )
+
+
+@dataclass(frozen=True)
+class Optima:
+    """The refined optima in the order of the sweep, what has none, and those at the edge of the grid."""
+
+    limit: SaturationLimit
+    found: tuple[Optimum, ...]
+    without: tuple[NoOptimum, ...]
+    edges: tuple[GridEdge, ...]
+
+    @property
+    def slots(self) -> tuple[int, ...]:
+        """Slot counts that have optima, each once, in the order of the sweep."""
+        return tuple(dict.fromkeys(optimum.slots for optimum in self.found))
+
+    def of(self, slots: int) -> tuple[Optimum, ...]:
+        """The optima of one slot count by rising radius."""
+        own = (optimum for optimum in self.found if optimum.slots == slots)
+        return tuple(sorted(own, key=lambda optimum: optimum.stator_outer_radius))
+
+
+@dataclass(frozen=True)
+class OptimumSearch:
+    """One search; start: (back-iron width, rotor radius) [m], read off the map."""
+
+    case: FieldCase
+    limit: SaturationLimit
+    slots: int
+    stator_outer_radius: float
+    start: tuple[float, float]
+
+
+def optima_stage(case: FieldCase, maps: DesignMaps, workers: Workers) -> Optima:
+    """Refine the best point of every map.
+
+    Raises NoOptimumError where no design of the sweep holds the limit.
+    """
+    searches, without = _searches(case, maps)
+    results = workers.map("optima", solve_optimum, searches).values() if searches else ()
+    found = tuple(one for one in results if isinstance(one, Optimum))
+    without += tuple(one for one in results if isinstance(one, NoOptimum))
+    if not found:
+        raise NoOptimumError(_nothing(maps.limit, without))
+    edges = tuple(edge for optimum in found for edge in edges_at(optimum, maps.grid))
+    for line in (*(one.reason for one in without), *(edge.sentence for edge in edges)):
+        print(f"optima: {line}")
+    return Optima(maps.limit, found, without, edges)
+
+
+def solve_optimum(search: OptimumSearch) -> Optimum | NoOptimum:
+    """The refined optimum, or why there is none."""
+    case, limit = search.case, search.limit
+    judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
+    try:
+        best = find_optimum(judge, search.slots, search.stator_outer_radius, limit.limit, search.start)
+    except NoOptimumError as error:
+        return NoOptimum(search.slots, search.stator_outer_radius, str(error))
+    return _record(case, best)
+
+
+def edges_at(optimum: Optimum, grid: SweepGrid) -> list[GridEdge]:
+    """The edges of the grid that an optimum lies on or beyond."""
+    outer = optimum.stator_outer_radius
+    places = (
+        ("back_iron_fraction", optimum.back_iron_width / outer, grid.back_iron_fractions),
+        ("rotor_radius_fraction", optimum.rotor_outer_radius / outer, grid.rotor_radius_fractions),
+    )
+    found = []
+    for key, share, (low, high) in places:
+        margin = _ON_THE_EDGE * (high - low)
+        if share < low + margin:
+            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_min", low, share))
+        if share > high - margin:
+            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_max", high, share))
+    return found
+
+
+def _searches(case: FieldCase, maps: DesignMaps) -> tuple[dict[str, OptimumSearch], tuple[NoOptimum, ...]]:
+    """The searches that have a start, and where no design of the map holds the limit."""
+    searches, without = {}, []
+    for slots, outer in maps.grid.sections:
+        name = f"{slots} slots, {2 * outer / MILLIMETRE:g} mm"
+        best = maps.map(slots, outer).best_point(maps.limit.limit)
+        if best is None:
+            without.append(NoOptimum(slots, outer, f"{name}: no design of the sweep holds {maps.limit.words}"))
+        else:
+            searches[name] = OptimumSearch(case, maps.limit, slots, outer, (best.width, best.radius))
+    return searches, tuple(without)
+
+
+def _nothing(limit: SaturationLimit, without: tuple[NoOptimum, ...]) -> str:
+    return (
+        f"no design of the sweep holds the limit of {limit.words} ({without[0].reason}): raise saturation.limit_T or "
+        "widen the sweep (sweep.back_iron_fraction_max, sweep.rotor_radius_fraction_min)"
+    )
+
+
+def _record(case: FieldCase, best: BestDesign) -> Optimum:
+    design, machine = best.design, best.design.machine
+    torques = _torques(case, machine)
+    return Optimum(
+        slots=machine.slots,
+        stator_outer_radius=machine.stator_outer_radius,
+        back_iron_width=machine.back_iron_width,
+        rotor_outer_radius=machine.rotor_outer_radius,
+        tooth_width=machine.tooth_width,
+        half_slot_area=design.coil_side_area,
+        torque_nominal=torques.nominal,
+        torque_nominal_error=torques.nominal_error,
+        torque_nominal_ring=torques.nominal_ring,
+        torque_overload=torques.overload,
+        torque_overload_error=torques.overload_error,
+        torque_overload_linear=torques.nominal * case.overload_density / case.nominal_density,
+        torque_null=design.torque_null,
+        limited=design.limited,
+        limit_binds=best.limit_binds,
+        tooth_worst=design.tooth_worst,
+        back_iron_worst=design.back_iron_worst,
+        field_solutions=best.solves,
+        newton_iterations=design.newton_iterations,
+    )
+
+
+@dataclass(frozen=True)
+class _Torques:
+    nominal: float
+    nominal_ring: float
+    nominal_error: float
+    overload: float
+    overload_error: float
+
+
+def _torques(case: FieldCase, machine: Machine) -> _Torques:
+    """Mean torques at both current densities and their mesh errors in the first position, all on one mesh."""
+    model = case.model(machine)
+    nominal, overload = (_over_period(case, model, density) for density in _densities(case))
+    errors = torque_errors(model, [nominal[0].point, overload[0].point])
+    return _Torques(
+        _mean([maxwell_torque(solution) for solution in nominal]),
+        _mean([arkkio_torque(solution) for solution in nominal]),
+        errors[0],
+        _mean([maxwell_torque(solution) for solution in overload]),
+        errors[1],
+    )
+
+
+def _densities(case: FieldCase) -> tuple[float, float]:
+    return case.nominal_density, case.overload_density
+
+
+def _over_period(case: FieldCase, model: FieldModel, density: float) -> list[FieldSolution]:
+    """The fields that ``MeanTorque`` is the mean of."""
+    section, solutions = model.section, []
+    for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):
+        solutions.append(model.solve(point, start=solutions[-1] if solutions else None))
+    return solutions
+
+
+def _mean(values: list[float]) -> float:
+    return sum(values) / len(values) if values else nan

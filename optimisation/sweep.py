@@ -1,0 +1,180 @@
+"""Map of torque and flux densities over back-iron width and rotor radius, for every slot count and stator radius."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import product
+from math import nan
+
+import numpy as np
+import xarray as xr
+
+from geometry.machine import GeometryError, Machine
+from magnetostatics.case import FieldCase
+from magnetostatics.newton import NewtonSettings
+from optimisation.design import Design, DesignSolver, Judge
+from optimisation.design_map import DesignMap
+from optimisation.states import SaturationReading
+from optimisation.torque import QuickMeanTorque
+from tasks import Workers
+from units import MILLIMETRE
+
+_RADII_TOGETHER = 5  # rotor radii of a task; of a fine sweep one mesh reaches about so many
+_TOLERANCE = 1e-3  # of Newton's method: torque is within 0.03 % of the converged one
+# What the map holds of a ``Design``.
+VARIABLES = ("torque", "torque_null", "tooth_aligned", "tooth_worst", "back_iron_worst", "limited")
+_DIMENSIONS = ("slots", "stator_outer_radius", "back_iron", "rotor_radius")
+
+
+@dataclass(frozen=True)
+class SaturationLimit:
+    """The limit on the flux density of the stator.
+
+    reading: in which probes and states it is read; limit [T]; compared: limits whose optima are compared [T]
+    """
+
+    reading: SaturationReading
+    limit: float
+    compared: tuple[float, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """The limit as a sentence names it."""
+        return f"{self.limit:g} T read as {self.reading.name}"
+
+
+@dataclass(frozen=True)
+class SweepGrid:
+    """What the cross-section optimisation varies.
+
+    stator_outer_radii [m]; back_iron_fractions, rotor_radius_fractions: smallest and largest share of the stator radius
+    """
+
+    slots: tuple[int, ...]
+    stator_outer_radii: tuple[float, ...]
+    back_iron_fractions: tuple[float, float]
+    back_iron_steps: int
+    rotor_radius_fractions: tuple[float, float]
+    rotor_radius_steps: int
+
+    @property
+    def back_iron(self) -> np.ndarray:
+        """Back-iron widths as shares of the stator radius (n,)."""
+        return np.linspace(*self.back_iron_fractions, self.back_iron_steps)
+
+    @property
+    def rotor(self) -> np.ndarray:
+        """Rotor radii as shares of the stator radius (m,)."""
+        return np.linspace(*self.rotor_radius_fractions, self.rotor_radius_steps)
+
+    def widths(self, stator_outer_radius: float) -> np.ndarray:
+        """Back-iron widths (n,) [m]."""
+        return stator_outer_radius * self.back_iron
+
+    def radii(self, stator_outer_radius: float) -> np.ndarray:
+        """Rotor radii (m,) [m]."""
+        return stator_outer_radius * self.rotor
+
+    @property
+    def sections(self) -> tuple[tuple[int, float], ...]:
+        """Every slot count with every stator radius [m]."""
+        return tuple(product(self.slots, self.stator_outer_radii))
+
+
+@dataclass(frozen=True, eq=False)
+class DesignMaps:
+    """Designs on the grid at the nominal current density; NaN where a machine cannot be built.
+
+    data: ``VARIABLES`` of ``Design`` in SI over slots, stator_outer_radius, back_iron, rotor_radius, with
+        ``back_iron_width`` and ``rotor_outer_radius`` [m]; torque by ``QuickMeanTorque``
+    """
+
+    grid: SweepGrid
+    limit: SaturationLimit
+    data: xr.Dataset
+
+    def map(self, slots: int, stator_outer_radius: float) -> DesignMap:
+        """Torque and limited flux density of one slot count and stator radius [m]."""
+        one = self.data.sel(slots=slots, stator_outer_radius=stator_outer_radius)
+        order = ("back_iron", "rotor_radius")
+        torque, limited = (one[name].transpose(*order).values for name in ("torque", "limited"))
+        return DesignMap(one.back_iron_width.values, one.rotor_outer_radius.values, torque, limited)
+
+    @property
+    def designs(self) -> int:
+        """Designs of the grid."""
+        return int(self.data.torque.size)
+
+    @property
+    def unbuildable(self) -> int:
+        """Designs that cannot be built."""
+        return int(self.data.torque.isnull().sum())
+
+
+@dataclass(frozen=True)
+class SweepBlock:
+    """All back-iron widths [m] at some rotor radii [m] of one slot count and stator radius [m]."""
+
+    case: FieldCase
+    reading: SaturationReading
+    slots: int
+    stator_outer_radius: float
+    back_iron_widths: tuple[float, ...]
+    rotor_outer_radii: tuple[float, ...]
+
+    @property
+    def judge(self) -> Judge:
+        return Judge(
+            self.case, self.reading, self.case.nominal_density, QuickMeanTorque(), NewtonSettings(_TOLERANCE)
+        )
+
+    def machine(self, rotor_outer_radius: float, back_iron_width: float) -> Machine:
+        """One design. Raises GeometryError where it cannot even be drawn."""
+        return self.case.family.machine(self.slots, self.stator_outer_radius, back_iron_width, rotor_outer_radius)
+
+
+def sweep_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> DesignMaps:
+    """Solve every design of the grid at the nominal current density."""
+    solved = workers.map("sweep", solve_block, _blocks(case, grid, limit.reading))
+    return DesignMaps(grid, limit, _dataset(grid, list(solved.values())))
+
+
+def solve_block(block: SweepBlock) -> np.ndarray:
+    """``VARIABLES`` of a block's designs (radii, widths, variables), NaN where no machine can be built."""
+    machines = {}
+    for place in product(block.rotor_outer_radii, block.back_iron_widths):
+        with suppress(GeometryError):
+            machines[place] = block.machine(*place)
+    designs = dict(zip(machines, DesignSolver(block.judge).designs(list(machines.values()))))
+    rows = [_row(designs.get(place)) for place in product(block.rotor_outer_radii, block.back_iron_widths)]
+    return np.array(rows).reshape(len(block.rotor_outer_radii), len(block.back_iron_widths), len(VARIABLES))
+
+
+def _row(design: Design | None) -> list[float]:
+    return [nan if design is None else getattr(design, name) for name in VARIABLES]
+
+
+def _blocks(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
+    blocks = {}
+    for slots, outer in grid.sections:
+        widths, radii = (tuple(lengths.tolist()) for lengths in (grid.widths(outer), grid.radii(outer)))
+        for first in range(0, len(radii), _RADII_TOGETHER):
+            some = radii[first : first + _RADII_TOGETHER]
+            name = f"{slots} slots, {2 * outer / MILLIMETRE:g} mm, radii from {first}"
+            blocks[name] = SweepBlock(case, reading, slots, outer, widths, some)
+    return blocks
+
+
+def _dataset(grid: SweepGrid, blocks: list[np.ndarray]) -> xr.Dataset:
+    """The labelled map from the blocks of ``_blocks``, in their order."""
+    outer = np.array(grid.stator_outer_radii)
+    shape = len(grid.slots), len(outer), grid.rotor_radius_steps, grid.back_iron_steps, len(VARIABLES)
+    values = np.concatenate(blocks).reshape(shape).swapaxes(2, 3)
+    data = {name: (_DIMENSIONS, values[..., k]) for k, name in enumerate(VARIABLES)}
+    data |= {
+        "back_iron_width": (_DIMENSIONS[1:3], np.outer(outer, grid.back_iron)),
+        "rotor_outer_radius": ((_DIMENSIONS[1], _DIMENSIONS[3]), np.outer(outer, grid.rotor)),
+    }
+    shares = {"back_iron_fraction": ("back_iron", grid.back_iron), "rotor_radius_fraction": ("rotor_radius", grid.rotor)}
+    return xr.Dataset(data, {"slots": list(grid.slots), "stator_outer_radius": outer, **shares})

@@ -1,0 +1,92 @@
+"""The code that a function depends on: the closure of the imports of its module, found, not listed.
+
+Data files that lie in the folder of a module (steel curves, damper tables, templates) count with it.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import sys
+from functools import cache
+from importlib.metadata import packages_distributions, version
+from pathlib import Path
+from typing import Callable
+
+PROJECT = Path(__file__).resolve().parent.parent
+
+
+@cache
+def module_file(name: str) -> Path | None:
+    """The file of a module of the project, None for one from elsewhere."""
+    place = PROJECT.joinpath(*name.split("."))
+    if place.with_suffix(".py").is_file():
+        return place.with_suffix(".py")
+    initial = place / "__init__.py"
+    return initial if initial.is_file() else _file_of_package_without_init(place, name)
+
+
+def _file_of_package_without_init(place: Path, name: str) -> Path | None:
+    """A module that is loaded from a folder outside the project's root, such as one of its tests."""
+    loaded = getattr(sys.modules.get(name), "__file__", None)
+    own = loaded is not None and Path(loaded).resolve().is_relative_to(PROJECT)
+    return Path(loaded) if own and ".venv" not in loaded else None
+
+
+@cache
+def _imported(path: Path) -> frozenset[str]:
+    """Every module name that a file may import, anywhere in it; ``from a import b`` counts as a and a.b."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return frozenset(names)
+
+
+@cache
+def files_of(module: str) -> frozenset[Path]:
+    """The files of the project that a module runs with, its own among them."""
+    found: set[Path] = set()
+    waiting = [module]
+    while waiting:
+        path = module_file(waiting.pop())
+        if path is not None and path not in found:
+            found.add(path)
+            waiting += _imported(path)
+    return frozenset(found | {data for folder in {path.parent for path in found} for data in _data_of(folder)})
+
+
+@cache
+def _data_of(folder: Path) -> frozenset[Path]:
+    """Files that are no code, in the folder of a module and below."""
+    if folder == PROJECT or not folder.is_relative_to(PROJECT):
+        return frozenset()
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return frozenset(path for path in files if path.suffix not in (".py", ".pyc") and not path.name.startswith("."))
+
+
+@cache
+def _file_hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def code_digest(*functions: Callable) -> str:
+    """Hash of the names and contents of all files that the functions depend on."""
+    files = sorted(frozenset().union(*(files_of(function.__module__) for function in functions)))
+    lines = (f"{path.relative_to(PROJECT).as_posix()} {_file_hash(path)}" for path in files)
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+def packages_of(*functions: Callable) -> dict[str, str]:
+    """Installed version of every package that the code of the functions imports, and of Python."""
+    files = frozenset().union(*(files_of(function.__module__) for function in functions))
+    names = {name.partition(".")[0] for path in files if path.suffix == ".py" for name in _imported(path)}
+    found = {owner for name in names for owner in _distributions().get(name, ())}
+    return {"python": sys.version.split()[0], **{owner: version(owner) for owner in sorted(found)}}
+
+
+@cache
+def _distributions() -> dict[str, list[str]]:
+    return dict(packages_distributions())

@@ -1,0 +1,195 @@
+"""The declared graph: which function makes what from what, read off their signatures.
+
+A *source* makes an input from the study, a *view* derives one value from others, a *stage* makes an artefact that is
+kept in the results folder. What a function reads is the types of its parameters, what it writes is the type it returns;
+each type has one maker. ``X | None`` reads what may be absent; ``Workers`` is whoever runs tasks.
+"""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from types import NoneType, UnionType
+from typing import Any, Callable, Iterable, Iterator, Union, get_args, get_origin, get_type_hints
+
+from tasks import Workers
+
+
+class GraphError(TypeError):
+    """Functions that do not make a graph: a type with two makers, with none, or a circle."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a function of the graph: the type it reads, and whether that may be absent."""
+
+    name: str
+    kind: type
+    optional: bool
+
+
+@cache
+def parameters(function: Callable) -> tuple[Parameter, ...]:
+    """What a function reads, without its workers."""
+    hints = get_type_hints(function)
+    names = [name for name in inspect.signature(function).parameters if hints.get(name) is not Workers]
+    return tuple(Parameter(name, *_kind(hints, function, name)) for name in names)
+
+
+@cache
+def takes_workers(function: Callable) -> str | None:
+    """The name of the parameter that takes whoever runs tasks, None where there is none."""
+    hints = get_type_hints(function)
+    return next((name for name in inspect.signature(function).parameters if hints.get(name) is Workers), None)
+
+
+@cache
+def product(function: Callable) -> type:
+    """What a function makes."""
+    return _kind(get_type_hints(function), function, "return")[0]
+
+
+def _kind(hints: dict[str, Any], function: Callable, name: str) -> tuple[type, bool]:
+    if name not in hints:
+        raise GraphError(f"{function.__module__}.{function.__qualname__} does not say what {name} is; annotate it")
+    hint = hints[name]
+    if get_origin(hint) in (Union, UnionType):
+        inner = [one for one in get_args(hint) if one is not NoneType]
+        if len(inner) == 1:
+            return inner[0], True
+    if not isinstance(hint, type):
+        raise GraphError(f"{function.__qualname__}: {name} is {hint}, but what flows in the graph are classes")
+    return hint, False
+
+
+@dataclass(frozen=True)
+class Source:
+    """Makes an input from the study. ``function``: (study) -> input."""
+
+    function: Callable
+
+
+@dataclass(frozen=True)
+class View:
+    """Derives a value from others in no time; not kept."""
+
+    function: Callable
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Makes an artefact that is kept.
+
+    name: as in ``make <name>``; function: typed values -> artefact; says: what it does, in a few words
+    files: typed values -> ``figures.files.File``s, None where people have nothing to read of it
+    """
+
+    name: str
+    function: Callable
+    says: str
+    files: Callable | None = None
+
+
+Node = Source | View | Stage
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Sources, views and stages of one kind of study.
+
+    sections: of its report in reading order, typed values -> ``figures.report.Section``, several, or None
+    refusals: what the rooms raise when the study asks for something that cannot be
+    """
+
+    nodes: tuple[Node, ...]
+    sections: tuple[Callable, ...] = ()
+    refusals: tuple[type[Exception], ...] = ()
+
+    def __post_init__(self) -> None:
+        _makers(self), _ordered(self)  # raise where the functions make no graph
+
+    def maker(self, kind: type) -> Node | None:
+        """The node that makes a type."""
+        return _makers(self).get(kind)
+
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """Every stage after those it reads from, otherwise as declared."""
+        return _ordered(self)
+
+    def stage(self, name: str) -> Stage:
+        """The stage of a name; KeyError for an unknown one."""
+        return {stage.name: stage for stage in self.stages}[name]
+
+    def before(self, stage: Stage) -> tuple[Stage, ...]:
+        """The stages that one needs, and the one itself, in order."""
+        needed = {stage.name} | {one.name for one in _stages_behind(self, stage)}
+        return tuple(one for one in self.stages if one.name in needed)
+
+    def parents(self, function: Callable) -> tuple[Stage, ...]:
+        """The stages whose artefacts a function reads, directly or through views."""
+        return tuple(dict.fromkeys(_parents(self, function)))
+
+
+@cache
+def _makers(graph: Graph) -> dict[type, Node]:
+    found: dict[type, Node] = {}
+    for node in graph.nodes:
+        kind = product(node.function)
+        if kind in found:
+            raise GraphError(f"{kind.__name__} is made by {_name(found[kind])} and by {_name(node)}; give it one maker")
+        found[kind] = node
+    return found
+
+
+@cache
+def _ordered(graph: Graph) -> tuple[Stage, ...]:
+    stages = {node.name: node for node in graph.nodes if isinstance(node, Stage)}
+    sorter = TopologicalSorter({name: [p.name for p in graph.parents(s.function)] for name, s in stages.items()})
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        raise GraphError(f"{' -> '.join(error.args[1])} go round in a circle") from None
+    return tuple(stages[name] for name in _in_order(sorter, list(stages)))
+
+
+def _in_order(sorter: TopologicalSorter, declared: list[str]) -> Iterator[str]:
+    """Of the stages that are ready always the one declared first."""
+    ready: list[str] = []
+    while sorter.is_active():
+        ready = sorted([*ready, *sorter.get_ready()], key=declared.index)
+        first = ready.pop(0)
+        yield first
+        sorter.done(first)
+
+
+def _parents(graph: Graph, function: Callable) -> Iterator[Stage]:
+    for parameter in parameters(function):
+        node = graph.maker(parameter.kind)
+        if node is None and not parameter.optional:
+            raise GraphError(f"{function.__qualname__} reads {parameter.kind.__name__}, which nothing makes")
+        if isinstance(node, Stage):
+            yield node
+        elif isinstance(node, View):
+            yield from _parents(graph, node.function)
+
+
+def _stages_behind(graph: Graph, stage: Stage) -> Iterable[Stage]:
+    for parent in graph.parents(stage.function):
+        yield parent
+        yield from _stages_behind(graph, parent)
+
+
+def _name(node: Node) -> str:
+    return node.name if isinstance(node, Stage) else node.function.__qualname__
+
+
+def drawing(graph: Graph) -> str:
+    """The graph as a Mermaid flowchart: an arrow carries the artefacts that a stage reads."""
+    lines = ["flowchart TD", *(f"    {stage.name}[{stage.name}<br/>{stage.says}]" for stage in graph.stages)]
+    for stage in graph.stages:
+        lines += [f"    {one.name} -- {product(one.function).__name__} --> {stage.name}"
+                  for one in graph.parents(stage.function)]  # fmt: skip
+    return "\n".join(lines)

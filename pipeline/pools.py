@@ -1,0 +1,314 @@
+"""Tasks on any ``concurrent.futures.Executor``: progress with remaining time, finished tasks kept, lost workers replaced.
+
+``Processes`` of this machine are the default, ``DaskCluster`` is a cluster of any size. A pool lives as long as a run;
+its workers keep what they have imported from one stage to the next.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections import Counter
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping
+
+from tqdm import tqdm
+
+from pipeline.checkpoint import Checkpoint
+from pipeline.codec import decoded, encoded
+
+MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
+# A solve on two BLAS threads is slower than on one, and the cores are busy with other tasks.
+SCHEDULER_TIMEOUT = "20s"  # to find a dask scheduler
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class TaskError(RuntimeError):
+    """Tasks without a result, after all others are finished; the sentence names them."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during tasks; the message says what is kept and how to go on."""
+
+
+class LostWorker(Exception):
+    """The worker that ran a task is gone."""
+
+
+class Pool:
+    """Where tasks run; ``size`` of them at once."""
+
+    size: int
+
+    def submit(self, function: Callable, task: Any) -> Future:
+        """Start a task; LostWorker where the pool has just lost a worker."""
+        raise NotImplementedError
+
+    def result(self, future: Future) -> Any:
+        """Its result, or the exception that the function raised; LostWorker where its worker is gone."""
+        raise NotImplementedError
+
+    def end(self, now: bool = False) -> None:
+        """Let go of the workers; now: without waiting for what they do."""
+        raise NotImplementedError
+
+
+def default_workers() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class Processes(Pool):
+    """Processes of this machine, started when the first task comes.
+
+    size: how many; preload: modules that are imported once, before the workers are forked
+    """
+
+    def __init__(self, size: int | None = None, preload: tuple[str, ...] = ()):
+        self.size, self.preload = size or default_workers(), preload
+        self._executor: Executor | None = None
+        self._children: set = set()
+
+    def submit(self, function: Callable, task: Any) -> Future:
+        """See ``Pool.submit``."""
+        try:
+            return self._started().submit(function, task)
+        except BrokenProcessPool as error:
+            raise LostWorker from error
+
+    def result(self, future: Future) -> Any:
+        """See ``Pool.result``."""
+        try:
+            return future.result()
+        except BrokenProcessPool as error:
+            raise LostWorker from error
+
+    def end(self, now: bool = False) -> None:
+        """See ``Pool.end``."""
+        executor, self._executor = self._executor, None
+        if executor is None:
+            return
+        executor.shutdown(wait=not now, cancel_futures=now)
+        if now:
+            for process in set(multiprocessing.active_children()) & self._children:
+                process.terminate()
+
+    def _started(self) -> Executor:
+        if self._executor is None:
+            for variable in ONE_THREAD:
+                os.environ[variable] = "1"
+            # Forking this process itself is not safe once libraries have started threads.
+            context = multiprocessing.get_context("spawn" if sys.platform == "win32" else "forkserver")
+            if hasattr(context, "set_forkserver_preload"):
+                context.set_forkserver_preload(list(self.preload))
+            self._executor = _TrackingExecutor(self._children, self.size, mp_context=context, initializer=_prepare_worker)
+        return self._executor
+
+
+class _TrackingExecutor(ProcessPoolExecutor):
+    """Knows its processes, so that they can be ended at once."""
+
+    def __init__(self, children: set, *arguments: Any, **named: Any):
+        super().__init__(*arguments, **named)
+        self._ours = children
+
+    def submit(self, *arguments: Any, **named: Any) -> Future:
+        before = set(multiprocessing.active_children())
+        future = super().submit(*arguments, **named)
+        self._ours |= set(multiprocessing.active_children()) - before
+        return future
+
+
+def _prepare_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """A worker of a killed run would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+class DaskCluster(Pool):
+    """Workers of ``dask.distributed``, an optional package.
+
+    address: of a scheduler, ``tcp://host:8786``; None starts a cluster of ``size`` processes on this machine.
+    The scheduler gives a task whose worker was lost to another one, ``distributed.scheduler.allowed-failures`` times.
+    """
+
+    def __init__(self, size: int | None = None, address: str | None = None):
+        try:
+            import dask  # noqa: PLC0415 - optional and heavy
+            import distributed  # noqa: PLC0415
+        except ImportError:
+            raise TaskError(
+                "the executor dask needs the package distributed; install it with `pip install 'airgap[cluster]'`"
+            ) from None
+        dask.config.set({"distributed.scheduler.allowed-failures": MOST_LOST_WORKERS - 1})
+        self._lost = distributed.scheduler.KilledWorker
+        self._cluster = None if address else _local_cluster(distributed, size or default_workers())
+        self.client = _client(distributed, address or self._cluster)
+        self.client.wait_for_workers(1, timeout=60)
+        self.size = max(1, 2 * sum(self.client.nthreads().values()))  # one task runs, the next is on its way
+
+    def submit(self, function: Callable, task: Any) -> Future:
+        """See ``Pool.submit``."""
+        return self.client.get_executor(pure=False).submit(function, task)
+
+    def result(self, future: Future) -> Any:
+        """See ``Pool.result``; a task that was given up raises RuntimeError."""
+        try:
+            return future.result()
+        except self._lost:
+            raise RuntimeError(f"it ended its worker process {MOST_LOST_WORKERS} times") from None
+
+    def end(self, now: bool = False) -> None:
+        """See ``Pool.end``."""
+        self.client.close()
+        if self._cluster is not None:
+            self._cluster.close()
+
+
+def _local_cluster(distributed: Any, size: int) -> Any:
+    for variable in ONE_THREAD:
+        os.environ[variable] = "1"
+    return distributed.LocalCluster(
+        n_workers=size, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, silence_logs="ERROR"
+    )
+
+
+def _client(distributed: Any, where: Any) -> Any:
+    try:
+        return distributed.Client(where, timeout=SCHEDULER_TIMEOUT)
+    except OSError as error:
+        raise TaskError(f"no dask scheduler answers at {where} ({error}); start one with `dask scheduler`") from None
+
+
+# ---- tasks with checkpoints ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class PooledWorkers:
+    """``tasks.Workers`` on a pool, with finished tasks kept in checkpoints.
+
+    checkpoint_of: what -> the checkpoint of one call
+    """
+
+    stage: str
+    pool: Pool
+    checkpoint_of: Callable[[str], Checkpoint]
+
+    def map(self, what: str, function: Callable, tasks: Mapping[str, Any]) -> dict[str, Any]:
+        """See ``tasks.Workers.map``.
+
+        Raises TaskError naming the tasks that raised an exception or ended their worker three times, after all other
+        tasks are finished; Interrupted after Ctrl-C.
+        """
+        checkpoint, title = self.checkpoint_of(what), what if what == self.stage else f"{self.stage}, {what}"
+        todo = [name for name in tasks if name not in checkpoint]
+        with _progress(len(tasks), len(tasks) - len(todo), title) as bar:
+
+            def keep(name: str, result: Any) -> None:
+                checkpoint.add(name, result)
+                bar.update()
+
+            job = _Job(function, tasks, self.pool, keep)
+            try:
+                job.finish(todo)
+            except KeyboardInterrupt:
+                self.pool.end(now=True)
+                done = sum(name in checkpoint for name in tasks)
+                raise Interrupted(
+                    f"{title}: stopped; {done} of {len(tasks)} are finished and kept, the same command goes on from there."
+                ) from None
+        job.report(title)
+        return {name: checkpoint[name] for name in tasks}
+
+
+@dataclass(frozen=True)
+class WorkersHere:
+    """``tasks.Workers`` without a checkpoint: what runs in this process, its results as a checkpoint gives them."""
+
+    def map(self, what: str, function: Callable, tasks: Mapping[str, Any]) -> dict[str, Any]:
+        """See ``tasks.Workers.map``."""
+        return {name: decoded(encoded(function(task))) for name, task in tasks.items()}
+
+
+def _progress(total: int, done: int, description: str) -> tqdm:
+    interval = 0.2 if sys.stderr.isatty() else 10.0  # a log file gets a line now and then
+    return tqdm(total=total, initial=done, desc=description, mininterval=interval, dynamic_ncols=True)
+
+
+class _Job:
+    """The tasks of one call, with what became of them."""
+
+    def __init__(self, function: Callable, tasks: Mapping[str, Any], pool: Pool, keep: Callable[[str, Any], None]):
+        self.function, self.tasks, self.pool, self.keep = function, tasks, pool, keep
+        self.lost: Counter = Counter()  # workers lost while they ran a task
+        self.errors: dict[str, BaseException] = {}
+
+    def finish(self, names: list[str]) -> None:
+        """Run the tasks together; after a lost worker run those in flight one by one, which shows who did it."""
+        waiting = list(names)
+        while waiting:
+            suspects = self._run_together(waiting, self.pool.size)
+            while suspects:
+                alone = [suspects.pop(0)]
+                suspects = self._run_together(alone, 1) + suspects
+
+    def report(self, title: str) -> None:
+        """Raise TaskError when a task has no result."""
+        given_up = [name for name, count in self.lost.items() if count >= MOST_LOST_WORKERS]
+        if given_up:
+            raise TaskError(
+                f"{title}: {', '.join(given_up)} ended its worker process {MOST_LOST_WORKERS} times (out of "
+                "memory, or a crash in a library); all other tasks are finished and kept."
+            )
+        if self.errors:
+            name, error = next(iter(self.errors.items()))
+            more = f" (and {len(self.errors) - 1} more)" if len(self.errors) > 1 else ""
+            raise TaskError(
+                f"{title}: {name}{more} failed with {type(error).__name__}: {error}; "
+                "all other tasks are finished and kept."
+            ) from error
+
+    def _run_together(self, waiting: list[str], most: int) -> list[str]:
+        """Take tasks from ``waiting`` until it is empty or a worker is lost; then return those to be tried again."""
+        running: dict[Future, str] = {}
+        try:
+            while waiting or running:
+                while waiting and len(running) < most:  # no more than can start: those in flight are known
+                    running[self.pool.submit(self.function, self.tasks[waiting[0]])] = waiting[0]
+                    waiting.pop(0)
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    self._take(running[future], future)
+                    del running[future]
+        except LostWorker:
+            self.pool.end(now=True)
+            return self._struck(list(running.values()))
+        return []
+
+    def _take(self, name: str, future: Future) -> None:
+        try:
+            found = self.pool.result(future)
+        except LostWorker:
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever a task raises is reported with its name
+            self.errors[name] = error
+        else:
+            self.keep(name, found)
+            self.lost.pop(name, None)
+
+    def _struck(self, names: list[str]) -> list[str]:
+        self.lost.update(names)
+        return [name for name in names if self.lost[name] < MOST_LOST_WORKERS]

@@ -1,0 +1,265 @@
+"""One process runs the graph of a study: what is current stays, what failed is said, the report is written at every end.
+
+    outcome = run(graph, study, Results(folder), pool, to="match")
+"""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import sys
+import time
+import traceback
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from typing import Any, Callable, Iterator
+
+from figures.files import File
+from figures.report import Section
+from pipeline.checkpoint import Checkpoint
+from pipeline.closure import PROJECT, code_digest, packages_of
+from pipeline.codec import digest
+from pipeline.graph import Graph, Source, Stage, View, parameters, takes_workers
+from pipeline.pools import Pool, PooledWorkers, TaskError
+from pipeline.results import Results, ResultsError
+from study.errors import StudyError
+from study.schema import Study
+
+
+class Missing(LookupError):
+    """A value that is not there, because the stage that makes it did not end well; the message says which."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A stage that could not go on: its name, the reason in one sentence, and the key or input that would help."""
+
+    stage: str
+    reason: str
+
+
+@dataclass
+class Run:
+    """One run of a graph for one study.
+
+    failures: of this run, in order
+    """
+
+    graph: Graph
+    study: Study
+    results: Results
+    pool: Pool
+    failures: list[Failure] = field(default_factory=list)
+    _done: set[str] = field(default_factory=set)  # stages that are current, by this run
+    _values: dict[type, Any] = field(default_factory=dict)
+    _digests: dict[type, str] = field(default_factory=dict)
+
+    # ---- values of the graph ----------------------------------------------------------------------------------------
+
+    def value(self, kind: type) -> Any:
+        """The value of a type; Missing where its stage failed or nothing makes it."""
+        if kind not in self._values:
+            self._values[kind] = self._made(kind)
+        found = self._values[kind]
+        if found is None:
+            raise Missing(f"{kind.__name__}, which this study has not")
+        return found
+
+    def _made(self, kind: type) -> Any:
+        node = self.graph.maker(kind)
+        if isinstance(node, Source):
+            return node.function(self.study)
+        if isinstance(node, View):
+            return node.function(**self.arguments(node.function))
+        if isinstance(node, Stage):
+            return self._loaded(node)
+        raise Missing(f"{kind.__name__}, which this study has not")
+
+    def _loaded(self, stage: Stage) -> Any:
+        self._must_be_done(stage)
+        return self.results.load(stage.name)
+
+    def _must_be_done(self, stage: Stage) -> None:
+        """A result of an earlier run that this one has not looked at may be stale."""
+        if stage.name not in self._done:
+            raise Missing(f"the result of {stage.name}, which is not there")
+
+    def digest(self, kind: type) -> str:
+        """Hash of the value of a type: of its files for an artefact, of itself otherwise."""
+        if kind not in self._digests:
+            self._digests[kind] = self._digested(kind)
+        return self._digests[kind]
+
+    def _digested(self, kind: type) -> str:
+        node = self.graph.maker(kind)
+        if not isinstance(node, Stage):
+            return digest(self.value(kind))
+        self._must_be_done(node)
+        record = self.results.record(node.name) or {"outputs": {}}
+        return digest({name: one["sha256"] for name, one in record["outputs"].items()})
+
+    def arguments(self, function: Callable) -> dict[str, Any]:
+        """What a function of the graph is called with, without workers; Missing where something is not there."""
+        found = {}
+        for one in parameters(function):
+            try:
+                found[one.name] = self.value(one.kind)
+            except Missing:
+                if not one.optional:
+                    raise
+                found[one.name] = None
+        return found
+
+    def inputs(self, *functions: Callable) -> dict[str, str]:
+        """Hash of everything that functions depend on, by its name: values, code, packages."""
+        found = {}
+        for one in (parameter for function in functions for parameter in parameters(function)):
+            try:
+                found[one.kind.__name__] = self.digest(one.kind)
+            except Missing:
+                if not one.optional:
+                    raise
+                found[one.kind.__name__] = "absent"
+        versions = {f"package {name}": version for name, version in packages_of(*functions).items()}
+        return {**found, "code": code_digest(digest, *functions), **versions}
+
+    # ---- one result -------------------------------------------------------------------------------------------------
+
+    def stage(self, stage: Stage) -> None:
+        """Make the artefact of a stage and the files of it, each where something that it reads changed."""
+        made = self._current(stage.name, self.inputs(stage.function), lambda: self._make(stage))
+        self._done.add(stage.name)
+        written = stage.files is not None and self._current(
+            f"{stage.name}.files", self.inputs(stage.files), lambda: self._write_files(f"{stage.name}.files", stage.files)
+        )
+        if not made and not written:
+            print(f"{stage.name}: unchanged, not run again", flush=True)
+
+    def _current(self, name: str, inputs: dict[str, str], make: Callable[[], list[str]]) -> bool:
+        """Call ``make`` where the result of this name is not what these inputs give; True when it was called."""
+        record = self.results.record(name)
+        reasons = ["not there"] if record is None else _changes(record["inputs"], inputs)
+        if not reasons:
+            return False
+        print(f"{name}: {_listed(reasons)}", flush=True)
+        self.results.forget(name)
+        started = time.perf_counter()
+        outputs = make()
+        seconds = round(time.perf_counter() - started, 3)
+        self.results.keep(name, outputs, {"result": name, **_circumstances(), "wall_time_s": seconds, "inputs": inputs})
+        print(f"{name}: done in {seconds:.1f} s", flush=True)
+        return True
+
+    def _make(self, stage: Stage) -> list[str]:
+        kept: list[Checkpoint] = []
+        arguments, workers = self.arguments(stage.function), takes_workers(stage.function)
+        if workers is not None:
+            inputs = digest(self.inputs(stage.function))
+
+            def checkpoint_of(what: str) -> Checkpoint:
+                kept.append(Checkpoint(self.results.checkpoint_file(stage.name, what), inputs))
+                return kept[-1]
+
+            arguments[workers] = PooledWorkers(stage.name, self.pool, checkpoint_of)
+        outputs = self.results.save(stage.name, stage.function(**arguments))
+        for one in kept:
+            one.remove()
+        return outputs
+
+    def _write_files(self, name: str, files: Callable) -> list[str]:
+        written = []
+        for file in files(**self.arguments(files)):
+            self.results.write(file.name, file.write)
+            written.append(file.name)
+        return written
+
+    # ---- the whole --------------------------------------------------------------------------------------------------
+
+    def all(self, stages: tuple[Stage, ...]) -> None:
+        """Every stage in order; one that cannot go on is noted, and those that need it are left out."""
+        for stage in stages:
+            try:
+                self.stage(stage)
+            except Missing as missing:
+                print(f"{stage.name}: left out, it needs {missing}", flush=True)
+                self._note(stage, f"left out: it needs {missing}.")
+            except (ResultsError, StudyError):
+                raise
+            except Exception as error:  # noqa: BLE001 - whatever stops a stage must not lose the report
+                self._note(stage, self._said(error))
+                print(f"{stage.name}: {self.failures[-1].reason}", file=sys.stderr, flush=True)
+
+    def _said(self, error: Exception) -> str:
+        """The sentence of a room that refuses what the study asks for; the traceback first for anything else."""
+        told = error.__cause__ if isinstance(error, TaskError) and error.__cause__ is not None else error
+        if isinstance(told, self.graph.refusals):
+            return str(told)
+        if isinstance(error, TaskError) and told is error:
+            return str(error)
+        traceback.print_exception(told)
+        return f"a fault of the program: {type(told).__name__}: {told}"
+
+    def _note(self, stage: Stage, reason: str) -> None:
+        self.failures.append(Failure(stage.name, reason))
+
+    def sections(self) -> Iterator[Section]:
+        """The sections of the report for which there is something to say."""
+        for section in self.graph.sections:
+            with suppress(Missing):
+                found = section(**self.arguments(section))
+                yield from found if isinstance(found, tuple) else [found] if found is not None else []
+
+    def report_inputs(self) -> dict[str, str]:
+        """What the report depends on: values of its sections, pictures, failures, code."""
+        found: dict[str, str] = {}
+        for section in self.graph.sections:
+            with suppress(Missing):
+                found |= self.inputs(section)
+        for stage in self.graph.stages:
+            record = self.results.record(f"{stage.name}.files")
+            found[f"{stage.name}.files"] = digest(record["outputs"]) if record else "absent"
+        return {**found, "failures": digest(tuple(self.failures)), "code": code_digest(digest, *self.graph.sections)}
+
+    def write_report(self, page_of: Callable[[Study, list[Section], list[Failure]], File]) -> None:
+        """The report, where anything in it changed."""
+
+        def make() -> list[str]:
+            page = page_of(self.study, list(self.sections()), self.failures)
+            self.results.write(page.name, page.write)
+            return [page.name]
+
+        if not self._current("report", self.report_inputs(), make):
+            print("report: unchanged, not written again", flush=True)
+
+
+def _changes(old: dict[str, str], new: dict[str, str]) -> list[str]:
+    return [f"{name} changed" for name in {**old, **new} if old.get(name) != new.get(name)]
+
+
+def _listed(reasons: list[str], most: int = 3) -> str:
+    rest = len(reasons) - most
+    return ", ".join(reasons[:most]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _circumstances() -> dict[str, Any]:
+    return {
+        "created": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "platform": f"{platform.system()} {platform.machine()}",
+        "commit": git_commit(),
+    }
+
+
+def git_commit() -> str | None:
+    """The commit of the project, with "+" when tracked files differ from it; None without git."""
+    try:
+        commit = _git("rev-parse", "HEAD")
+        return commit + ("+" if _git("status", "--porcelain", "--untracked-files=no") else "")
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def _git(*arguments: str) -> str:
+    done = subprocess.run(("git", *arguments), cwd=PROJECT, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+

@@ -1,0 +1,97 @@
+"""``airgap run STUDY``: all stages of a study, or those up to one, in this process and its workers."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Iterator
+
+from figures.files import File
+from figures.report import Remark, Section, write_report
+from pipeline.closure import packages_of
+from pipeline.graph import Graph
+from pipeline.pools import DaskCluster, Pool, Processes
+from pipeline.results import results_of
+from pipeline.run import Failure, Run, git_commit
+from pipeline.sentences import EXIT_FAILED, sentences
+from pipeline.stages import graph_of
+from study.check import check_study
+from study.errors import StudyError
+from study.read import read_study
+from study.schema import Study
+
+REPORT = "report.html"
+
+
+def add_run(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``airgap run``."""
+    parser.add_argument("study", help="name of a file in studies/ or a path")
+    parser.add_argument("--to", metavar="STAGE", help="the last stage; without it all of them and the report")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes that work at once (default: the cores)")
+    parser.add_argument("--executor", choices=("processes", "dask"), default="processes", help="where tasks run")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://host:8786")
+    parser.set_defaults(run=run_command)
+
+
+def run_command(options: argparse.Namespace) -> None:
+    """Run the graph of a study. Exit codes: 0 all done, 1 a stage could not go on (the report says why), 130 Ctrl-C."""
+    study = read_study(options.study)
+    check_study(study)
+    graph = graph_of(study)
+    last = _wanted(graph, options.to)
+    with sentences(), _pool(options, graph) as pool:
+        run = Run(graph, study, results_of(study), pool)
+        with run.results.held():
+            run.all(graph.stages if last is None else graph.before(graph.stage(last)))
+            if last is None or run.failures:
+                run.write_report(page_of)
+                print(f"report: {run.results.folder / REPORT}")
+        if run.failures:
+            raise SystemExit(EXIT_FAILED)
+
+
+def _wanted(graph: Graph, name: str | None) -> str | None:
+    if name is None or name == "report":
+        return None
+    names = [stage.name for stage in graph.stages]
+    if name not in names:
+        raise StudyError(f"--to {name}: this study has no such stage; give one of {', '.join(names)}, report.")
+    return name
+
+
+@contextmanager
+def _pool(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
+    if options.scheduler and options.executor != "dask":
+        raise StudyError("--scheduler goes with --executor dask.")
+    if options.jobs is not None and options.jobs < 1:
+        raise StudyError(f"--jobs {options.jobs}: give one process or more.")
+    modules = tuple({stage.function.__module__: None for stage in graph.stages})
+    dask = options.executor == "dask"
+    pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, modules)
+    try:
+        yield pool
+    except BaseException:
+        pool.end(now=True)
+        raise
+    pool.end()
+
+
+def page_of(study: Study, sections: list[Section], failures: list[Failure]) -> File:
+    """The report: what could not go on first, then what was found."""
+    told = [_failed(failures)] if failures else []
+    provenance = {"study": study.path.name, "commit": git_commit() or "unknown", **packages_of(run_command)}
+    title, subtitle = study.study.title, "From what is asked to a wound machine, stage by stage"
+
+    def write(path: Path) -> None:
+        pictures = path.parent  # the temporary file lies where the report will
+        write_report(path, (*told, *sections), pictures, title=title, subtitle=subtitle, provenance=provenance)
+
+    return File(REPORT, write)
+
+
+def _failed(failures: list[Failure]) -> Section:
+    """The section that heads the report of a run that did not reach its end."""
+    lines = tuple(Remark(f"{failure.stage}: {failure.reason}") for failure in failures)
+    return Section("This run could not go on", ("What was found before that stands below.", *lines))
+

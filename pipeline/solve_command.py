@@ -1,0 +1,139 @@
+"""``airgap solve STUDY``: the field of one operating point."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from math import isfinite, sqrt
+from pathlib import Path
+
+from figures.export import write_vtu
+from figures.field_map import field_map
+from figures.whole_field import whole_field
+from magnetostatics.flux_linkage import park, phase_flux_linkage
+from magnetostatics.mesh_error import refined_solution, torque_error
+from magnetostatics.model import FieldSolution, OperatingPoint
+from magnetostatics.probes import probe_reader
+from magnetostatics.torque import arkkio_torque, maxwell_torque
+from pipeline.arguments import add_overrides
+from study.errors import StudyError
+from study.inputs_field import field_case
+from study.read import check_steel, read_study
+from study.schema import Study
+from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, SQUARE_MILLIMETRE
+
+
+def add_solve(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``airgap solve``."""
+    parser.description = "Solve the field of one operating point; angles and signs as in README.md."
+    parser.add_argument("study", help="name of a file in studies/ or a path")
+    add_overrides(parser)
+    parser.add_argument("--angle-deg", type=float, default=0.0, help="mechanical rotor angle; 0: magnet 0 on tooth 0")
+    density = parser.add_mutually_exclusive_group()
+    density.add_argument("--j-amplitude", type=float, help="amplitude of the current density in the copper / A/mm2")
+    density.add_argument("--j-rms", type=float, help="RMS current density in the copper / A/mm2")
+    parser.add_argument(
+        "--current-angle-deg", type=float, default=0.0, help="electrical, from the q axis; > 0 weakens the field"
+    )
+    parser.add_argument("--json", metavar="FILE", help="write the result as JSON; - for standard output")
+    parser.add_argument("--vtu", metavar="FILE", help="write the field for ParaView or pyvista")
+    parser.add_argument("--png", metavar="FILE", help="write a picture of the field")
+    parser.add_argument(
+        "--sweep-mesh", action="store_true", help="use the mesh of the sweep instead of twice its resolution"
+    )
+    parser.set_defaults(run=solve)
+
+
+def solve(options: argparse.Namespace) -> None:
+    """See the module's text."""
+    study = read_study(options.study, options.set)
+    check_steel(study)
+    solution = _field(study, options)
+    result = _result(solution)
+    _print(result, options.json)
+    if options.vtu:
+        write_vtu(_writable(options.vtu), solution)
+    if options.png:
+        field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
+
+
+def _field(study: Study, options: argparse.Namespace) -> FieldSolution:
+    amplitude, case = _amplitude(options), field_case(study)
+    model = (case.model if options.sweep_mesh else case.detailed_model)(case.family.reference)
+    point = OperatingPoint(
+        options.angle_deg * DEGREE,
+        amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
+        options.current_angle_deg * DEGREE,
+        case.packing,
+    )
+    return model.solve(point)
+
+
+def _amplitude(options: argparse.Namespace) -> float:
+    """Amplitude of the current density [A/mm2]; none stated means no current."""
+    if options.j_rms is not None:
+        amplitude = sqrt(2) * options.j_rms
+    else:
+        amplitude = options.j_amplitude or 0.0
+    for name in ("angle_deg", "current_angle_deg"):
+        if not isfinite(getattr(options, name)):
+            raise StudyError(
+                f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}."
+            )
+    if not isfinite(amplitude) or amplitude < 0:
+        raise StudyError(f"the current density must be a finite number, zero or more A/mm2, found {amplitude:g}.")
+    return amplitude
+
+
+def _result(solution: FieldSolution) -> dict:
+    """Everything a user may want to know of one solved state, units in the keys."""
+    model, point = solution.model, solution.point
+    section = model.section
+    linkage = phase_flux_linkage(solution)
+    dq = park(linkage, section.machine.pole_pairs * point.angle, section.layout.phase_axis)
+    densities = point.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
+    return {
+        "torque_per_length_Nm_per_m": {"arkkio": arkkio_torque(solution), "maxwell": maxwell_torque(solution)},
+        "torque_error_Nm_per_m": torque_error(solution, refined_solution(solution)),
+        "flux_linkage_Wb_per_turn_per_m": dict(zip("abc", linkage.tolist())),
+        "flux_linkage_dq_Wb_per_turn_per_m": dict(zip("dq", dq.tolist())),
+        "probes_T": probe_reader(model).read(solution),
+        "operating_point": {
+            "angle_deg": point.angle / DEGREE,
+            "current_angle_deg": point.current_angle / DEGREE,
+            "j_phase_A_per_mm2": dict(zip("abc", (densities / AMPERE_PER_SQUARE_MILLIMETRE).tolist())),
+        },
+        "half_slot_area_mm2": section.half_slot_area / SQUARE_MILLIMETRE,
+        "sectors": section.sectors,
+        "unknowns": model.unknowns.count,
+        "newton": {"residuals": list(solution.newton.residuals), "steps": list(solution.newton.steps)},
+        "cpu_seconds": solution.cpu_seconds,
+    }
+
+
+def _print(result: dict, target: str | None) -> None:
+    text = json.dumps(result, indent=2)
+    if target == "-":
+        print(text)
+        return
+    if target:
+        _writable(target).write_text(text + "\n", encoding="utf-8")
+    torque = result["torque_per_length_Nm_per_m"]
+    print(
+        f"torque per length   {torque['arkkio']:.3f} ± {result['torque_error_Nm_per_m']:.3f} Nm/m (ring average; ± bounds the "
+        f"error of the mesh), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
+    )
+    linkage = result["flux_linkage_Wb_per_turn_per_m"]
+    print(
+        "flux linkage        " + ", ".join(f"{k} {1e3 * v:.4f}" for k, v in linkage.items()) + " mWb per turn and metre"
+    )
+    worst = sorted(result["probes_T"].items(), key=lambda item: -item[1])[:3]
+    print("highest probes      " + ", ".join(f"{name} {value:.3f} T" for name, value in worst))
+    print(f"unknowns            {result['unknowns']}, Newton iterations {len(result['newton']['residuals'])}")
+
+
+def _writable(target: str) -> Path:
+    path = Path(target)
+    if not path.resolve().parent.is_dir():
+        raise StudyError(f"cannot write {target}: the folder {path.parent} does not exist; create it first.")
+    return path

@@ -1,0 +1,64 @@
+"""The polynomials over the stator radius for people: table, figure and section."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+import pandas as pd
+
+from figures.files import File, figure_file, picture_name, table_file
+from figures.fits import fits as fits_figure
+from figures.report import Picture, Section, Table, heading
+from optimisation.fits import QUANTITIES, SectionFits
+from optimisation.optima import Optima
+from optimisation.polynomial_fits import PolynomialFit
+from report.sweep import optima_table
+from units import FACTORS, MILLIMETRE
+
+_UNITS = {"back_iron_width": "mm", "rotor_outer_radius": "mm", "half_slot_area": "mm2"}  # the others are torques
+_TORQUE_UNIT = "Nm_per_m"
+
+
+def files(fits: SectionFits, optima: Optima) -> Iterator[File]:
+    """Coefficients with their quality, and the optima with their curves."""
+    table = fits_table(fits)
+    yield table_file("fits.csv", table)
+    yield figure_file("fits", fits_figure(optima_table(optima), table))
+
+
+def section(fits: SectionFits) -> Section:
+    """Fits over the stator radius, and which are refused."""
+    columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual"]
+    table = fits_table(fits)
+    shown = table[columns].assign(quantity=table.quantity.map(heading))
+    caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
+    refused = [f"Refused: {fit.quantity}: {fit.refused}" for one in fits.by_slots for fit in one.fits if fit.refused]
+    picture = Picture(picture_name("fits"), "Optima (points) and second-order polynomials (lines) over the stator radius.")
+    return Section(
+        "Polynomials over the stator radius", (picture, Table(shown, caption, headings={"r_squared": "R²"}), *refused)
+    )
+
+
+def fits_table(fits: SectionFits) -> pd.DataFrame:
+    """Coefficients p2, p1, p0 in the unit of the quantity and millimetres of radius, with residuals and range."""
+    return pd.DataFrame(
+        [_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in QUANTITIES]
+    )
+
+
+def _row(slots: int, quantity: str, fit: PolynomialFit) -> dict[str, object]:
+    unit = _UNITS.get(quantity, _TORQUE_UNIT)
+    p2, p1, p0 = (p * MILLIMETRE**power / FACTORS[unit] for p, power in zip(fit.powers, (2, 1, 0)))
+    return {
+        "slots": slots,
+        "quantity": f"{quantity}_{unit}",
+        "p2": p2,
+        "p1": p1,
+        "p0": p0,
+        "r_squared": fit.r_squared,
+        "rms_residual": fit.rms_residual / FACTORS[unit],
+        "largest_residual": fit.largest_residual / FACTORS[unit],
+        "from_mm": fit.x_range[0] / MILLIMETRE,
+        "to_mm": fit.x_range[1] / MILLIMETRE,
+        "refused": fit.refused or None,
+    }
