@@ -6,7 +6,7 @@ from typing import Iterator
 
 import pandas as pd
 
-from drivetrain.requirements import Requirements, Transmission
+from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.dq import Envelope
 from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.winding_stage import WindingOutcome
@@ -138,8 +138,8 @@ def _envelopes(found: DriveOutcome, winding: WindingOutcome) -> tuple[dict[str, 
 
 
 def _demand(required: Requirements, transmission: Transmission) -> tuple[RequiredPoint, ...]:
-    speed = required.velocity_at_force_peak / transmission.nominal
-    return (RequiredPoint("peak force", speed, required.force_peak * transmission.nominal),)
+    demand = shaft_demand(required, transmission)
+    return (RequiredPoint("peak force", demand.base_speed, demand.torque_peak),)
 
 
 def _name(pair: Neighbour) -> str:

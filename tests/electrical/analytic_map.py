@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from drivetrain.requirements import Requirements, Transmission
+from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.resistance import COPPER_RESISTIVITY_20
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import WindingLimits, Wire
@@ -67,6 +67,7 @@ REQUIRED = Requirements(
     velocity_at_force_peak=1.6, power_peak=4253.0, force_at_power_peak=1343.0, velocity_at_power_peak=3.2,
 )  # fmt: skip
 TRANSMISSION = Transmission(nominal=2.3 * MILLIMETRE, largest=2.4 * MILLIMETRE)
+DEMAND = shaft_demand(REQUIRED, TRANSMISSION)
 INPUTS = WindingInputs(
     wire=Wire(0.5 * MILLIMETRE, COPPER_RESISTIVITY_20),
     limits=WindingLimits(

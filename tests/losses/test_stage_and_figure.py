@@ -12,7 +12,7 @@ from losses.iron import FrequencyTerms
 from losses.map import FieldLosses, grid
 from losses.stage import LossError, LossInputs, loss_law, losses_stage
 from report.losses import dataset, files, section
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
 from tests.magnetostatics.test_flux_map_stage import CASE
 
 MAP = flux_map(Saturating())
@@ -36,7 +36,7 @@ class Computed:
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
 
 
 @pytest.fixture(scope="module")

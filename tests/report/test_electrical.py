@@ -12,7 +12,15 @@ from figures.report import render_report
 from report import drive
 from report import flux_map as map_report
 from report import winding as winding_report
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
+from tests.electrical.analytic_map import (
+    DEMAND,
+    INPUTS,
+    MATCHED,
+    REQUIRED,
+    TRANSMISSION,
+    Saturating,
+    flux_map,
+)
 from units import RPM
 
 MAP = flux_map(Saturating())
@@ -20,7 +28,7 @@ MAP = flux_map(Saturating())
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +75,8 @@ def test_files_of_the_drive(driven, winding, tmp_path):
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
     said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
     assert said in drive.section(driven, winding).content[0]
-    key = next(one for one in winding_report.section(winding, INPUTS, None).content[0].numbers if one.name == "peak torque")
+    numbers = winding_report.section(winding, INPUTS, None).content[0].numbers
+    key = next(one for one in numbers if one.name == "peak torque")
     assert key.value == winding.peak_torque
     assert winding_report.windings_table(winding).query("chosen").peak_torque_Nm.item() == pytest.approx(key.value)
     assert drive.windings_table(driven, winding).query("chosen").peak_torque_field_Nm.item() == pytest.approx(key.value)
@@ -77,4 +86,4 @@ def test_sections_can_be_printed(winding):
     match = SimpleNamespace(chosen=SimpleNamespace(active_length=0.04))
     sections = (map_report.section(MAP), winding_report.section(winding, INPUTS, match))
     page = render_report(sections, title="", subtitle="")
-    assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak force" in page
+    assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak torque" in page
