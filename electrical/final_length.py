@@ -40,7 +40,9 @@ def length_for_torque(torque: float, torque_per_length: float) -> float:
 
 
 def length_for_damping(damping: float, *, reached: float, length: float, end_turn_length: float) -> float:
-    """Length with a damping, from the damping ``reached`` (the same unit) at another length [m]: c ~ l^2 / (l + l_et) (3.91).
+    """Length with a damping, from the damping ``reached`` at another length [m]: c ~ l^2 / (l + l_et) (3.91).
+
+    damping, reached: [Nms/rad] or [Ns/m], both the same
 
     The positive root of l^2 = a (l + l_et),  a = c / c_reached l_0^2 / (l_0 + l_et)
     """

@@ -49,7 +49,8 @@ def length_reason(found: WindingOutcome, inputs: WindingInputs, match: MatchOutc
     instead = "" if match is None else f" instead of the {match.chosen.active_length / MILLIMETRE:.2f} mm of the match"
     short = "; the longest that is allowed, too short for it" if found.length.short else ""
     return (
-        f"{found.length.length / MILLIMETRE:.1f} mm of active length{instead}, set by {found.length.set_by.name}{short}. "
+        f"{found.length.length / MILLIMETRE:.1f} mm of active length{instead}, set by "
+        f"{found.length.set_by.name}{short}. "
         f"The match counts on a packing factor of {inputs.limits.packing_limit:g} and on a ratio that is any number; "
         f"{found.wound.turns} turns of {found.wound.strands} wires fill {found.chosen.packing:.3f}, the teeth give "
         "their own ratio, and the torque is that of the flux map at the best current angle, less "

@@ -19,7 +19,7 @@ ALLOWED = {
     "effects": {"materials", "geometry"},
     "workbench": {"effects", "magnetostatics", "geometry", "materials", "electrical", "figures"},
     "study": {"geometry", "materials", "magnetostatics", "electrical", "losses", "drivetrain", "gearbox", "vehicle"},
-    "figures": {"geometry", "magnetostatics", "electrical", "losses"},
+    "figures": {"geometry", "magnetostatics", "electrical", "losses", "drivetrain", "vehicle"},
     "pipeline": {
         "study",
         "figures",
