@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from typing import Any, Iterator
 
 import pandas as pd
 
@@ -39,9 +39,10 @@ def files(
     title = _name(found.neighbour(winding.wound.turns))
     yield figure_file("field_envelope", field_envelope(found.envelope, found.constant_envelope, title=title))
     yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), _demand(required, transmission)))
-    shown = {"title": title, "required": demands(required), "limits": limits}
-    yield figure_file("force_velocity", force_velocity(found.constant_plane, transmission.nominal, **shown))
-    yield figure_file("force_velocity_field", force_velocity(found.plane, transmission.nominal, **shown))
+    shown: dict[str, Any] = {"title": title, "required": demands(required), "limits": limits}
+    planes = {"force_velocity": found.plane_of_constant_parameters, "force_velocity_field": found.plane}
+    for name, plane in planes.items():
+        yield figure_file(name, force_velocity(plane, transmission.nominal, **shown))
 
 
 def section(found: DriveOutcome, winding: WindingOutcome) -> Section:
