@@ -43,8 +43,13 @@ class DqMachine(Protocol):
     The machine is its own mirror image about the d axis: psi_d is even in i_q, psi_q and torque are odd.
     """
 
-    pole_pairs: int
-    resistance: Values  # of one phase [ohm], zero or more; an array is a family of machines
+    @property
+    def pole_pairs(self) -> int:
+        """p."""
+
+    @property
+    def resistance(self) -> Values:
+        """Of one phase [ohm], zero or more; an array is a family of machines."""
 
     @property
     def reach(self) -> float:
@@ -84,8 +89,8 @@ class DriveLimits:
     voltage_peak: Values
 
     def __post_init__(self) -> None:
-        require(np.all(np.asarray(self.current_peak) > 0), "current limit must be positive", self.current_peak)
-        require(np.all(np.asarray(self.voltage_peak) > 0), "voltage limit must be positive", self.voltage_peak)
+        require(bool(np.all(np.asarray(self.current_peak) > 0)), "current limit must be positive", self.current_peak)
+        require(bool(np.all(np.asarray(self.voltage_peak) > 0)), "voltage limit must be positive", self.voltage_peak)
 
     @classmethod
     def from_dc_bus(cls, current_peak: Values, dc_voltage: Values) -> DriveLimits:
@@ -138,7 +143,7 @@ class PowerPoint:
     speed: Values
 
 
-# ---- torque and voltage, the same for every description ---------------------------------------------------------------
+# ---- torque and voltage, the same for every description -------------------------------------------------------------
 
 
 def torque_of(pole_pairs: int, psi: tuple[Values, Values], i_d: Values, i_q: Values) -> Values:
@@ -159,8 +164,8 @@ def voltage_of(
 def mtpa_currents(machine: DqMachine, current_peak: Values) -> tuple[Values, Values]:
     """(i_d, i_q) [A] of the largest torque at a given peak phase current [A], any shape.
 
-    The root of dT/d gamma = dT/d i_q i_d - dT/d i_d i_q over the current angle, i_d = -I sin(gamma), i_q = I cos(gamma);
-    where the torque still rises at the end of the range, that end.
+    The root of dT/d gamma = dT/d i_q i_d - dT/d i_d i_q over the current angle, i_d = -I sin(gamma) and
+    i_q = I cos(gamma); where the torque still rises at the end of the range, that end.
     Raises a ValueError when the circle leaves the machine's description.
     """
     low, high = machine.direct_range(current_peak)
@@ -316,7 +321,7 @@ def _largest_i_q(
     return np.where(last >= 0, i_q, 0.0), np.where(last >= 0, 0.0, excess.min(axis=0))
 
 
-# ---- least current for a torque and a speed ---------------------------------------------------------------------------
+# ---- least current for a torque and a speed -------------------------------------------------------------------------
 
 
 def operating_map(machine: DqMachine, limits: DriveLimits, torque: Values, speed: Values) -> OperatingMap:
@@ -405,21 +410,32 @@ def _on_torque(machine: DqMachine, torque: Values, i_d: Values, i_q: np.ndarray,
 
 def _least_weakening(lines: _TorqueLines, limits: DriveLimits, which: np.ndarray, speed: np.ndarray) -> np.ndarray:
     """i_d (n,) nearest to the least current at which |v| <= V on lines (n,) of torque at speeds (n,); NaN for none."""
-
-    def excess_at(rows: np.ndarray, i_d: np.ndarray) -> np.ndarray:
-        v_d, v_q = lines.machine.voltage(i_d, lines.quadrature(which[rows], i_d), speed[rows])
-        return v_d**2 + v_q**2 - limits.voltage_peak**2
-
-    best = lines.best[which]
-    found = best.copy()
-    above = np.flatnonzero(excess_at(np.arange(len(which)), best) > LIMIT_SLACK * limits.voltage_peak**2)
+    found = lines.best[which]
+    above = np.flatnonzero(_excess_on(lines, limits, which, speed, found) > LIMIT_SLACK * limits.voltage_peak**2)
     for rows in np.array_split(above, max(1, -(-len(above) // _CHUNK))):
-        last = _last_true(_fitting(lines, limits, which[rows], speed[rows]) & (lines.i_d[:, None] < best[rows]))
-        low = lines.i_d[np.maximum(last, 0)]
-        high = np.minimum(lines.i_d[np.minimum(last + 1, _DIRECT - 1)], best[rows])
-        ends = excess_at(rows, low), excess_at(rows, high)
-        found[rows] = np.where(last >= 0, _root(lambda i_d: excess_at(rows, i_d), low, high, *ends), np.nan)
+        found[rows] = _weakened(lines, limits, which[rows], speed[rows])
     return found
+
+
+def _weakened(lines: _TorqueLines, limits: DriveLimits, which: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """The same where the voltage is too high at the least current: its limit lies between two samples of the line."""
+    best = lines.best[which]
+    last = _last_true(_fitting(lines, limits, which, speed) & (lines.i_d[:, None] < best))
+    low = lines.i_d[np.maximum(last, 0)]
+    high = np.minimum(lines.i_d[np.minimum(last + 1, _DIRECT - 1)], best)
+
+    def excess_at(i_d: np.ndarray) -> np.ndarray:
+        return _excess_on(lines, limits, which, speed, i_d)
+
+    return np.where(last >= 0, _root(excess_at, low, high, excess_at(low), excess_at(high)), np.nan)
+
+
+def _excess_on(
+    lines: _TorqueLines, limits: DriveLimits, which: np.ndarray, speed: np.ndarray, i_d: np.ndarray
+) -> np.ndarray:
+    """|v|^2 - V^2 [V^2] at i_d on lines (n,) of torque at speeds (n,)."""
+    v_d, v_q = lines.machine.voltage(i_d, lines.quadrature(which, i_d), speed)
+    return v_d**2 + v_q**2 - limits.voltage_peak**2
 
 
 def _fitting(lines: _TorqueLines, limits: DriveLimits, which: np.ndarray, speed: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import xarray as xr
 
 from electrical.dq import (
     DqMachine,
@@ -20,6 +21,7 @@ from electrical.dq import (
     peak_torque,
     torque_speed_envelope,
 )
+from electrical.plane import plane_dataset, plane_record
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import Winding, choose_among
 from electrical.winding_stage import WindingInputs, WindingOutcome
@@ -61,7 +63,7 @@ class DriveOutcome:
 
     mtpa_direct, mtpa_quadrature: i_d, i_q from no current to the limit [A]
     mtpv_direct, mtpv_quadrature: i_d, i_q over the speeds of the envelopes [A], NaN where the current limit rules
-    plane, constant_plane: least currents over torque (first index) and speed
+    field_plane, constant_plane: least currents over torque and speed, data sets of ``OperatingMap``
     neighbours: by turns; by_constant: the winding that constant parameters would choose of them
     """
 
@@ -73,10 +75,20 @@ class DriveOutcome:
     mtpa_quadrature: np.ndarray
     mtpv_direct: np.ndarray
     mtpv_quadrature: np.ndarray
-    plane: OperatingMap
-    constant_plane: OperatingMap
+    field_plane: xr.Dataset
+    constant_plane: xr.Dataset
     neighbours: tuple[Neighbour, ...]
     by_constant: Winding
+
+    @property
+    def plane(self) -> OperatingMap:
+        """Least currents on the flux map."""
+        return plane_record(OperatingMap, self.field_plane)
+
+    @property
+    def plane_of_constant_parameters(self) -> OperatingMap:
+        """Least currents by constant parameters."""
+        return plane_record(OperatingMap, self.constant_plane)
 
     def neighbour(self, turns: int) -> Neighbour:
         """The neighbour with these turns."""
@@ -99,8 +111,8 @@ def drive_stage(flux_map: FluxMap, winding: WindingOutcome, inputs: WindingInput
         torque_speed_envelope(constant, limits, speed),
         *mtpa_currents(field, np.linspace(0.0, limits.current_peak, _CURVE)),
         *mtpv_currents(field, limits.voltage_peak, speed, field.reach),
-        plane=operating_plane(field, limits, fastest),
-        constant_plane=operating_plane(constant, limits, fastest),
+        field_plane=plane_dataset(operating_plane(field, limits, fastest)),
+        constant_plane=plane_dataset(operating_plane(constant, limits, fastest)),
         neighbours=pairs,
         by_constant=choose_among(tuple(one.constant for one in pairs), inputs.limits, winding.requirement),
     )

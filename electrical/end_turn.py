@@ -25,28 +25,15 @@ def slot_centre_distance(
     return diameter / 2 * (pi / slots + asin(tooth_width / diameter))
 
 
-def slot_pitch_distance(
-    *, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float, coil_pitch: int
-) -> float:
-    """Arc over the slots that one coil of a distributed winding spans, at mid slot [m].
-
-    D = y 2 pi/N_s (R_1 + R_2)/2
-
-    coil_pitch: y [slots]; the others, and the errors, as in ``slot_centre_distance``. Two layers share a slot in equal
-    parts on the average over the coils, so that a coil reaches from slot centre to slot centre.
-    """
-    _check_slot(slots, shoe_top_radius, slot_bottom_radius, tooth_width)
-    return coil_pitch * pi * (shoe_top_radius + slot_bottom_radius) / slots
-
-
 def end_turn_length(
     *, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float, coil_pitch: int
 ) -> float:
     """Length of one end turn, a half circle over the distance D of the two coil sides, l_et = pi D / 2 [m] (3.84).
 
-    coil_pitch: y [slots]. At 1, a coil round one tooth, D is ``slot_centre_distance`` (3.85); above, a coil that
-        crosses others on its way, D is ``slot_pitch_distance``, 71.9 mm of end turn at y = 3 on the 85 mm, 12-slot
-        machine. The other arguments and the errors as in ``slot_centre_distance``.
+    coil_pitch: y [slots]. At 1, a coil round one tooth, D is ``slot_centre_distance`` (3.85). Above, a coil that
+        crosses others on its way, D is the arc over y slot pitches at mid slot, y 2 pi/N_s (R_1 + R_2)/2: the sides of
+        two layers share their slots, so that coils reach from slot centre to slot centre in the mean. 71.9 mm of end
+        turn at y = 3 on the 85 mm, 12-slot machine. The other arguments and the errors as in ``slot_centre_distance``.
     Equation 3.90 writes R_1 + R_2 without d_1 + d_2, against its own definition 3.86; the shoe is kept here (16.30 mm
     instead of 15.72 mm on the 85 mm, 12-slot machine).
     Validity: a half circle at mid slot without straight ends. Over several slots it is on the long side: sides that
@@ -56,13 +43,14 @@ def end_turn_length(
     """
     if coil_pitch < 1:
         raise ValueError(f"a coil spans one slot pitch or more; found {coil_pitch}")
-    slot = {
-        "slots": slots,
-        "shoe_top_radius": shoe_top_radius,
-        "slot_bottom_radius": slot_bottom_radius,
-        "tooth_width": tooth_width,
-    }
-    distance = slot_centre_distance(**slot) if coil_pitch == 1 else slot_pitch_distance(**slot, coil_pitch=coil_pitch)
+    distance = slot_centre_distance(
+        slots=slots,
+        shoe_top_radius=shoe_top_radius,
+        slot_bottom_radius=slot_bottom_radius,
+        tooth_width=tooth_width,
+    )
+    if coil_pitch > 1:
+        distance = coil_pitch * pi * (shoe_top_radius + slot_bottom_radius) / slots
     return pi * distance / 2
 
 

@@ -22,7 +22,7 @@ def copper_resistivity(temperature_celsius: float = 20.0) -> float:
             f"copper temperature must lie between {low:g} and {high:g} degC for the linear law; "
             f"found {temperature_celsius:g} degC"
         )
-    return COPPER.resistivity(temperature_celsius)
+    return float(COPPER.resistivity(temperature_celsius))
 
 
 def phase_resistance(

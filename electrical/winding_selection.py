@@ -320,8 +320,8 @@ def _affordable(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[W
         smallest = min(winding.current_rms for winding in windings)
         raise WindingError(
             f"every winding needs more than {limits.phase_current_rms:.4g} A RMS; the smallest is {smallest:.4g} A "
-            "with the slot as full as it gets: raise the current limit (winding_selection.phase_current_max_rms_A) or take "
-            "a thinner wire (winding_selection.wire_diameter_mm)"
+            "with the slot as full as it gets: raise the current limit (winding_selection.phase_current_max_rms_A) or "
+            "take a thinner wire (winding_selection.wire_diameter_mm)"
         )
     return affordable
 

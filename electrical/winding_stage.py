@@ -10,9 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from electrical.dq import DriveLimits, mtpa_currents
-from electrical.final_length import FinalLength, LengthNeed, final_length, length_for_damping, length_for_force
+from electrical.final_length import FinalLength, LengthNeed, final_length, length_for_damping, length_for_torque
 from electrical.flux_map_machine import FluxMapMachine
-from electrical.short_circuit import winding_damping
+from electrical.shaft_demand import ShaftDemand
+from electrical.short_circuit import shaft_damping
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import (
     PerTurnMachine,
@@ -22,11 +23,9 @@ from electrical.winding_selection import (
     WindingRequirement,
     Wire,
     select_winding,
-    winding_requirement,
     with_maximum_power,
 )
 from electrical.wound_machine import WoundMachine, machine_end_turn
-from drivetrain.requirements import Requirements, Transmission
 from geometry.family import MatchedMachine
 from magnetostatics.flux_map_stage import FluxMap
 
@@ -90,28 +89,17 @@ class WindingOutcome:
 def winding_stage(
     flux_map: FluxMap,
     matched: MatchedMachine,
-    required: Requirements,
-    transmission: Transmission,
+    demand: ShaftDemand,
     inputs: WindingInputs,
 ) -> WindingOutcome:
     """Choose turns, wires in hand and active length on the flux map.
 
-    Base speed and power are asked at the nominal ratio; forces count where the ratio is largest, so that they hold over
-    the whole wheel travel, and on a torque less the error of its mesh. The torque is not asked of the winding: the
-    length is made for it.
+    The torque counts less the error of its mesh. It is not asked of the winding: the length is made for it.
     Raises WindingError when no winding fits the slot or stays within the current limit.
     """
-    requirement = replace(
-        winding_requirement(
-            peak_force=required.force_peak,
-            velocity_at_peak_force=required.velocity_at_force_peak,
-            peak_power=required.power_peak,
-            transmission_ratio=transmission.nominal,
-        ),
-        torque=0.0,
-    )
+    requirement = WindingRequirement(demand.base_speed, demand.power, torque=0.0)
     one = per_turn_machine(flux_map, matched, inputs.longest)
-    machine, choice, length = wound_to_length(one, flux_map, required, transmission, requirement, inputs)
+    machine, choice, length = wound_to_length(one, flux_map.torque_error, demand, inputs)
     return _outcome(flux_map, matched, machine, choice, length, requirement, inputs)
 
 
@@ -128,16 +116,18 @@ def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine, active_length: 
 
 def wound_to_length(
     machine: PerTurnMachine,
-    flux_map: FluxMap,
-    required: Requirements,
-    transmission: Transmission,
-    requirement: WindingRequirement,
+    torque_error: float,
+    demand: ShaftDemand,
     inputs: WindingInputs,
 ) -> tuple[PerTurnMachine, WindingChoice, FinalLength]:
-    """(machine with its final length, the winding, what set the length): the two are chosen in turns."""
+    """(machine with its final length, the winding, what set the length): the two are chosen in turns.
+
+    torque_error: share of the torque that the mesh may have put on top
+    """
+    requirement = WindingRequirement(demand.base_speed, demand.power, torque=0.0)
     for _ in range(_ROUNDS):
         choice = select_winding(machine, inputs.wire, inputs.limits, requirement)
-        needs = length_needs(machine, flux_map.torque_error, choice.chosen, required, transmission, inputs)
+        needs = length_needs(machine, torque_error, choice.chosen, demand, inputs)
         found = final_length(needs, inputs.longest)
         if abs(found.length / machine.active_length - 1) < _SAME_LENGTH:
             break
@@ -149,35 +139,28 @@ def length_needs(
     machine: PerTurnMachine,
     torque_error: float,
     winding: Winding,
-    required: Requirements,
-    transmission: Transmission,
+    demand: ShaftDemand,
     inputs: WindingInputs,
 ) -> tuple[LengthNeed, ...]:
-    """What the wound machine must be long for.
+    """What the wound machine must be long for; torque_error: share that the mesh may have put on top."""
 
-    torque_error: share of the torque that the mesh may have put on top. The damping counts in the nominal position, as
-    in the match.
-    """
-
-    def length(force: float, density: float) -> float:
+    def length(wanted: float, density: float) -> float:
         ampere_turns = winding.turns * inputs.wire.area * winding.strands * density * 2**0.5
         torque = float(machine.dq.torque(*mtpa_currents(machine.dq, ampere_turns)))
-        return length_for_force(force, transmission.largest, (1 - torque_error) * torque)
+        return length_for_torque(wanted, (1 - torque_error) * torque)
 
-    forces = (
-        LengthNeed("the peak force", length(required.force_peak, inputs.limits.overload_current_density)),
-        LengthNeed("the RMS force", length(required.force_rms, inputs.nominal_density)),
+    torques = (
+        LengthNeed("the peak torque", length(demand.torque_peak, inputs.limits.overload_current_density)),
+        LengthNeed("the RMS torque", length(demand.torque_rms, inputs.nominal_density)),
     )
     if not inputs.damping_asked:
-        return forces
-    return (*forces, _damping_need(machine, winding, required.maximum_damping, transmission.nominal))
+        return torques
+    return (*torques, _damping_need(machine, winding, demand.damping))
 
 
-def _damping_need(machine: PerTurnMachine, winding: Winding, damping: float, ratio: float) -> LengthNeed:
-    reached = winding_damping(
-        torque_constant=winding.no_load_torque_constant,
-        phase_resistance=winding.phase_resistance,
-        transmission_ratio=ratio,
+def _damping_need(machine: PerTurnMachine, winding: Winding, damping: float) -> LengthNeed:
+    reached = shaft_damping(
+        torque_constant=winding.no_load_torque_constant, phase_resistance=winding.phase_resistance
     )
     lengths = {"length": machine.active_length, "end_turn_length": machine.end_turn_length}
     return LengthNeed("the damping", length_for_damping(damping, reached=reached, **lengths))

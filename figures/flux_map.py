@@ -1,8 +1,8 @@
-"""The flux map of a wound machine: flux linkages over the currents, the best currents, and what they give over speed."""
+"""The flux map of a wound machine: flux linkages over the currents, the best currents, and torque over speed."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,8 +14,8 @@ from figures.style import BLACK, BLUE, FIELD_MAP, GREY, ORANGE, VERMILION, lette
 from units import RPM
 
 _SAMPLES = 121
-_FIELD_LOOK = {"color": BLUE, "label": "flux map"}
-_CONSTANT_LOOK = {"color": ORANGE, "linestyle": "--", "label": "constant parameters"}
+_FIELD_LOOK: dict[str, Any] = {"color": BLUE, "label": "flux map"}
+_CONSTANT_LOOK: dict[str, Any] = {"color": ORANGE, "linestyle": "--", "label": "constant parameters"}
 
 
 class Curve(NamedTuple):
@@ -73,7 +73,7 @@ def field_envelope(field: Envelope, constant: Envelope, *, title: str) -> Figure
 
 def _map(figure: Figure, axes: Axes, i_d: np.ndarray, i_q: np.ndarray, values: np.ndarray, label: str) -> None:
     colours = axes.contourf(i_d, i_q, values, levels=14, cmap=FIELD_MAP)
-    lines = axes.contour(i_d, i_q, values, levels=colours.levels[1:-1:2], colors="white", linewidths=0.6)
+    lines = axes.contour(i_d, i_q, values, levels=np.asarray(colours.levels)[1:-1:2], colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt="%g")
     figure.colorbar(colours, ax=axes, pad=0.02, orientation="horizontal").set_label(label)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -82,7 +82,7 @@ def _parts(axes: Axes, losses: PowerLosses) -> None:
         "magnets": losses.magnet,
     }
     for number, (label, values) in enumerate(parts.items()):
-        look = {"color": SERIES[number], "marker": MARKERS[number], "markevery": 8, "markersize": 5}
+        look: dict[str, Any] = {"color": SERIES[number], "marker": MARKERS[number], "markevery": 8, "markersize": 5}
         axes.plot(losses.speed[row] / RPM, np.where(values[row] > 0, values[row], np.nan), label=label, **look)
     axes.set_title(f"parts of the loss at {torque[row]:.3g} Nm", loc="left")
     axes.set(xlabel="rotor speed / rpm", ylabel="loss / W", xlim=(0, None), yscale="log")

@@ -1,16 +1,16 @@
-"""What a winding makes of the machine: torque and power over speed, voltage and current over force (thesis Fig. 3.27).
-
-The functions take the results of ``electrical`` by their attributes and import nothing of it.
-"""
+"""What a winding makes of the machine: torque and power over speed, voltage and current over force (Fig. 3.27)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Iterable
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drivetrain.output import Output, in_unit, labelled
+from electrical.dq import DriveLimits, Envelope, OperatingMap
 from figures.style import BLACK, FIELD_MAP, GREY, SERIES, VERMILION, letter, new_figure, show_grid, styled
 from units import FACTORS, RPM
 
@@ -36,15 +36,16 @@ class WheelPoint:
 
 
 @styled
-def torque_speed(envelopes: dict, chosen: str, required: tuple[RequiredPoint, ...] = ()) -> Figure:
+def torque_speed(envelopes: dict[str, Envelope], chosen: str, required: tuple[RequiredPoint, ...] = ()) -> Figure:
     """Largest torque and power over the rotor speed for some windings, with the demands.
 
-    envelopes: name of the winding -> speed [rad/s], torque [Nm], power [W] (``Envelope``); chosen: one of the names
+    envelopes: by the name of the winding; chosen: one of the names
     """
     figure = new_figure(4.4)
     axes = figure.subplots(1, 2)
     for number, (name, envelope) in enumerate(envelopes.items()):
-        look = {"color": SERIES[number % len(SERIES)], "linestyle": _LINES[number // len(SERIES) % len(_LINES)]}
+        look: dict[str, Any] = {"color": SERIES[number % len(SERIES)]}
+        look["linestyle"] = _LINES[number // len(SERIES) % len(_LINES)]
         look |= {"linewidth": 3.0 if name == chosen else 1.3, "label": name + (" (chosen)" if name == chosen else "")}
         axes[0].plot(envelope.speed / RPM, envelope.torque, **look)
         axes[1].plot(envelope.speed / RPM, envelope.power / 1e3, **look)
@@ -66,14 +67,18 @@ _HEADROOM = 1.05  # above the largest force, for the marker there
 
 @styled
 def force_velocity(
-    operating, transmission_ratio: float, *, output: Output, title: str, required: tuple[WheelPoint, ...] = (),
-    limits=None,
+    operating: OperatingMap,
+    transmission_ratio: float,
+    *,
+    output: Output,
+    title: str,
+    required: tuple[WheelPoint, ...] = (),
+    limits: DriveLimits | None = None,
 ) -> Figure:
     """Peak phase voltage and current over speed and effort at the output; white where the machine cannot go.
 
-    operating: torque [Nm], speed [rad/s], voltage_peak [V], current_peak [A], 2-D arrays, NaN out of reach
-        (``OperatingMap``); transmission_ratio: tau_t [m/rad or 1]; output: words and units of the axes
-    limits: voltage_peak, current_peak (``DriveLimits``), written into the titles
+    operating: over torque (first index) and speed, NaN out of reach; transmission_ratio: tau_t [m/rad or 1]
+    output: words and units of the axes; limits: written into the titles
     """
     force = operating.torque / transmission_ratio / FACTORS[output.axis_unit]
     velocity = operating.speed * transmission_ratio / FACTORS[output.speed_unit]
@@ -96,15 +101,19 @@ def force_velocity(
     return figure
 
 
-def _mark(axes, point: RequiredPoint) -> None:
-    look = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION, "markeredgecolor": "white"}
+def _mark(axes: Iterable[Axes], point: RequiredPoint) -> None:
+    look: dict[str, Any] = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION}
+    look["markeredgecolor"] = "white"
     for axis, value in zip(axes, (point.torque, point.torque * point.speed / 1e3), strict=True):
         axis.plot(point.speed / RPM, value, label=point.name, zorder=5, **look)
 
 
-def _map(figure, axes, velocity, force, values, label: str) -> None:
+def _map(
+    figure: Figure, axes: Axes, velocity: np.ndarray, force: np.ndarray, values: np.ndarray, label: str
+) -> None:
     colours = axes.contourf(velocity, force, values, levels=12, cmap=FIELD_MAP)
-    lines = axes.contour(velocity, force, values, levels=colours.levels[1:-1:3], colors="white", linewidths=0.6)
+    levels = np.asarray(colours.levels)[1:-1:3]
+    lines = axes.contour(velocity, force, values, levels=levels, colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt="%g")
     reached = np.isfinite(values).astype(float)
     if reached.min() < 0.5 < reached.max():
@@ -114,8 +123,8 @@ def _map(figure, axes, velocity, force, values, label: str) -> None:
     figure.colorbar(colours, ax=axes, pad=0.02).set_label(label)
 
 
-def _mark_demands(axes, required: tuple[WheelPoint, ...], output: Output) -> None:
+def _mark_demands(axes: Axes, required: tuple[WheelPoint, ...], output: Output) -> None:
     for number, point in enumerate(required):
-        look = {"marker": "Xo^Ds"[number % 5], "markersize": 9, "linestyle": "", "color": VERMILION}
+        look: dict[str, Any] = {"marker": "Xo^Ds"[number % 5], "markersize": 9, "linestyle": "", "color": VERMILION}
         place = in_unit(point.velocity, output.speed_unit), in_unit(point.force, output.axis_unit)
         axes.plot(*place, markeredgecolor="white", label=point.name, zorder=5, **look)

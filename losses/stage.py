@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
+from electrical.plane import plane_dataset, plane_record
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.machine import Machine
 from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
@@ -50,19 +52,24 @@ class BestPoint:
 class LossMap:
     """Losses of the wound machine over torque (first index, negative as a generator) and speed, and what they rest on.
 
-    losses: over the whole plane, NaN out of reach
+    data: losses [W] over the whole plane, a data set of ``PowerLosses``, NaN out of reach
     law: iron loss of the sheet; steel: whose name the study gives, another one where the law stands in for it
     winding_temperature: [degC]; end_turn_share: of the copper loss
     motor, generator: best points
     """
 
-    losses: PowerLosses
+    data: xr.Dataset
     law: IronLossLaw
     steel: str
     winding_temperature: float
     end_turn_share: float
     motor: BestPoint
     generator: BestPoint
+
+    @property
+    def losses(self) -> PowerLosses:
+        """Losses over the whole plane."""
+        return plane_record(PowerLosses, self.data)
 
     @property
     def law_is_of_another_grade(self) -> bool:
@@ -102,7 +109,7 @@ def losses_stage(
     operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
     losses = power_losses(operating, wound, table_of(largest, list(found.values())))
     return LossMap(
-        losses,
+        plane_dataset(losses),
         law,
         inputs.steel,
         inputs.winding_temperature,

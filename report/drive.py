@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from typing import Any, Iterator
 
 import pandas as pd
 
 from drivetrain.output import Output
-from drivetrain.requirements import Requirements, Transmission
-from electrical.drive_stage import DriveOutcome, Neighbour
+from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.dq import Envelope
+from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
 from figures.flux_map import Curve, field_envelope, flux_maps
@@ -42,9 +42,10 @@ def files(
     yield figure_file("field_envelope", field_envelope(found.envelope, found.constant_envelope, title=title))
     demand = _demand(required, transmission, output)
     yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), demand))
-    shown = {"output": output, "title": title, "required": demands(required, output), "limits": limits}
-    yield figure_file("force_velocity", force_velocity(found.constant_plane, transmission.nominal, **shown))
-    yield figure_file("force_velocity_field", force_velocity(found.plane, transmission.nominal, **shown))
+    shown: dict[str, Any] = {"output": output, "title": title, "required": demands(required, output), "limits": limits}
+    planes = {"force_velocity": found.plane_of_constant_parameters, "force_velocity_field": found.plane}
+    for name, plane in planes.items():
+        yield figure_file(name, force_velocity(plane, transmission.nominal, **shown))
 
 
 def section(found: DriveOutcome, winding: WindingOutcome, output: Output) -> Section:
@@ -78,7 +79,7 @@ def section(found: DriveOutcome, winding: WindingOutcome, output: Output) -> Sec
 
 def envelope_table(found: DriveOutcome) -> pd.DataFrame:
     """Torque over speed of the flux map and of the constant parameters, and the MTPV current of the flux map."""
-    columns = {"speed_rpm": found.envelope.speed / RPM}
+    columns: dict[str, object] = {"speed_rpm": found.envelope.speed / RPM}
     columns |= _envelope_columns("field", found.envelope) | _envelope_columns("constant", found.constant_envelope)
     return pd.DataFrame({**columns, "i_d_mtpv_A": found.mtpv_direct, "i_q_mtpv_A": found.mtpv_quadrature})
 
@@ -107,13 +108,19 @@ def _text(found: DriveOutcome, winding: WindingOutcome) -> str:
     )  # fmt: skip
     return (
         f"At full current the flux map gives {winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm, the mean "
-        f"over one electrical period (± bounds the error of the mesh), with {winding.peak_torque_ripple:.2f} Nm between "
-        f"its largest and its smallest value. With saturation in every number the chosen winding has a base speed of "
-        f"{field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters say "
-        f"{100 * (constant.base_speed / field.base_speed - 1):+.1f} % in base speed, "
-        f"{100 * (constant.peak_torque / field.peak_torque - 1):+.1f} % in peak torque and "
-        f"{100 * (constant.maximum_power / field.maximum_power - 1):+.1f} % in largest power; {comparison}."
+        f"over one electrical period (± bounds the error of the mesh), with {winding.peak_torque_ripple:.2f} Nm "
+        "between its largest and its smallest value. With saturation in every number the chosen winding has a base "
+        f"speed of {field.base_speed / RPM:.0f} rpm and {field.power_at_base_speed:.0f} W there; constant parameters "
+        f"say {_difference(constant.base_speed, field.base_speed)} in base speed, "
+        f"{_difference(constant.peak_torque, field.peak_torque)} in peak torque and "
+        f"{_difference(constant.maximum_power, field.maximum_power)} in largest power; {comparison}."
     )
+
+
+def _difference(value: float | None, reference: float | None) -> str:
+    if value is None or not reference:
+        return "nothing to compare"
+    return f"{100 * (value / reference - 1):+.1f} %"
 
 
 def _envelope_columns(name: str, envelope: Envelope) -> dict[str, object]:
@@ -135,11 +142,9 @@ def _envelopes(found: DriveOutcome, winding: WindingOutcome) -> tuple[dict[str, 
     return {_name(one): one.envelope for one in shown}, _name(found.neighbour(turns))
 
 
-def _demand(
-    required: Requirements, transmission: Transmission, output: Output
-) -> tuple[RequiredPoint, ...]:
-    speed = required.velocity_at_force_peak / transmission.nominal
-    return (RequiredPoint(f"peak {output.effort}", speed, required.force_peak * transmission.nominal),)
+def _demand(required: Requirements, transmission: Transmission, output: Output) -> tuple[RequiredPoint, ...]:
+    demand = shaft_demand(required, transmission)
+    return (RequiredPoint(f"peak {output.effort}", demand.base_speed, demand.torque_peak),)
 
 
 def _name(pair: Neighbour) -> str:

@@ -28,9 +28,9 @@ def section(found: LossMap) -> Section:
     """What the losses rest on and where the machine is best."""
     stands_in = f", which stand in for {found.steel}" if found.law_is_of_another_grade else ""
     text = (
-        f"Copper at {found.winding_temperature:g} °C ({100 * found.end_turn_share:.0f} % of its loss in the end turns), "
-        f"iron by the loss data of {found.law.grade}{stands_in}, eddy currents in the magnets; currents are the least "
-        "that the flux map allows at each torque and speed. Without bearings, windage and the inverter."
+        f"Copper at {found.winding_temperature:g} °C ({100 * found.end_turn_share:.0f} % of its loss in the end "
+        f"turns), iron by the loss data of {found.law.grade}{stands_in}, eddy currents in the magnets; currents are "
+        "the least that the flux map allows at each torque and speed. Without bearings, windage and the inverter."
     )
     table = pd.DataFrame([_row("motor", found.motor), _row("generator", found.generator)])
     return Section(

@@ -7,6 +7,7 @@ from typing import Iterator
 import numpy as np
 import pandas as pd
 
+from drivetrain.matching import MatchOutcome
 from electrical.winding_selection import Winding
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from figures.files import File, table_file
@@ -25,8 +26,8 @@ def files(found: WindingOutcome) -> Iterator[File]:
     yield table_file(TABLE, windings_table(found))
 
 
-def section(found: WindingOutcome, inputs: WindingInputs) -> Section:
-    """Turns, wires in hand and the length that they need."""
+def section(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | None) -> Section:
+    """Turns, wires in hand and the length that they need; match: the length that the match had counted on."""
     table = windings_table(found)
     fullest = table[table.fullest & ((table.turns - found.wound.turns).abs() <= _SHOWN)].reset_index(drop=True)
     caption = (
@@ -37,18 +38,20 @@ def section(found: WindingOutcome, inputs: WindingInputs) -> Section:
         "Winding",
         (
             _key_numbers(found),
-            f"{found.reason} Decision: {length_reason(found, inputs)}",
+            f"{found.reason} Decision: {length_reason(found, inputs, match)}",
             Table(fullest.drop(columns=["fullest", "chosen"]), caption, marked=tuple(fullest.index[fullest.chosen])),
         ),
     )
 
 
-def length_reason(found: WindingOutcome, inputs: WindingInputs) -> str:
-    """Why the active length is what it is."""
+def length_reason(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | None) -> str:
+    """Why the active length is what it is, and not that of the match."""
+    instead = "" if match is None else f" instead of the {match.chosen.active_length / MILLIMETRE:.2f} mm of the match"
     short = "; the longest that is allowed, too short for it" if found.length.short else ""
     return (
-        f"{found.length.length / MILLIMETRE:.1f} mm of active length, set by {found.length.set_by.name}{short}. The "
-        f"match counts on a packing factor of {inputs.limits.packing_limit:g} and on a ratio that is any number; "
+        f"{found.length.length / MILLIMETRE:.1f} mm of active length{instead}, set by "
+        f"{found.length.set_by.name}{short}. "
+        f"The match counts on a packing factor of {inputs.limits.packing_limit:g} and on a ratio that is any number; "
         f"{found.wound.turns} turns of {found.wound.strands} wires fill {found.chosen.packing:.3f}, the teeth give "
         "their own ratio, and the torque is that of the flux map at the best current angle, less "
         f"{100 * found.peak_torque_error / found.peak_torque:.2f} % that the mesh may have put on top."

@@ -61,4 +61,4 @@ def winding_resistivity(study: Study) -> float:
         temperature_coefficient=materials.copper_temperature_coefficient,
         reference_temperature=materials.copper_reference_temperature,
     )
-    return copper.resistivity(study.winding_selection.si.winding_temperature)
+    return float(copper.resistivity(study.winding_selection.si.winding_temperature))

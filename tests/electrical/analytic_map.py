@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from drivetrain.requirements import Requirements, Transmission
+from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.resistance import COPPER_RESISTIVITY_20
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import WindingLimits, Wire
@@ -44,7 +44,8 @@ def flux_map(machine=LINEAR, angles=6, points=15) -> FluxMap:
     psi_d, psi_q = machine.flux_linkage(d, q)
     wave = np.cos(2 * pi * np.arange(angles) / angles)[:, None, None]
     torque = 1.5 * POLE_PAIRS * (psi_d * q - psi_q * d) + RIPPLE / 2 * q / AMPERE_TURNS * wave
-    tables = {"psi_d": psi_d + 1e-4 * wave, "psi_q": psi_q + 1e-4 * wave, "torque": torque, "iterations": 4 + 0 * torque}
+    tables = {"psi_d": psi_d + 1e-4 * wave, "psi_q": psi_q + 1e-4 * wave, "torque": torque}
+    tables["iterations"] = 4 + 0 * torque
     data = xr.Dataset(
         {name: (("angle", "id", "iq"), table) for name, table in tables.items()},
         {"angle": np.arange(angles) * pi / 3 / POLE_PAIRS / angles, "id": i_d, "iq": i_q},
@@ -66,6 +67,7 @@ REQUIRED = Requirements(
     velocity_at_force_peak=1.6, power_peak=4253.0, force_at_power_peak=1343.0, velocity_at_power_peak=3.2,
 )  # fmt: skip
 TRANSMISSION = Transmission(nominal=2.3 * MILLIMETRE, largest=2.4 * MILLIMETRE)
+DEMAND = shaft_demand(REQUIRED, TRANSMISSION)
 INPUTS = WindingInputs(
     wire=Wire(0.5 * MILLIMETRE, COPPER_RESISTIVITY_20),
     limits=WindingLimits(

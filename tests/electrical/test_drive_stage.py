@@ -5,11 +5,11 @@ import pytest
 
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, Saturating, TRANSMISSION, flux_map
+from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
 
 
 def driven(machine_map):
-    winding = winding_stage(machine_map, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    winding = winding_stage(machine_map, MATCHED, DEMAND, INPUTS)
     return winding, drive_stage(machine_map, winding, INPUTS)
 
 
@@ -27,7 +27,7 @@ def test_on_a_linear_map_both_models_say_the_same(linear):
     _, found = linear
     assert found.envelope.torque == pytest.approx(found.constant_envelope.torque, rel=1e-5)
     assert found.field.base_speed == pytest.approx(found.constant.base_speed, rel=1e-6)
-    assert found.plane.current_peak == pytest.approx(found.constant_plane.current_peak, abs=0.02, nan_ok=True)
+    assert found.plane.current_peak == pytest.approx(found.plane_of_constant_parameters.current_peak, abs=0.02, nan_ok=True)
     for pair in found.neighbours:
         assert pair.field.maximum_power == pytest.approx(pair.constant.maximum_power, rel=1e-4)
 

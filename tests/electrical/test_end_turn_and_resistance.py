@@ -97,7 +97,8 @@ def test_both_forms_of_the_resistance_agree_with_a_single_resistivity():
 
 def test_warm_copper_closes_the_gap_to_the_printed_resistance():
     warm = PRINTED_WINDING | {"resistivity": copper_resistivity(45.0)}
-    assert 2 * phase_resistance(**warm, end_turn_length=end_turn_length(**TOOTH_COIL)) == pytest.approx(27.4e-3, rel=0.01)
+    resistance = phase_resistance(**warm, end_turn_length=end_turn_length(**TOOTH_COIL))
+    assert 2 * resistance == pytest.approx(27.4e-3, rel=0.01)
 
 
 def test_copper_resistivity():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from electrical.final_length import LENGTH_STEP, LengthNeed, final_length, length_for_damping, length_for_force
+from electrical.final_length import LENGTH_STEP, LengthNeed, final_length, length_for_damping, length_for_torque
 from electrical.resistance import phase_resistance
 from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
@@ -10,9 +10,8 @@ from units import MILLIMETRE
 MM = MILLIMETRE
 
 
-def test_a_force_needs_the_length_that_gives_its_torque():
-    length = length_for_force(2700.0, 1.8e-3, 131.0)
-    assert 131.0 * length / 1.8e-3 == pytest.approx(2700.0)
+def test_a_torque_needs_the_length_that_gives_it():
+    assert 131.0 * length_for_torque(4.86, 131.0) == pytest.approx(4.86)
 
 
 @pytest.mark.parametrize("wanted", [10e3, 40e3])

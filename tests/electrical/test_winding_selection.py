@@ -12,10 +12,10 @@ from electrical.resistance import COPPER_RESISTIVITY_20
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import (
     PerTurnMachine,
-    Wire,
     WindingError,
     WindingLimits,
     WindingRequirement,
+    Wire,
     evaluate_windings,
     feasible_pairs,
     required_base_speed,

@@ -5,6 +5,7 @@ from math import sqrt
 
 import pytest
 
+from drivetrain.requirements import shaft_demand
 from electrical.dq import base_speed, mtpa_currents
 from electrical.final_length import LENGTH_STEP
 from electrical.short_circuit import winding_damping
@@ -12,14 +13,15 @@ from electrical.winding_selection import WindingError
 from electrical.winding_stage import winding_stage
 from tests.electrical.analytic_map import (
     AMPERE_TURNS,
+    DEMAND,
     ERROR,
     INPUTS,
     LINEAR,
     MATCHED,
     REQUIRED,
     RIPPLE,
-    Saturating,
     TRANSMISSION,
+    Saturating,
     flux_map,
 )
 from units import MILLIMETRE
@@ -29,7 +31,7 @@ MAP = flux_map()
 
 @pytest.fixture(scope="module")
 def found():
-    return winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
 
 
 def test_the_wound_machine_has_the_peak_force_at_the_largest_ratio(found):
@@ -37,7 +39,7 @@ def test_the_wound_machine_has_the_peak_force_at_the_largest_ratio(found):
     force = found.peak_torque / TRANSMISSION.largest
     step = LENGTH_STEP / found.wound.active_length
     assert REQUIRED.force_peak <= (1 - ERROR) * force <= REQUIRED.force_peak * (1 + step)
-    assert found.length.set_by.name == "the peak force" and not found.length.short
+    assert found.length.set_by.name == "the peak torque" and not found.length.short
     assert found.wound.active_length == found.length.length
 
 
@@ -74,7 +76,7 @@ def test_every_neighbour_has_its_maximum_power(found):
 
 def test_saturation_makes_the_machine_longer_than_its_no_load_flux_promises():
     mapped = flux_map(Saturating())
-    found = winding_stage(mapped, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    found = winding_stage(mapped, MATCHED, DEMAND, INPUTS)
     promised = found.chosen.no_load_torque_constant * found.limits.current_peak
     assert found.peak_torque < 0.9 * promised
     assert (1 - ERROR) * found.peak_torque / TRANSMISSION.largest >= REQUIRED.force_peak
@@ -84,7 +86,10 @@ def test_a_damping_that_is_asked_for_is_reached():
     """20 kNs/m asked: the machine short-circuited has it, by its no-load flux at the nominal ratio."""
     wanted = 20e3
     found = winding_stage(
-        MAP, MATCHED, replace(REQUIRED, maximum_damping=wanted), TRANSMISSION, replace(INPUTS, damping_asked=True)
+        MAP,
+        MATCHED,
+        shaft_demand(replace(REQUIRED, maximum_damping=wanted), TRANSMISSION),
+        replace(INPUTS, damping_asked=True),
     )
     reached = winding_damping(
         torque_constant=found.chosen.no_load_torque_constant,
@@ -95,19 +100,19 @@ def test_a_damping_that_is_asked_for_is_reached():
 
 
 def test_no_damping_asks_for_no_length():
-    none = replace(REQUIRED, maximum_damping=0.0)
-    found = winding_stage(MAP, MATCHED, none, TRANSMISSION, replace(INPUTS, damping_asked=True))
-    assert found.length.set_by.name == "the peak force"
+    none = replace(DEMAND, damping=0.0)
+    found = winding_stage(MAP, MATCHED, none, replace(INPUTS, damping_asked=True))
+    assert found.length.set_by.name == "the peak torque"
 
 
 def test_a_length_beyond_the_longest_is_cut_and_said():
-    found = winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, replace(INPUTS, longest=20 * MILLIMETRE))
+    found = winding_stage(MAP, MATCHED, DEMAND, replace(INPUTS, longest=20 * MILLIMETRE))
     assert found.length.short and found.wound.active_length == 20 * MILLIMETRE
 
 
 def test_a_distributed_winding_has_the_longer_end_turns():
     spread = replace(flux_map(), coil_pitch=3)
-    tooth, distributed = (winding_stage(one, MATCHED, REQUIRED, TRANSMISSION, INPUTS).wound for one in (MAP, spread))
+    tooth, distributed = (winding_stage(one, MATCHED, DEMAND, INPUTS).wound for one in (MAP, spread))
     assert distributed.end_turn_length > 4 * tooth.end_turn_length
     assert distributed.phase_resistance > 1.8 * tooth.phase_resistance
 
@@ -115,7 +120,7 @@ def test_a_distributed_winding_has_the_longer_end_turns():
 def test_a_current_limit_below_every_winding_names_its_key():
     limits = replace(INPUTS.limits, phase_current_rms=1.0)
     with pytest.raises(WindingError, match="winding_selection.phase_current_max_rms_A"):
-        winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, replace(INPUTS, limits=limits))
+        winding_stage(MAP, MATCHED, DEMAND, replace(INPUTS, limits=limits))
 
 
 def test_rows_are_of_the_overload_current(found):

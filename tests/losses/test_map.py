@@ -122,7 +122,8 @@ def test_parts_of_the_map():
 def test_field_weakening_costs_copper():
     low, high = (power_losses(plane(1.0, rpm), WOUND, TABLE) for rpm in (4000.0, 9000.0))
     weakening = plane(1.0, 9000.0).i_d
-    assert weakening < -10 and high.copper - low.copper == pytest.approx(1.5 * WOUND.phase_resistance * weakening**2, rel=1e-6)
+    more = 1.5 * WOUND.phase_resistance * weakening**2
+    assert weakening < -10 and high.copper - low.copper == pytest.approx(more, rel=1e-6)
     unreachable = power_losses(plane(6.0, 9000.0), WOUND, TABLE)
     assert np.isnan(unreachable.total) and np.isnan(unreachable.efficiency)
 

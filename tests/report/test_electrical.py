@@ -1,5 +1,7 @@
 """What people read of flux map, winding and drive: files under their names, sections with the one peak torque."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,8 +10,18 @@ from drivetrain.output import Wheel
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
 from figures.report import render_report
-from report import drive, flux_map as map_report, winding as winding_report
-from tests.electrical.analytic_map import INPUTS, MATCHED, REQUIRED, Saturating, TRANSMISSION, flux_map
+from report import drive
+from report import flux_map as map_report
+from report import winding as winding_report
+from tests.electrical.analytic_map import (
+    DEMAND,
+    INPUTS,
+    MATCHED,
+    REQUIRED,
+    TRANSMISSION,
+    Saturating,
+    flux_map,
+)
 from units import RPM
 
 MAP = flux_map(Saturating())
@@ -17,7 +29,7 @@ MAP = flux_map(Saturating())
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, REQUIRED, TRANSMISSION, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +63,8 @@ def test_table_of_windings(winding, tmp_path):
 def test_files_of_the_drive(driven, winding, tmp_path):
     folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED, Wheel()), tmp_path)
     envelope = pd.read_csv(folder / "flux_map_envelope.csv")
-    wanted = [f"{q}_{model}_{unit}" for model in ("field", "constant")
-              for q, unit in (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))]  # fmt: skip
+    columns = (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))
+    wanted = [f"{quantity}_{model}_{unit}" for model in ("field", "constant") for quantity, unit in columns]
     assert list(envelope) == ["speed_rpm", *wanted, "i_d_mtpv_A", "i_q_mtpv_A"]
     assert envelope.torque_field_Nm[0] == pytest.approx(winding.peak_torque)
     both = pd.read_csv(folder / "windings_field.csv")
@@ -64,13 +76,15 @@ def test_files_of_the_drive(driven, winding, tmp_path):
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
     said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
     assert said in drive.section(driven, winding, Wheel()).content[0]
-    key = next(one for one in winding_report.section(winding, INPUTS).content[0].numbers if one.name == "peak torque")
+    numbers = winding_report.section(winding, INPUTS, None).content[0].numbers
+    key = next(one for one in numbers if one.name == "peak torque")
     assert key.value == winding.peak_torque
     assert winding_report.windings_table(winding).query("chosen").peak_torque_Nm.item() == pytest.approx(key.value)
     assert drive.windings_table(driven, winding).query("chosen").peak_torque_field_Nm.item() == pytest.approx(key.value)
 
 
 def test_sections_can_be_printed(winding):
-    sections = (map_report.section(MAP), winding_report.section(winding, INPUTS))
+    match = SimpleNamespace(chosen=SimpleNamespace(active_length=0.04))
+    sections = (map_report.section(MAP), winding_report.section(winding, INPUTS, match))
     page = render_report(sections, title="", subtitle="")
-    assert "Newton iterations" in page and "set by the peak force" in page
+    assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak torque" in page
