@@ -1,8 +1,8 @@
 """Gearbox and motor matched over the stator radius for every slot count, and the machine to go on with.
 
 Cross-sections come from the fits of the optima, with the overload torque as the field gives it and as it would be if
-torque grew in proportion to current. Beside them: the machine that the study states, with its torques from the field and
-as somebody else states them, and the chosen machine under the requirements and linkage that the study states.
+torque grew in proportion to current. Beside them: the machine that the study states, with its torques from the field
+and as somebody else states them, and the chosen machine under the requirements and linkage that the study states.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from geometry.family import MatchedMachine
 from geometry.machine import Machine
 from geometry.winding import star_of_slots
 from magnetostatics.case import FieldCase
-from magnetostatics.model import FieldModel
+from magnetostatics.model import FieldModel, FieldSolution
 from magnetostatics.positions import period_points
 from magnetostatics.torque import maxwell_torque
 from optimisation.fits import FittedSection, SectionFits
@@ -422,13 +422,15 @@ def solved_section(case: FieldCase, machine: Machine) -> SizedSection:
     """
     model = case.model(machine)
     area = model.section.half_slot_area * model.section.half_slots_per_coil_side
-    nominal, overload = (_mean_torque(case, model, density) for density in (case.nominal_density, case.overload_density))
+    densities = case.nominal_density, case.overload_density
+    nominal, overload = (_mean_torque(case, model, density) for density in densities)
     return sized_section(case, machine, area, nominal, overload)
 
 
 def _mean_torque(case: FieldCase, model: FieldModel, density: float) -> float:
     """The torque that optima have, mean over one electrical period [Nm/m], at an amplitude of the current [A/m^2]."""
-    section, solutions = model.section, []
+    section = model.section
+    solutions: list[FieldSolution] = []
     for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):
         solutions.append(model.solve(point, start=solutions[-1] if solutions else None))
     return sum(maxwell_torque(solution) for solution in solutions) / len(solutions)

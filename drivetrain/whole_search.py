@@ -1,7 +1,7 @@
 """The loop closed: radius, slots, active length, ratio and linkage together, beside the design found stage by stage.
 
-The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the front
-are then solved by the field.
+The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
+front are then solved by the field.
 """
 
 from __future__ import annotations

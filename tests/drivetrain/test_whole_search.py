@@ -9,14 +9,7 @@ import pytest
 from drivetrain.match import MatchError
 from drivetrain.matching import match_stage
 from drivetrain.whole_design import OBJECTIVES
-from drivetrain.whole_search import (
-    FieldTask,
-    WholeSearchInputs,
-    optimise_stage,
-    questions,
-    solve_idle,
-    solve_section,
-)
+from drivetrain.whole_search import FieldTask, WholeSearchInputs, optimise_stage, questions, solve_idle, solve_section
 from geometry.half_cell import MeshDensity
 from losses.iron import FrequencyTerms
 from materials.errors import MaterialError
