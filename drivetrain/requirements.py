@@ -48,6 +48,17 @@ class Linkage:
 
 
 @dataclass(frozen=True)
+class Transmission:
+    """Overall transmission from wheel travel to the rotor, linkage and gears together, tau_t [m/rad].
+
+    nominal: in the nominal wheel position; largest: along the travel, where a force asks for the largest torque
+    """
+
+    nominal: float
+    largest: float
+
+
+@dataclass(frozen=True)
 class InstallationSpace:
     """Room for the actuator; radius_max: its largest outer radius [m], None where nothing limits it."""
 

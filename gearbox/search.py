@@ -10,7 +10,7 @@ fatigue rating.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from math import ceil, floor
+from math import ceil, floor, log
 
 import numpy as np
 
@@ -29,6 +29,7 @@ SERIES_2 = (0.55, 0.65, 0.75, 0.85, 0.95, 1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4
 PREFERRED_MODULES = tuple(sorted(module * MILLIMETRE for module in SERIES_1 + SERIES_2))
 
 _BATCH = 400  # sets whose fatigue is rated at once
+_THREE_PLANETS = 14.9  # stage ratio at which three planets touch
 _PLANET_OFFSETS = range(-1, 5)  # planet teeth below half the difference of ring and sun; shifts close the rest
 
 
@@ -116,12 +117,9 @@ class GearRequest:
     width: WidthLimits = WidthLimits()
     rack: BasicRack = ISO_53_A
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.stage_count >= 1 and self.ratio ** (1 / self.stage_count) > 2):
-            raise GearError(
-                f"a stage with a fixed ring needs a ratio above 2; {self.stage_count} stages for a ratio of "
-                f"{self.ratio:.4g} have {self.ratio ** (1 / max(self.stage_count, 1)):.3g} each: use fewer stages"
-            )
+            raise GearError(_no_planets(self.ratio, self.stage_count))
 
     @property
     def stage_ratios(self) -> tuple[float, float]:
@@ -133,6 +131,18 @@ class GearRequest:
         """The gearbox of one set of teeth and the face widths [m] of its stages."""
         stages = tuple(Stage(gears, float(width)) for width in widths)
         return GearTrain(stages, self.envelope_diameter, self.construction, self.rules.material.density, self.friction)
+
+
+def _no_planets(ratio: float, stages: int) -> str:
+    """Sentence on stages whose ratio leaves no room for planets."""
+    fewer = max((count for count in range(1, stages) if ratio ** (1 / count) > 2), default=0)
+    advice = "a faster rotor needs a larger ratio (match.speed_max_rad_per_s)"
+    return (
+        f"a stage with a fixed ring needs a ratio above 2; {stages} stages for a ratio of {ratio:.4g} have "
+        f"{ratio ** (1 / max(stages, 1)):.3g} each: "
+        + (f"use fewer stages, match.gearbox_stages = {fewer}" if fewer else f"{advice}, or drive directly, "
+           "match.gearbox_stages = 0")
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -234,17 +244,30 @@ def _form(request, rows, module):
 def _require_any(checks, count, request):
     """Raise GearError with the constraint that stands in the way when no set passed all the checks."""
     if not checks:
-        low, high = request.stage_ratios
-        raise GearError(
-            f"no tooth numbers with {request.planets} equally spaced planets give a stage ratio of {low:.3f} to "
-            f"{high:.3f} inside {request.envelope_diameter / MILLIMETRE:g} mm with at least "
-            f"{request.teeth.least_sun_teeth} teeth on the sun: relax the ratio tolerance, the envelope or the "
-            "smallest module"
-        )
+        raise GearError(_no_teeth(request))
     if count:
         return
     together = {name: np.concatenate([one[name] for one in checks]) for name in checks[0]}
     raise GearError(_in_the_way(together, request))
+
+
+def _no_teeth(request: GearRequest) -> str:
+    """Sentence on a stage ratio that no whole teeth give."""
+    low, high = request.stage_ratios
+    diameter, least = request.envelope_diameter, request.teeth.least_sun_teeth
+    largest = 1 + floor(diameter / min(request.modules)) / least
+    return (
+        f"no tooth numbers with {request.planets} equally spaced planets give a stage ratio of {low:.3f} to "
+        f"{high:.3f} inside {diameter / MILLIMETRE:g} mm with at least {least} teeth on the sun, where {largest:.4g} "
+        "is the largest: "
+        + (f"use more stages, match.gearbox_stages = {_stages_for(request.ratio, largest)}" if low > largest
+           else "widen gearbox.ratio_tolerance or change gearbox.planets")
+    )  # fmt: skip
+
+
+def _stages_for(ratio: float, largest: float) -> int:
+    """Fewest stages whose ratio is below the largest, with room for three planets (a ratio below 14.9)."""
+    return ceil(log(ratio) / log(min(largest, _THREE_PLANETS)))
 
 
 def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict:
@@ -278,8 +301,21 @@ def _in_the_way(checks, request):
     return (
         f"none of {checks[name].size} sets of teeth and profile shifts for a ratio of {request.ratio:.4g} in "
         f"{request.stage_count} stages fits; the constraint in the way is the {name}, which {int(checks[name].sum())} "
-        "of them satisfy: relax it, or the ratio, the number of planets or the envelope"
+        f"of them satisfy: {_WAYS_OUT[name]}"
     )
+
+
+_OTHER_TEETH = "widen gearbox.ratio_tolerance or change match.gearbox_stages, for other teeth to choose from"
+_WAYS_OUT = {
+    "undercut of sun or planet": _OTHER_TEETH,
+    "profile shift of the ring": _OTHER_TEETH,
+    "contact ratio": _OTHER_TEETH,
+    "interference with the fillets": _OTHER_TEETH,
+    "tip thickness": _OTHER_TEETH,
+    "gap between the planets": "use fewer planets (gearbox.planets) or more stages (match.gearbox_stages)",
+    "rim of the ring in the envelope": "use a larger stator, which the gears have to stay inside "
+    "(match.chosen_stator_diameter_mm)",
+}
 
 
 def _others(checks, name):
@@ -434,6 +470,7 @@ def _too_weak(gears, request, load):
     return (
         f"all {count} sets of teeth that fit are too weak; the strongest, module "
         f"{gears.sun.module[best] / MILLIMETRE:g} mm with {width[best] / MILLIMETRE:g} mm wide teeth, reaches a safety "
-        f"factor {kind} of {reached[kind][best] * wanted:.3f} in stage 1 where {wanted:g} is wanted: relax that "
-        "factor, use a better steel, a larger envelope, a smaller torque or wider teeth"
+        f"factor {kind} of {reached[kind][best] * wanted:.3f} in stage 1 where {wanted:g} is wanted: lower "
+        f"gearbox.safety_{kind}, use a better steel (gearbox.material), a larger stator "
+        "(match.chosen_stator_diameter_mm) or more planets (gearbox.planets)"
     )

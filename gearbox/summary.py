@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from gearbox.bodies import Body
 from gearbox.efficiency import loss_factor
 from gearbox.planetary_set import share_a_factor
-from gearbox.rating import Rules, StageLoad
-from gearbox.train import GearTrain
+from gearbox.rating import Rules, StageLoad, StageRating
+from gearbox.train import GearTrain, Stage
 from units import DEGREE, MILLIMETRE
 
 
-def train_summary(train: GearTrain, load: StageLoad, rules: Rules) -> dict:
+def train_summary(train: GearTrain, load: StageLoad, rules: Rules) -> dict[str, Any]:
     """Numbers of a gearbox and, under "stages", of each stage with its safety factors."""
     pairs = zip(train.stages, train.rate(load, rules), train.bodies, strict=True)
     step_up, step_down = train.efficiency
@@ -25,7 +28,7 @@ def train_summary(train: GearTrain, load: StageLoad, rules: Rules) -> dict:
     }
 
 
-def _stage(number, stage, rating, bodies) -> dict:
+def _stage(number: int, stage: Stage, rating: StageRating, bodies: tuple[Body, ...]) -> dict[str, Any]:
     gears = stage.gears
     shared = share_a_factor(*gears.teeth[:2]) or share_a_factor(*gears.teeth[1:])
     row = {"stage": number, "module_mm": float(gears.sun.module / MILLIMETRE), "ratio": float(gears.ratio)}

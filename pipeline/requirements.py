@@ -295,7 +295,7 @@ def main(name: str) -> None:
 
     def work(run):
         from figures.style import save_png
-        from study.read import check_study
+        from study.usable import check_study
         from vehicle.errors import VehicleError
 
         check_study(study)

@@ -137,7 +137,7 @@ def main(name: str) -> None:
 
     def work(run):
         from pipeline.parallel import default_workers, run_parallel
-        from study.read import check_study
+        from study.usable import check_study
 
         check_study(study)
         blocks = run_parallel(solve_block, tasks_of(study), default_workers(), run.checkpoint(), "sweep")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Iterator, Mapping
+from typing import Any, Iterator, Mapping
 
 import numpy as np
 import pandas as pd
@@ -16,7 +16,6 @@ from figures.vehicle import force_velocity_cloud, obstacle_peaks, requirement_ba
 from units import FACTORS, drawn, split_unit
 from vehicle.demands import ROAD_SHOWN, RideCase, RideRequirements, required
 from vehicle.indices import RideSummary, WorkingPoint
-from vehicle.ride import Run
 from vehicle.ride_means import RideMeans
 from vehicle.road import Obstacle
 from vehicle.traces import Trace
@@ -116,12 +115,10 @@ def _set_by(found: RideRequirements) -> dict[str, str]:
     return {"maximum_damping": "given", **words}
 
 
-def _bars(
-    found: RideRequirements, stated: StatedRequirements | None
-) -> list[tuple[str, float, float | None, str]]:
+def _bars(found: RideRequirements, stated: StatedRequirements | None) -> list[tuple[str, Any, Any, str]]:
     values, words = drawn(required(found), _REQUIRED), _set_by(found)
-    given = drawn(stated.requirements, _REQUIRED) if stated is not None else dict.fromkeys(_REQUIRED)
-    return [(heading(name), values[name], given[name], words[split_unit(name)[0]]) for name in _REQUIRED]
+    given = drawn(stated.requirements, _REQUIRED) if stated is not None else {}
+    return [(heading(name), values[name], given.get(name), words[split_unit(name)[0]]) for name in _REQUIRED]
 
 
 def _table(found: RideRequirements, stated: StatedRequirements | None) -> pd.DataFrame:
@@ -181,17 +178,12 @@ def _obstacle_figure(found: RideRequirements, case: RideCase) -> Figure:
 
 def _obstacle_points(found: RideRequirements, case: RideCase) -> dict[tuple[float, float], WorkingPoint]:
     """Working point of the peak force by speed [m/s] and amplitude [m]."""
-    damping = found.demands.force_peak.set_by.damping
-    both = zip(case.overload_runs, found.overload, strict=True)
-    return {_obstacle(run): one.at_force_peak for run, one in both if _is_shown(run, damping)}
-
-
-def _is_shown(run: Run, damping: str) -> bool:
-    return isinstance(run.scenario.road, Obstacle) and run.damping.name == damping
-
-
-def _obstacle(run: Run) -> tuple[float, float]:
-    return run.scenario.speed, run.scenario.road.amplitude
+    points, damping = {}, found.demands.force_peak.set_by.damping
+    for run, one in zip(case.overload_runs, found.overload, strict=True):
+        road = run.scenario.road
+        if isinstance(road, Obstacle) and run.damping.name == damping:
+            points[run.scenario.speed, road.amplitude] = one.at_force_peak
+    return points
 
 
 def _few(amplitudes: list[float]) -> list[float]:

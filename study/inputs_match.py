@@ -13,11 +13,12 @@ from drivetrain.matching import (
     PrintedMachine,
     StatedDemands,
 )
-from drivetrain.planetary import GearLaws, PrintedDynamicFactor
+from drivetrain.planetary import NITRIDED_STEEL, PLANETS, GearLaws, PrintedDynamicFactor
 from drivetrain.requirements import Linkage, Requirements
 from drivetrain.whole_search import WholeSearchInputs
 from materials.conductor import Conductor
 from study.chain import drives, searches_linkage
+from study.inputs_drive import largest_equivalent_mass
 from study.schema import MatchSection, Study
 
 _OVERLOADS: dict[str, OverloadLaw] = {law.name: law for law in (FieldOverload(), LinearOverload())}
@@ -30,10 +31,10 @@ def match_inputs(study: Study) -> MatchInputs:
     return MatchInputs(
         slots=study.sweep.slots,
         limits=MatchLimits(section.length_max, section.speed_max),
-        scales=CostScales(section.mass_max, section.equivalent_mass_max, section.radius_limit),
+        scales=CostScales(section.mass_max, largest_equivalent_mass(study), section.radius_limit),
         weights=CostWeights(section.weight_inertia, section.weight_radius),
         gear_stages=section.gearbox_stages,
-        planets=study.gearbox.planets,
+        planets=PLANETS if study.gearbox is None else study.gearbox.planets,
         gear_laws=gear_laws(study.match),
         resistivity=_winding_resistivity(study),
         overload=_OVERLOADS[section.overload_torque],
@@ -57,8 +58,11 @@ def part_materials(study: Study) -> PartMaterials:
 
 
 def gear_laws(section: MatchSection) -> GearLaws:
-    """Gears by their scaling laws, with the dynamic factor as the thesis prints it (eq. 3.118)."""
+    """Gears by their scaling laws, with the dynamic factor as the thesis prints it (eq. 3.118); those of the thesis for
+    a direct drive, which has no gears to size."""
     found = section.si
+    if section.gearbox_stages == 0:
+        return NITRIDED_STEEL
     return GearLaws(
         density=found.steel_density,
         youngs_modulus=found.gear_youngs_modulus,

@@ -19,7 +19,7 @@ ALLOWED = {
     "effects": {"materials", "geometry"},
     "workbench": {"effects", "magnetostatics", "geometry", "materials", "electrical", "figures"},
     "study": {"geometry", "materials", "electrical", "drivetrain", "gearbox", "vehicle"},
-    "figures": {"geometry", "magnetostatics"},
+    "figures": {"geometry", "magnetostatics", "drivetrain", "vehicle"},
     "pipeline": {
         "study",
         "figures",

@@ -13,9 +13,9 @@ from drivetrain.constraints import (
     PlanetClearance,
     SpeedLimit,
     largest_stage_ratio,
-    winding_damping,
 )
 from drivetrain.match import bound_constraints, damping_constraint, force_constraints, linear_overload
+from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
 RATIO = 2.3 * MILLIMETRE

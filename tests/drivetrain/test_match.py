@@ -19,7 +19,8 @@ from drivetrain.match import (
     match_over_radius,
     planet_clearance,
 )
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine, operating_map
+from electrical.dq import DriveLimits, operating_map
+from electrical.synchronous_machine import SynchronousMachine
 from units import MILLIMETRE
 
 

@@ -9,7 +9,8 @@ from study.chain import drives, searches_linkage
 from study.errors import StudyError
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
-from study.read import STUDIES, check_study, read_study
+from study.read import STUDIES, read_study
+from study.usable import check_study
 from units import DEGREE
 from vehicle import thesis
 

@@ -23,10 +23,10 @@ from study.convert import (
     to_wire,
 )
 from study.errors import StudyError
-from study.key_units import QUANTITIES, converted, same_quantity, split_unit
-from study.read import STUDIES, check_study, read_study, study_files
+from study.read import STUDIES, read_study, study_files
+from study.schema import Study
 from study.sentences import section_class
-from study.schema import Section, Study
+from study.usable import check_study
 
 
 @pytest.fixture(scope="module")
@@ -165,19 +165,3 @@ def test_the_template_states_every_key_that_the_motorcycle_states_but_those_of_i
     data = [tomllib.loads((STUDIES / f"{name}.toml").read_text()) for name in ("motorcycle", "template")]
     keys = [{f"{section}.{key}" for section, table in study.items() for key in table} for study in data]
     assert keys[1] <= keys[0] and all(key.startswith(OF_THE_THESIS_ALONE) for key in keys[0] - keys[1])
-
-
-@pytest.mark.parametrize("row", QUANTITIES, ids=lambda row: next(iter(row)))
-def test_units_of_one_quantity_convert_back(row):
-    for unit in row:
-        for other in row:
-            assert same_quantity(unit, other)
-            if row[unit] is not None:
-                assert converted(converted(3.0, unit, other), other, unit) == pytest.approx(3.0)
-
-
-def test_the_unit_is_the_longest_that_fits():
-    assert split_unit("airgap_mm") == ("airgap", "mm")
-    assert split_unit("ratio_max_mm_per_rad") == ("ratio_max", "mm_per_rad")
-    assert split_unit("packing_factor") == ("packing_factor", "")
-    assert not same_quantity("mm", "kg") and converted(1.0, "degC", "K") is None

@@ -28,7 +28,10 @@ def workers():
     return CountingWorkers()
 
 
-def small_case(maximum_damping=6e3, bumps=(0.03,), curves=quarter_car_damping()):
+BOTH = quarter_car_damping()
+
+
+def small_case(maximum_damping=6e3, bumps=(0.03,), curves=BOTH):
     road = road_scenarios(roughness_of_class("B"), CRUISE_SPEED, 1.0, [3, 4])
     overload = obstacle_scenarios(obstacle_shape(), [8.0], bumps, 0.5)
     return RideCase(quarter_car(), tuple(curves), tuple(road), tuple(overload), maximum_damping)

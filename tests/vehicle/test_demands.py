@@ -13,6 +13,7 @@ from vehicle.errors import VehicleError
 from vehicle.most_demanding import SetBy
 from vehicle.ride import simulate
 from vehicle.scenarios import summaries
+from vehicle.traces import traces
 
 
 def test_the_nominal_point_is_the_mean_of_the_damping_with_the_largest_rms_force(found):
@@ -110,3 +111,16 @@ def test_a_case_needs_damping_and_road(case):
         replace(case, maximum_damping=-1.0)
     with pytest.raises(VehicleError, match="a name of its own, found one, one"):
         replace(case, curves=(linear_damper(1e3, "one"), linear_damper(2e3, "one")))
+
+
+def test_traces_may_end_early(case):
+    histories = simulate(case.road_runs[:2])
+    kept = traces(["maximum", "minimum"], histories, until=0.25)
+    assert dict(kept.data.sizes) == {"run": 2, "wheel": 1, "time": 251}
+    assert kept.by_name["minimum"].stroke == pytest.approx(histories[1].stroke[:251])
+
+
+def test_only_a_random_road_has_a_seed(case):
+    assert [scenario.road.random_seed for scenario in (*case.road, *case.overload)] == [3, 4, None]
+    assert [scenario.title for scenario in case.road] == ["random road, seed 3", "random road, seed 4"]
+    assert case.overload[0].title == case.overload[0].name

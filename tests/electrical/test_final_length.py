@@ -2,9 +2,9 @@
 
 import pytest
 
-from drivetrain.constraints import winding_damping
-from drivetrain.final_length import LENGTH_STEP, LengthNeed, final_length, length_for_damping, length_for_force
+from electrical.final_length import LENGTH_STEP, LengthNeed, final_length, length_for_damping, length_for_force
 from electrical.resistance import phase_resistance
+from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
 MM = MILLIMETRE
