@@ -85,7 +85,8 @@ class OverloadForce(_Force):
 class RegenerativeDamping(Constraint):
     """Damping of the short-circuited machine, c = alpha l^2 / (l + l_et) / tau_t^2 (3.92).
 
-    damping: c required [Ns/m], 0 where none is; alpha: [Ns m/rad^2 per metre], see ``damping_coefficient``; end_turn_length: [m]
+    damping: c required [Ns/m], 0 where none is; alpha: [Ns m/rad^2 per metre], see ``damping_coefficient``;
+        end_turn_length: [m]
     Equations 3.94 and 3.97 call required and available damping by mixed names; the available one must not be smaller.
     """
 
@@ -95,7 +96,7 @@ class RegenerativeDamping(Constraint):
     name: str = "regenerative damping"
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
-        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 where no damping is asked."""
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping."""
         if self.damping == 0:
             return super().minimum_length(ratio)
         a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)
@@ -188,8 +189,8 @@ class PlanetClearance(Constraint):
         stage_ratio = (self.linkage_ratio / ratio) ** (1 / self.stage_count)
         return (
             f"{self.planets} planets overlap at a stage ratio of {stage_ratio:.2f}, they clear each other below "
-            f"{largest_stage_ratio(self.planets):.2f}; it would need more stages, or {self.minimum_ratio() / MILLIMETRE:.3f} "
-            "mm/rad at least"
+            f"{largest_stage_ratio(self.planets):.2f}; it would need more stages, or "
+            f"{self.minimum_ratio() / MILLIMETRE:.3f} mm/rad at least"
         )
 
 

@@ -1,7 +1,7 @@
 """Masses and inertias of the active parts of a machine: laminations, magnets, shaft and copper as they are drawn.
 
-``SteelCylinder`` is the thesis's motor, a solid cylinder of steel in which a solid rotor turns; it stays for the thesis's
-printed numbers. It is some 40 % too heavy: most of a slot is air and insulation, and copper ends stand in the air.
+``SteelCylinder`` is the thesis's motor, a solid cylinder of steel in which a solid rotor turns; it stays for the
+numbers that the thesis prints. It is some 40 % too heavy: most of a slot is air and insulation.
 """
 
 from __future__ import annotations

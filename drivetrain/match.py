@@ -37,7 +37,7 @@ BOUND_SLACK = 1e-6  # relative; an optimum this close to a bound counts as lying
 
 
 class MatchError(ValueError):
-    """No gearbox and motor satisfy the enforced constraints; the message names them and the key of the study to move."""
+    """No gearbox and motor satisfy the enforced constraints; the message names them and the key to move."""
 
 
 @dataclass(frozen=True)
@@ -327,7 +327,7 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
 
 def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
     """Largest of the enforced minimum lengths [m] at these ratios [m/rad]."""
-    return np.max([constraint.minimum_length(ratio) for constraint in enforced], axis=0)[()]
+    return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
 
 
 def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
@@ -405,12 +405,12 @@ def match_curves(
     ratio = np.asarray(ratio, dtype=float)
     design = _Design(section, enforced, gearbox, model)
     costs = [design.evaluate(value) for value in ratio]
-    lengths = {c.name: c.minimum_length(ratio) for c in enforced + reported if np.any(c.minimum_length(ratio) > 0)}
+    lengths = {c.name: np.asarray(c.minimum_length(ratio)) for c in enforced + reported}
     low, high = ratio_bounds(enforced, gearbox)
     return MatchCurves(
         ratio=ratio,
-        minimum_length=lengths,
-        active_length=active_length(enforced, ratio),
+        minimum_length={name: length for name, length in lengths.items() if np.any(length > 0)},
+        active_length=np.asarray(active_length(enforced, ratio)),
         feasible=(ratio >= low) & (ratio <= high),
         radius_term=np.array([cost.radius_term for cost in costs]),
         inertia_term=np.array([cost.inertia_term for cost in costs]),
@@ -443,11 +443,11 @@ def match_over_radius(
 
     results = [_attempt(at, radius) for radius in radii]
     refusals = tuple(result if isinstance(result, str) else None for result in results)
-    rows = np.array([_numbers(result) for result in results])
+    ratio, length, cost = np.array([_numbers(result) for result in results]).T
     if None not in refusals:
         raise MatchError(f"no stator radius has a match; at {radii[-1] / MILLIMETRE:g} mm: {refusals[-1]}")
-    best = at(_best_radius(at, radii, rows[:, 2]))
-    return RadiusMatches(radii, *rows.T, refusals, best, _edge_sentence(best, radii))
+    best = at(_best_radius(at, radii, cost))
+    return RadiusMatches(radii, ratio, length, cost, refusals, best, _edge_sentence(best, radii))
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Gearbox and motor matched over the stator radius for every slot count, and the machine to go on with.
 
 Cross-sections come from the fits of the optima, with the overload torque as the field gives it and as it would be if
-torque grew in proportion to current. Beside them: the machine that the study states, with its torques from the field and
-as somebody else states them, and the chosen machine under the requirements and linkage that the study states.
+torque grew in proportion to current. Beside them: the machine that the study states, with its torques from the field
+and as somebody else states them, and the chosen machine under the requirements and linkage that the study states.
 """
 
 from __future__ import annotations
@@ -40,9 +40,12 @@ from geometry.family import MatchedMachine
 from geometry.machine import Machine
 from geometry.winding import star_of_slots
 from magnetostatics.case import FieldCase
-from magnetostatics.per_turn import mean_torque
+from magnetostatics.model import FieldModel, FieldSolution
+from magnetostatics.positions import period_points
+from magnetostatics.torque import maxwell_torque
 from optimisation.fits import FittedSection, SectionFits
 from optimisation.polynomial_fits import FitRefused
+from optimisation.states import STEPS_OVER_PERIOD
 from units import MILLIMETRE
 
 RADII = 46  # stator radii at which the matches over the radius are given
@@ -265,9 +268,11 @@ class Matcher:
     def over_radius(self, slots: int, overload: OverloadLaw) -> SlotMatches:
         """Over the range of the fits."""
         try:
+            low, high = self.fits.range(slots)
+            self.section(slots, overload, low)  # a refused fit may have one radius only, or none
             found = match_over_radius(
                 partial(self.section, slots, overload),
-                np.linspace(*self.fits.range(slots), RADII),
+                np.linspace(low, high, RADII),
                 constraints_of=self.constraints,
                 gearbox=self.gearbox,
                 model=self.model,
@@ -338,8 +343,8 @@ def match_stage(
     chosen, reason = _choose(matcher, best)
     cylinder = SteelCylinder(inputs.gear_laws.density)
     beside = matcher if stated is None else replace(matcher, requirements=stated.requirements, linkage=stated.linkage)
-    reference = _solved_reference(case)
-    return MatchOutcome(
+    reference = solved_section(case, case.family.reference)
+    found = MatchOutcome(
         chosen=chosen,
         machine=chosen.section.machine,
         overload=inputs.overload,
@@ -354,6 +359,9 @@ def match_stage(
         curves=matcher.curves(chosen),
         length_limit=inputs.limits.active_length,
     )
+    for line in (reason, *found.notes):
+        print(f"match: {line}")
+    return found
 
 
 def matched_machine(found: MatchOutcome) -> MatchedMachine:
@@ -407,15 +415,25 @@ def _comparison(chosen: Match, best: RadiusMatches) -> str:
 _SOLVED = "the study's machine with its torques from the field solution, mean over a period"
 
 
-def _solved_reference(case: FieldCase) -> SizedSection:
-    """The machine that the study states, its torques solved."""
-    machine = case.family.reference
+def solved_section(case: FieldCase, machine: Machine) -> SizedSection:
+    """A machine as the match sees it, with slot area and torques from the field in the place of the fits.
+
+    Raises GeometryError where it cannot be built.
+    """
     model = case.model(machine)
-    nominal, overload = (
-        mean_torque(model, density, case.packing) for density in (case.nominal_density, case.overload_density)
-    )
     area = model.section.half_slot_area * model.section.half_slots_per_coil_side
+    densities = case.nominal_density, case.overload_density
+    nominal, overload = (_mean_torque(case, model, density) for density in densities)
     return sized_section(case, machine, area, nominal, overload)
+
+
+def _mean_torque(case: FieldCase, model: FieldModel, density: float) -> float:
+    """The torque that optima have, mean over one electrical period [Nm/m], at an amplitude of the current [A/m^2]."""
+    section = model.section
+    solutions: list[FieldSolution] = []
+    for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):
+        solutions.append(model.solve(point, start=solutions[-1] if solutions else None))
+    return sum(maxwell_torque(solution) for solution in solutions) / len(solutions)
 
 
 def _as_cylinder(matcher: Matcher, reference: SizedSection) -> dict[str, NamedMatch | None]:

@@ -1,7 +1,7 @@
 """Planetary gearbox from its ratio and envelope: diameters, face width against pitting, mass, inertia.
 
-Equal planets in each stage (three in the thesis), ring fixed, sun on the fast side, carrier on the slow side; stage 1 is the slow one, driven by
-the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118, corrected where noted.
+Equal planets in each stage (three in the thesis), ring fixed, sun on the fast side, carrier on the slow side; stage 1
+is the slow one, driven by the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118, corrected where noted.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ NITRIDED_STEEL = GearLaws(
 
 @dataclass(frozen=True)
 class StageShape:
-    """Pitch diameters of one stage from its ratio i = 1 + d_ring/d_sun and ring pitch diameter [m]; planets: their number."""
+    """Pitch diameters of one stage from its ratio i = 1 + d_ring/d_sun, ring pitch diameter [m], number of planets."""
 
     ratio: float
     ring_diameter: float

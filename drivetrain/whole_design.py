@@ -19,6 +19,7 @@ from pymoo.optimize import minimize
 from scipy.optimize import differential_evolution
 
 from drivetrain.constraints import RegenerativeDamping
+from drivetrain.masses import MassModel
 from drivetrain.match import (
     Constraints,
     CopperLoading,
@@ -29,7 +30,6 @@ from drivetrain.match import (
     evaluate_cost,
     planet_clearance,
 )
-from drivetrain.masses import MassModel
 from drivetrain.pareto import non_dominated
 from drivetrain.planetary import GearboxDesign, GearboxError
 from losses.iron import FrequencyTerms
@@ -51,7 +51,7 @@ class RoadSection(SizedSection):
     @classmethod
     def of(cls, section: SizedSection, idle: FrequencyTerms) -> RoadSection:
         """A cross-section of the match with its idle loss."""
-        return cls(*(getattr(section, one.name) for one in fields(SizedSection)), idle)
+        return cls(**{one.name: getattr(section, one.name) for one in fields(SizedSection)}, idle=idle)
 
 
 @dataclass(frozen=True)
@@ -257,7 +257,8 @@ def improved(
 ) -> RatedDesign:
     """The design of least (damping: most) ``objective`` with the others no worse than ``allowed``, for all slots.
 
-    allowed: (4,) in the order of OBJECTIVES, the entry of the objective itself does not count; the start where none keeps it
+    allowed: (4,) in the order of OBJECTIVES, the entry of the objective itself does not count
+    returns the start where no design keeps them
     Differential evolution for each slot count, with ``start`` among the first designs of its own.
     """
     bounds = np.array(allowed)

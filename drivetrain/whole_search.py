@@ -1,12 +1,12 @@
 """The loop closed: radius, slots, active length, ratio and linkage together, beside the design found stage by stage.
 
-The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the front
-are then solved by the field.
+The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
+front are then solved by the field.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import partial
 from math import inf
 
@@ -15,7 +15,7 @@ import numpy as np
 from drivetrain.linkage_stage import LinkageFront
 from drivetrain.masses import DrawnParts
 from drivetrain.match import MatchError, SizedSection, damping_constraint
-from drivetrain.matching import Matcher, MatchInputs, MatchOutcome
+from drivetrain.matching import Matcher, MatchInputs, MatchOutcome, solved_section
 from drivetrain.requirements import Linkage, Requirements
 from drivetrain.whole_design import (
     OBJECTIVES,
@@ -33,8 +33,7 @@ from geometry.machine import Machine
 from losses.iron import FrequencyTerms
 from losses.map import field_losses
 from magnetostatics.case import FieldCase
-from magnetostatics.model import FieldModel, OperatingPoint
-from magnetostatics.per_turn import mean_torque
+from magnetostatics.model import OperatingPoint
 from materials.iron_loss import IronLossLaw, iron_loss_law
 from optimisation.fits import SectionFits
 from tasks import Workers
@@ -67,19 +66,6 @@ class FieldTask:
     case: FieldCase
     machine: Machine
     law: IronLossLaw
-
-
-@dataclass(frozen=True)
-class SolvedSection:
-    """What the field says of a cross-section in the place of the fits.
-
-    torque_nominal, torque_overload: means over a period [Nm/m]; coil_side_area [m^2]; idle: loss without current [W/m]
-    """
-
-    torque_nominal: float
-    torque_overload: float
-    coil_side_area: float
-    idle: FrequencyTerms
 
 
 @dataclass(frozen=True)
@@ -257,24 +243,16 @@ def _front(problem: WholeProblem, staged: RatedDesign, inputs: WholeSearchInputs
 
 
 def solve_idle(task: FieldTask) -> FrequencyTerms:
-    """Idle loss of one machine, magnets included."""
-    return _idle_terms(task.case.model(task.machine), task)
-
-
-def solve_section(task: FieldTask) -> SolvedSection:
-    """Torques, slot area and idle loss of one machine."""
-    case, model = task.case, task.case.model(task.machine)
-    nominal, overload = (
-        mean_torque(model, density, case.packing) for density in (case.nominal_density, case.overload_density)
-    )
-    area = model.section.half_slot_area * model.section.half_slots_per_coil_side
-    return SolvedSection(nominal, overload, area, _idle_terms(model, task))
-
-
-def _idle_terms(model: FieldModel, task: FieldTask) -> FrequencyTerms:
-    found = field_losses(model, OperatingPoint(0.0, 0.0, 0.0, task.case.packing), task.law)
+    """Idle loss of one machine, magnets included [W/m over the electrical frequency]."""
+    case = task.case
+    found = field_losses(case.model(task.machine), OperatingPoint(0.0, 0.0, 0.0, case.packing), task.law)
     total = found.stator + found.rotor + found.magnet
     return FrequencyTerms(*(float(getattr(total, one.name)) for one in fields(FrequencyTerms)))
+
+
+def solve_section(task: FieldTask) -> RoadSection:
+    """The cross-section of one machine with torques, slot area and idle loss from the field."""
+    return RoadSection.of(solved_section(task.case, task.machine), solve_idle(task))
 
 
 def _shown(
@@ -293,20 +271,12 @@ def _solved(
     workers: Workers,
 ) -> tuple[SolvedDesign, ...]:
     """Every design with its cross-section by the field in the place of the fits."""
-    sections = {name: problem.section_at(one.design.slots, one.design.stator_outer_radius) for name, one in shown}
-    tasks = {name: FieldTask(case, section.machine, law) for name, section in sections.items()}
+    machines = {
+        name: problem.section_at(one.design.slots, one.design.stator_outer_radius).machine for name, one in shown
+    }
+    tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
     found = workers.map("designs", solve_section, tasks)
     return tuple(
-        SolvedDesign(name, one, RatedDesign(one.design, problem.values(one.design, _by_field(sections[name], found[name]))))
+        SolvedDesign(name, one, RatedDesign(one.design, problem.values(one.design, found[name])))
         for name, one in shown
-    )
-
-
-def _by_field(section: SizedSection, solved: SolvedSection) -> SizedSection:
-    return replace(
-        section,
-        torque_per_length_nominal=solved.torque_nominal,
-        torque_per_length_overload=solved.torque_overload,
-        coil_side_area=solved.coil_side_area,
-        idle=solved.idle,
     )

@@ -5,7 +5,7 @@ The functions take the results of ``drivetrain.match`` by their attributes and i
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
@@ -28,38 +28,74 @@ from figures.style import (
 from units import MILLIMETRE, written
 
 _TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
-Look = dict[str, object]
+Look = dict[str, Any]
 _OVERLOADS = (("field", "-"), ("linear", "--"))  # where the overload torque comes from, and its line
 _MOST_MARKERS = 10  # on one line
 _WORST_COST_SHOWN = 1.6  # times the least one; the cost has a pole towards small ratios
 
 
 class Curves(Protocol):
-    """``drivetrain.match.MatchCurves``: ratio [m/rad], lengths [m], costs, all over the ratio (n,)."""
+    """``drivetrain.match.MatchCurves``, arrays over the transmission ratio (n,)."""
 
-    ratio: np.ndarray
-    minimum_length: dict[str, np.ndarray]
-    active_length: np.ndarray
-    feasible: np.ndarray
-    cost: np.ndarray
+    @property
+    def ratio(self) -> np.ndarray:
+        """[m/rad]"""
+
+    @property
+    def minimum_length(self) -> dict[str, np.ndarray]:
+        """Asked for by each constraint [m]."""
+
+    @property
+    def active_length(self) -> np.ndarray:
+        """[m]"""
+
+    @property
+    def feasible(self) -> np.ndarray:
+        """Bool."""
+
+    @property
+    def cost(self) -> np.ndarray:
+        """Dimensionless."""
 
 
 class Optimum(Protocol):
-    """What is drawn of ``drivetrain.match.Match``: ratio and its bounds [m/rad], length [m], cost."""
+    """What is drawn of ``drivetrain.match.Match``."""
 
-    transmission_ratio: float
-    active_length: float
-    ratio_bounds: tuple[float, float]
-    total_cost: float
+    @property
+    def transmission_ratio(self) -> float:
+        """[m/rad]"""
+
+    @property
+    def active_length(self) -> float:
+        """[m]"""
+
+    @property
+    def ratio_bounds(self) -> tuple[float, float]:
+        """[m/rad]"""
+
+    @property
+    def total_cost(self) -> float:
+        """Dimensionless."""
 
 
 class OverRadius(Protocol):
-    """``drivetrain.match.RadiusMatches``: radii, active_length [m], transmission_ratio [m/rad], cost (n,), NaN: none."""
+    """``drivetrain.match.RadiusMatches``, arrays over the stator radius (n,), NaN where there is no match."""
 
-    radii: np.ndarray
-    transmission_ratio: np.ndarray
-    active_length: np.ndarray
-    cost: np.ndarray
+    @property
+    def radii(self) -> np.ndarray:
+        """[m]"""
+
+    @property
+    def transmission_ratio(self) -> np.ndarray:
+        """[m/rad]"""
+
+    @property
+    def active_length(self) -> np.ndarray:
+        """[m]"""
+
+    @property
+    def cost(self) -> np.ndarray:
+        """Dimensionless."""
 
 
 @styled
@@ -78,7 +114,8 @@ def match_curves(curves: Curves, match: Optimum, *, output: Output, title: str, 
     letter(axes)
     show_grid(*axes)
     figure.suptitle(title)
-    handles, names = (sum(parts, []) for parts in zip(*(axis.get_legend_handles_labels() for axis in axes)))
+    legends = [axis.get_legend_handles_labels() for axis in axes]
+    handles, names = ([one for legend in legends for one in legend[part]] for part in range(2))
     figure.legend(handles, names, loc="outside lower center", ncols=4, frameon=False)
     return figure
 
@@ -147,13 +184,14 @@ def best_row(slots: int, overload: str, radius: float, match: Optimum, output: O
 def _draw_lengths(axes: Axes, curves: Curves, match: Optimum, length_limit: float, output: Output) -> None:
     unit = output.ratio_unit
     ratio, optimum = in_unit(curves.ratio, unit), in_unit(match.transmission_ratio, unit)
+    look: Look
     for number, (name, length) in enumerate(curves.minimum_length.items()):
         enforced = np.all(length <= curves.active_length * (1 + 1e-9))
         look = {"linestyle": "-", "label": name} if enforced else {"linestyle": ":", "label": f"{name} (not enforced)"}
         axes.plot(ratio, length / MILLIMETRE, color=SERIES[number % len(SERIES)], **look)
     active = np.where(curves.feasible, curves.active_length, np.nan) / MILLIMETRE
     axes.plot(ratio, active, color=BLACK, linewidth=4.5, alpha=0.35, label="possible solutions")
-    bound = {"color": GREY, "linewidth": 1.2}
+    bound: Look = {"color": GREY, "linewidth": 1.2}
     axes.axvline(in_unit(match.ratio_bounds[0], unit), linestyle="--", label="smallest allowed ratio", **bound)
     axes.axhline(length_limit / MILLIMETRE, linestyle="-.", label="active length limit", **bound)
     axes.plot(optimum, match.active_length / MILLIMETRE, label="optimum", **_cross())
@@ -179,7 +217,7 @@ def _draw_cost(axes: Axes, curves: Curves, match: Optimum, output: Output) -> No
 
 
 def _cross() -> Look:
-    look = {"marker": "X", "markersize": 11, "color": VERMILION, "markeredgecolor": "white", "linestyle": ""}
+    look: Look = {"marker": "X", "markersize": 11, "color": VERMILION, "markeredgecolor": "white", "linestyle": ""}
     return look | {"zorder": 5}
 
 
@@ -201,5 +239,6 @@ def _draw_over_radius(axes: Axes, table: pd.DataFrame, column: str, style: dict[
 def _draw_best(axes: Axes, best: pd.DataFrame | None, column: str) -> None:
     if best is None or best.empty:
         return
-    look = {"marker": "*", "markersize": 14, "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
+    look: Look = {"marker": "*", "markersize": 14, "markerfacecolor": "white", "markeredgecolor": BLACK}
+    look |= {"linestyle": ""}
     axes.plot(best.stator_outer_radius_mm, best[column], label="chosen", zorder=5, **look)

@@ -53,7 +53,7 @@ def section(found: MatchOutcome, output: Output) -> Section:
             *(Remark(f"{one.name}: {note}.") for one in beside for note in _notes(one)),
             *_assumption(found),
             _cylinder(found),
-            Table(parts_table(found.parts), "Active parts at the matched length; inertias about the axis of the rotor."),
+            Table(parts_table(found.parts), "Active parts at the matched length; inertias about the rotor's axis."),
         ),
     )
 
@@ -136,7 +136,8 @@ def _cylinder(found: MatchOutcome) -> str:
     """What the drawn parts weigh against the thesis's cylinder."""
     return (
         f"The active parts weigh {found.parts.total:.2f} kg as they are drawn; the solid cylinder of steel that the "
-        f"thesis takes for the motor (eq. 3.101) would weigh {found.cylinder_mass:.2f} kg. Cost and constraints rest on the parts."
+        f"thesis takes for the motor (eq. 3.101) would weigh {found.cylinder_mass:.2f} kg. The cost counts "
+        "the parts."
     )
 
 

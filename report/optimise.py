@@ -1,4 +1,4 @@
-"""The search over everything for people: the designs that the field solved, what the stages leave on the table, the front."""
+"""The search over everything for people: designs solved by the field, what the stages leave on the table, the front."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _UNITS = (("mass_kg", "kg"), ("equivalent_mass_kg", "kg"), ("damping_kNs_per_m",
 _TEXT = (
     "Slot count, radius, active length, ratio and linkage are varied together against the design that match and "
     "linkage arrived at one after the other. The model is that of the match: fits of the cross-section, masses of the "
-    "drawn parts, scaling laws of the gears. The loss on the road is copper loss of the RMS force and idle loss of iron "
-    "and magnets at the RMS velocity. Copper loss alone would be the inverse of the damping; the idle loss is smaller "
-    "with a larger transmission ratio, which turns the rotor more slowly, and sets the two against each other."
+    "drawn parts, scaling laws of the gears. The loss on the road is copper loss of the RMS force and idle loss of "
+    "iron and magnets at the RMS velocity. Copper loss alone would be the inverse of the damping; the idle loss is "
+    "smaller with a larger transmission ratio, which turns the rotor more slowly, and sets the two against each other."
 )
 
 

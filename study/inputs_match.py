@@ -3,14 +3,7 @@
 from __future__ import annotations
 
 from drivetrain.masses import PartMaterials
-from drivetrain.match import (
-    CostScales,
-    CostWeights,
-    DampingEnforced,
-    DampingReading,
-    DampingReported,
-    MatchLimits,
-)
+from drivetrain.match import CostScales, CostWeights, DampingEnforced, DampingReading, DampingReported, MatchLimits
 from drivetrain.matching import (
     ChosenByHand,
     FieldOverload,

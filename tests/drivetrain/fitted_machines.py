@@ -1,4 +1,4 @@
-"""Cross-sections in the place of the fits of a study: polynomials of the motorcycle's optima, and a field case for them."""
+"""Cross-sections in the place of a study's fits: polynomials of the motorcycle's optima, and a field case for them."""
 
 from dataclasses import dataclass
 from math import sqrt

@@ -24,7 +24,8 @@ def meshed(machine):
     area = np.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
     sides = corners + np.roll(corners, 1, axis=1)
     square = (sides**2).sum(axis=(0, 1)) / 12  # mean of r^2 over a triangle: that of its edges' middles
-    densities = {"stator_iron": 7650 * 0.95, "rotor_iron": 7650 * 0.95, "magnet_": 7500, "shaft": 7800, "slot_": 0.3 * 8900}
+    iron, copper = 7650 * 0.95, 0.3 * 8900
+    densities = {"stator_iron": iron, "rotor_iron": iron, "magnet_": 7500, "shaft": 7800, "slot_": copper}
     found = {}
     for start, density in densities.items():
         cells = np.concatenate([where for name, where in section.mesh.subdomains.items() if name.startswith(start)])

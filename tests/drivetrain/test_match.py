@@ -158,9 +158,9 @@ def test_a_machine_too_weak_is_refused_by_name(thesis):
 def test_one_stage_whose_planets_overlap_is_refused_with_a_key_that_helps(thesis):
     """The optimum of one stage, 3.94 mm/rad, needs a stage ratio of 43: three planets stop at 14.93."""
     gearbox = replace(thesis.gearbox, stage_count=1)
-    found = constraints_of(thesis)
+    enforced = (*constraints_of(thesis).enforced, planet_clearance(gearbox))
     with pytest.raises(MatchError, match="set by the planet clearance.*more match.gearbox_stages"):
-        match(thesis.section, enforced=(*found.enforced, planet_clearance(gearbox)), gearbox=gearbox, model=thesis.model)
+        match(thesis.section, enforced=enforced, gearbox=gearbox, model=thesis.model)
 
 
 def test_planets_bind_where_the_optimum_lies_beyond_them(thesis):

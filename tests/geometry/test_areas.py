@@ -55,7 +55,7 @@ def test_areas_are_those_of_the_meshed_regions(machine):
     for name, area in areas.items():
         assert getattr(found, name) == pytest.approx(area, rel=2e-3), name
     assert found.shaft + found.rotor_laminations == pytest.approx(shaft + core, rel=2e-3)
-    assert found.shaft == pytest.approx(shaft, rel=2e-2)  # its circle is twenty chords, in which no field is of interest
+    assert found.shaft == pytest.approx(shaft, rel=2e-2)  # its circle is few chords
 
 
 def test_the_parts_and_what_is_between_them_fill_the_circle():
