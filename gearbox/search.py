@@ -9,14 +9,16 @@ fatigue rating.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from math import ceil, floor, log
 
 import numpy as np
 
 from gearbox.bodies import Construction, inertia_at_carrier, total_mass
 from gearbox.errors import GearError, TooWeakError
-from gearbox.involute import ISO_53_A, BasicRack
+from gearbox.involute import ISO_53_A, BasicRack, Gear
 from gearbox.planetary_set import PlanetarySet, equally_spaced, planetary_set, share_a_factor
 from gearbox.rating import Rules, StageLoad, rate_stage, static_ratings, survives
 from gearbox.train import GearTrain, Stage
@@ -64,7 +66,7 @@ class WidthLimits:
     sun_diameters: float = 1.6
     step: float = 0.5 * MILLIMETRE
 
-    def range(self, gears: PlanetarySet):
+    def range(self, gears: PlanetarySet) -> tuple[np.ndarray, np.ndarray]:
         """Smallest and largest number of steps, (batch)."""
         most = np.minimum(self.most_modules * gears.sun.module, self.sun_diameters * 2 * gears.sun.reference_radius)
         least = np.ceil(self.modules * gears.sun.module / self.step - 1e-9)
@@ -127,7 +129,7 @@ class GearRequest:
         ends = (self.ratio * (1 - self.ratio_tolerance), self.ratio * (1 + self.ratio_tolerance))
         return tuple(end ** (1 / self.stage_count) for end in ends)
 
-    def train(self, gears: PlanetarySet, widths) -> GearTrain:
+    def train(self, gears: PlanetarySet, widths: Iterable[float]) -> GearTrain:
         """The gearbox of one set of teeth and the face widths [m] of its stages."""
         stages = tuple(Stage(gears, float(width)) for width in widths)
         return GearTrain(stages, self.envelope_diameter, self.construction, self.rules.material.density, self.friction)
@@ -192,7 +194,7 @@ def strongest(request: GearRequest, keep: int = 10) -> tuple[Found, str | None]:
     weakness: None, or the sentence on what is too weak and what to change; the wanted factors then do not hold.
     Raises TooWeakError when not even the smallest share is reached, GearError when no teeth fit at all.
     """
-    refusals = []
+    refusals: list[TooWeakError] = []
     for share in SHARES:
         safety = Safety(**{kind: share * value for kind, value in asdict(request.safety).items()})
         try:
@@ -215,7 +217,7 @@ def tooth_numbers(request: GearRequest, module: float) -> list[tuple[int, int, i
     return found
 
 
-def _sets_that_fit(request):
+def _sets_that_fit(request: GearRequest) -> tuple[PlanetarySet, int]:
     """All sets that pass the geometry, as a batch, and how many were formed; one module at a time, for the memory."""
     kept, checks = [], []
     for module in request.modules:
@@ -228,7 +230,7 @@ def _sets_that_fit(request):
     return _join(kept), sum(next(iter(one.values())).size for one in checks)
 
 
-def _form(request, rows, module):
+def _form(request: GearRequest, rows: np.ndarray, module: float) -> PlanetarySet:
     """Sets of a module from rows of tooth numbers, with every pair of shifts of the grid."""
     limits = request.teeth
     steps = [
@@ -241,7 +243,7 @@ def _form(request, rows, module):
     return planetary_set(teeth, np.tile(shifts, (len(rows), 1)).T, modules, planets=request.planets, rack=request.rack)
 
 
-def _require_any(checks, count, request):
+def _require_any(checks: list[dict[str, np.ndarray]], count: int, request: GearRequest) -> None:
     """Raise GearError with the constraint that stands in the way when no set passed all the checks."""
     if not checks:
         raise GearError(_no_teeth(request))
@@ -270,7 +272,7 @@ def _stages_for(ratio: float, largest: float) -> int:
     return ceil(log(ratio) / log(min(largest, _THREE_PLANETS)))
 
 
-def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict:
+def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict[str, np.ndarray]:
     """Which sets satisfy each geometric constraint, by its name, (batch) of bool."""
     limits, m = request.teeth, gears.sun.module
     meshes = (gears.sun_mesh, gears.ring_mesh)
@@ -292,10 +294,10 @@ def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict:
         }  # fmt: skip
 
 
-def _in_the_way(checks, request):
+def _in_the_way(checks: dict[str, np.ndarray], request: GearRequest) -> str:
     """Sentence on the constraint without which most sets would fit, or that fewest satisfy."""
     alone = {name: int(_others(checks, name).sum()) for name in checks}
-    name = max(alone, key=alone.get)
+    name = max(alone, key=alone.__getitem__)
     if not alone[name]:
         name = min(checks, key=lambda key: checks[key].sum())
     return (
@@ -318,17 +320,17 @@ _WAYS_OUT = {
 }
 
 
-def _others(checks, name):
+def _others(checks: dict[str, np.ndarray], name: str) -> np.ndarray:
     return np.logical_and.reduce([passed for other, passed in checks.items() if other != name])
 
 
-def _shares(gears):
+def _shares(gears: PlanetarySet) -> np.ndarray:
     """Whether sun and planet or planet and ring have a common factor, (batch)."""
     sun, planet, ring = gears.teeth
     return share_a_factor(sun, planet) | share_a_factor(planet, ring)
 
 
-def _cheapest(gears, request, keep):
+def _cheapest(gears: PlanetarySet, request: GearRequest, keep: int) -> list[tuple[int, tuple[float, ...], float]]:
     """[(index, widths of the stages [m], cost)] of the best sets, different in teeth, in the order of rising cost."""
     loads = _stage_loads(request)
     static = [_static_steps(gears, load, request) for load in loads]
@@ -336,7 +338,8 @@ def _cheapest(gears, request, keep):
     if not usable.any():
         raise TooWeakError(_too_weak(gears, request, loads[0]))
     bound = np.where(usable, _cost(gears, static, request), np.inf)
-    order, best, names = np.argsort(bound, kind="stable"), [], _teeth_names(gears)
+    order, names = np.argsort(bound, kind="stable"), _teeth_names(gears)
+    best: list[tuple[int, tuple[float, ...], float]] = []
     for start in range(0, int(usable.sum()), _BATCH):
         batch = order[start : start + _BATCH]
         batch = batch[np.isfinite(bound[batch])]
@@ -348,7 +351,7 @@ def _cheapest(gears, request, keep):
     return best
 
 
-def _stage_loads(request):
+def _stage_loads(request: GearRequest) -> list[StageLoad]:
     """Load of every stage; behind stage 1 with the smallest stage ratio allowed, on the safe side for the torque."""
     found = [request.load]
     for _ in range(request.stage_count - 1):
@@ -356,7 +359,7 @@ def _stage_loads(request):
     return found
 
 
-def _least_steps(passes, least, most):
+def _least_steps(passes: Callable[[np.ndarray], np.ndarray], least: np.ndarray, most: np.ndarray) -> np.ndarray:
     """Smallest steps, (batch), in least ... most for which ``passes(steps)`` holds, most + 1 where none does.
 
     ``passes`` is taken to hold from some step on: wider teeth are stronger.
@@ -371,11 +374,11 @@ def _least_steps(passes, least, most):
     return high
 
 
-def _static_steps(gears, load, request):
+def _static_steps(gears: PlanetarySet, load: StageLoad, request: GearRequest) -> np.ndarray:
     """Width steps from which the peak torque is survived, (batch)."""
     wanted, step = request.safety, request.width.step
 
-    def passes(steps):
+    def passes(steps: np.ndarray) -> np.ndarray:
         flank, root = static_ratings(gears, steps * step, load, request.rules)
         good = [flank[name] >= wanted.static_flank for name in flank]
         return np.logical_and.reduce(good + [root[name] >= wanted.static_root for name in root])
@@ -383,17 +386,18 @@ def _static_steps(gears, load, request):
     return _least_steps(passes, *request.width.range(gears))
 
 
-def _rated(gears, batch, static, request):
+def _rated(
+    gears: PlanetarySet, batch: np.ndarray, static: list[np.ndarray], request: GearRequest
+) -> list[tuple[int, tuple[float, ...], float]]:
     """[(index, widths [m], cost)] of the sets of a batch whose stages also survive the spectrum."""
     part, wanted, step = _select(gears, batch), request.safety, request.width.step
     most = request.width.range(part)[1]
-    needed = [
-        _least_steps(
-            lambda steps, one=load: survives(part, steps * step, one, request.rules, (wanted.flank, wanted.root)),
-            least, most,
-        )
-        for load, least in zip(_stage_loads(request), static, strict=True)
-    ]  # fmt: skip
+
+    def passes(load: StageLoad, steps: np.ndarray) -> np.ndarray:
+        return survives(part, steps * step, load, request.rules, (wanted.flank, wanted.root))
+
+    loads = zip(_stage_loads(request), static, strict=True)
+    needed = [_least_steps(partial(passes, load), least, most) for load, least in loads]
     usable = np.logical_and.reduce([steps <= most for steps in needed])
     cost = _cost(part, needed, request)
     return [
@@ -402,7 +406,7 @@ def _rated(gears, batch, static, request):
     ]
 
 
-def _cost(gears, steps, request):
+def _cost(gears: PlanetarySet, steps: list[np.ndarray], request: GearRequest) -> np.ndarray:
     """Cost of sets whose stages have these width steps, (batch)."""
     scale, mass, inertia = request.cost, 0.0, 0.0
     for number, count in enumerate(steps):
@@ -416,23 +420,25 @@ def _cost(gears, steps, request):
     return cost * np.where(_shares(gears), 1 + scale.shared_factor_cost, 1.0)
 
 
-def _teeth_names(gears):
+def _teeth_names(gears: PlanetarySet) -> list[tuple[float, ...]]:
     """(module, z_sun, z_planet, z_ring) of each set, as tuples."""
     return list(zip(gears.sun.module, *gears.teeth, strict=True))
 
 
-def _best_teeth(found, names, keep):
+def _best_teeth(
+    found: list[tuple[int, tuple[float, ...], float]], names: list[tuple[float, ...]], keep: int
+) -> list[tuple[int, tuple[float, ...], float]]:
     """The cheapest of each tooth numbers and module, the ``keep`` cheapest of those."""
-    chosen = {}
+    chosen: dict[tuple[float, ...], tuple[int, tuple[float, ...], float]] = {}
     for entry in sorted(found, key=lambda one: (one[2], one[0])):
         chosen.setdefault(names[entry[0]], entry)
     return list(chosen.values())[:keep]
 
 
-def _select(gears, index):
+def _select(gears: PlanetarySet, index: np.ndarray) -> PlanetarySet:
     """Part of a batch, still a batch."""
 
-    def part(gear):
+    def part(gear: Gear) -> Gear:
         names = ("teeth", "shift", "module", "tip_radius")
         return replace(gear, **{name: getattr(gear, name)[index] for name in names})
 
@@ -441,10 +447,10 @@ def _select(gears, index):
     )
 
 
-def _join(batches):
+def _join(batches: list[PlanetarySet]) -> PlanetarySet:
     """One batch of several."""
 
-    def joined(name):
+    def joined(name: str) -> Gear:
         parts = [getattr(batch, name) for batch in batches]
         numbers = ("teeth", "shift", "module", "tip_radius")
         return replace(parts[0], **{key: np.concatenate([getattr(part, key) for part in parts]) for key in numbers})
@@ -453,7 +459,7 @@ def _join(batches):
     return PlanetarySet(joined("sun"), joined("planet"), joined("ring"), distance, batches[0].planets)
 
 
-def _too_weak(gears, request, load):
+def _too_weak(gears: PlanetarySet, request: GearRequest, load: StageLoad) -> str:
     """Sentence on the set that comes nearest to its safety factors at its largest width."""
     count, width = len(gears.centre_distance), request.width.range(gears)[1] * request.width.step
     flank, root = (np.min(list(part.values()), axis=0) for part in static_ratings(gears, width, load, request.rules))

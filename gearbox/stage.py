@@ -62,7 +62,8 @@ class StatedGears:
 class GearInputs:
     """What a study says about the gearbox.
 
-    stage_count: planetary stages; ratio_tolerance: relative; planets of a stage; friction: mean coefficient of the teeth
+    stage_count: planetary stages; ratio_tolerance: relative; planets of a stage
+    friction: mean coefficient of the teeth
     torque_class_width: of the load spectrum at the slow shaft [Nm]; life: operating time [s]
     swing: largest turn of the slow shaft between two reversals [rad], inf for a shaft that turns on; read where no
         history tells it
@@ -262,7 +263,8 @@ def _described(found: Found, weakness: str | None, request: GearRequest, stated:
 def _rated_sets(found: Found, request: GearRequest) -> tuple[RatedSet, ...]:
     rows = zip(found.trains, found.costs, found.shared, strict=True)
     return tuple(
-        RatedSet(train, cost, shared, **least_safety(train, request.load, request.rules)) for train, cost, shared in rows
+        RatedSet(train, cost, shared, **least_safety(train, request.load, request.rules))
+        for train, cost, shared in rows
     )
 
 

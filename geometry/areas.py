@@ -63,7 +63,8 @@ def _ring_moment(inner: float, outer: float) -> float:
 def _half_slot_area(machine: Machine, first: int) -> float:
     """Half a slot [m^2] from its tooth to its centre line, from the outline's point number ``first`` outwards.
 
-    Half the integral of r^2 dphi around it: straight lines along the tooth, arcs at both ends, nothing on the centre line.
+    Half the integral of r^2 dphi around it: straight lines along the tooth, arcs at both ends, nothing on the centre
+    line.
     """
     outline, axis = _tooth_side(machine)[first:], machine.slot_pitch / 2
     (r_in, from_in), (r_out, from_out) = outline[0], outline[-1]

@@ -112,7 +112,7 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
     angles = map_angles(model, grid.angles)
     tasks = {f"angle {k}": AngleTask(case, machine, float(angle), currents) for k, angle in enumerate(angles)}
     rows = workers.map("flux map", solve_angle_task, tasks)
-    data = mirrored(to_dataset(model, currents, angles, list(rows.values())))
+    data = mirrored(to_dataset(model, currents, angles.tolist(), list(rows.values())))
     error = ErrorTask(case, machine, float(angles[0]), *best_current(data, overload))
     torque, off = workers.map("torque error", torque_error_task, {"overload": error})["overload"]
     layout = model.section.layout
