@@ -49,13 +49,3 @@ class GapHalf:
         away = points - self.height(points) * centre
         unit = away / np.hypot(*away)
         return unit / (self.depth + (unit * centre).sum(0))
-
-    def sheared(self, points: np.ndarray, angle: float) -> np.ndarray:
-        """Points (2, ...) turned about the axis, by an angle [rad] on the sliding circle that falls to none on the rim.
-
-        It joins two meshes whose nodes do not quite meet on the sliding circle.
-        """
-        x, y = points
-        radius, share = np.hypot(x, y), np.clip(1 - self.height(points), 0.0, 1.0)
-        place = np.arctan2(y, x) + angle * share
-        return np.stack([radius * np.cos(place), radius * np.sin(place)])

@@ -152,7 +152,7 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
     d.arc("bore", "tip", edges - opening)
     d.arc("tip", "bore_slot", opening)
-    taper = ("tip_top",)
+    taper: tuple[str, ...] = ("tip_top",)
     if m.taper_touches_shoe:
         d.point("taper", r_open, m.taper_angle, min(3 * fine, in_shoe))
         d.arc("tip_top", "taper")

@@ -49,7 +49,8 @@ class Machine:
     """Cross-section of an inner-rotor surface-magnet machine (thesis Fig. 3.16), SI units.
 
     The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``
-    (see ``taper_angle``), straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe from the back iron.
+    (see ``taper_angle``), straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe
+    from the back iron.
     """
 
     slots: int

@@ -6,7 +6,7 @@ magnetic material within narrow bounds, while the usual slips of unit are factor
 
 from __future__ import annotations
 
-from typing import Sequence
+from collections.abc import Sequence
 
 from units import FACTORS, MU_0
 

@@ -6,9 +6,9 @@ each ``capped`` at the regenerative damping.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 
@@ -104,7 +104,9 @@ def capped(curve: DamperCurve, maximum_damping: float) -> DamperCurve:
     return bounded(curve, lambda v: maximum_damping * np.abs(v), (0.0,), f"F/v up to {maximum_damping:g} Ns/m")
 
 
-def bounded(curve: DamperCurve, bound: Callable, knots: tuple[float, ...], note: str) -> DamperCurve:
+def bounded(
+    curve: DamperCurve, bound: Callable[[np.ndarray], np.ndarray], knots: tuple[float, ...], note: str
+) -> DamperCurve:
     """The curve with |F| <= bound(v); exact, since the points where the two cross are added.
 
     bound: force [N] over velocity, straight between the knots [m/s]

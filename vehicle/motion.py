@@ -5,8 +5,9 @@ A state is an array (2, 2 + n, runs): coordinates (body height, pitch, wheel hei
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import ceil
-from typing import Iterable, NamedTuple, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Callable, Iterator, Sequence, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -151,7 +152,7 @@ def simulate_and_keep(what: Callable[[RideHistory], Kept], runs: Sequence[Run]) 
     return [found[k] for k in range(len(runs))]
 
 
-def _kind(runs: Sequence[Run], number: int) -> tuple:
+def _kind(runs: Sequence[Run], number: int) -> tuple[int, float, float]:
     """What runs must share to be integrated together; the vehicle by its first place in the list."""
     run = runs[number]
     vehicle = next(k for k, other in enumerate(runs) if other.vehicle == run.vehicle)
