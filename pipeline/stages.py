@@ -17,6 +17,7 @@ from drivetrain.matching import match_stage, matched_machine
 from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
 from drivetrain.whole_search import optimise_stage
+from drivetrain.requirements import shaft_demand
 from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.winding_selection import WindingError
@@ -92,6 +93,7 @@ _MACHINE: tuple[Node, ...] = (
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
+    View(shaft_demand),
     Stage("winding", winding_stage, "turns, wires, final length", winding.files),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
