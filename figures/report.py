@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import pandas as pd
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from figures.style import png_bytes
@@ -141,10 +142,8 @@ def render_report(
     return template_environment().get_template(TEMPLATE).render(sections=tuple(sections), **page)
 
 
-def template_environment():
+def template_environment() -> Environment:
     """Where the page templates are found; everything put into them is escaped."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     folder = FileSystemLoader(Path(__file__).parent)
     return Environment(loader=folder, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from drivetrain.requirements import Requirements, StatedRequirements
 from study.inputs_drive import drive_requirements
 from study.needed import needed
-from study.schema import DampersSection, MotorcycleSection, QuarterCarSection, Study
+from study.schema import MotorcycleSection, QuarterCarSection, Study
 from units import to_si
 from vehicle.damping import DamperCurve, linear_damper, mixed, read_damper_curve
 from vehicle.demands import RideCase
@@ -112,13 +112,6 @@ def damper_curve(study: Study, name: str) -> DamperCurve:
 def table_file(study: Study, text: str) -> Path:
     """A csv file beside the study, or one of the tables that come with the project, by its name."""
     return study.path.parent / text if text.lower().endswith(".csv") else DATA / f"{text}.csv"
-
-
-def vehicle_files(study: Study) -> tuple[Path, ...]:
-    """The tables that the runs of the vehicle depend on."""
-    names = [getattr(study.dampers, name) for name in DampersSection.model_fields if not name.endswith("_per_m")]
-    names += [study.obstacles.shape] if study.obstacles is not None else []
-    return tuple(table_file(study, name) for name in names if name is not None)
 
 
 def _road(study: Study) -> list[Scenario]:

@@ -74,12 +74,6 @@ def _may_be_there(path: Path) -> bool:
         return True
 
 
-def study_files(study: Study) -> list[Path]:
-    """Files of the user's own that the study refers to, for input hashes: the steel's csv where it is not a grade."""
-    steel = study.materials.steel
-    return [study.path.parent / steel] if steel.lower().endswith(".csv") else []
-
-
 def _origin(path: Path, overrides: Sequence[str]) -> str:
     """Where a combination of values comes from."""
     return " ".join((str(path), *(f"--set {text[:_LONGEST_SHOWN]}" for text in overrides)))

@@ -562,11 +562,6 @@ class Study(Section):
         """The file that the study was read from."""
         return self._path
 
-    def subset(self, *sections: str) -> dict[str, Any]:
-        """The named sections as plain data for a stage's input hash, without the path of the file."""
-        present = {name: getattr(self, name) for name in sections}
-        return {name: section and section.model_dump(mode="json") for name, section in present.items()}
-
 
 def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:
     low, high = getattr(section, low_key), getattr(section, high_key)

@@ -25,7 +25,7 @@ from figures.scene import render_scene
 from figures.style import new_figure
 from figures.whole_field import whole_field
 from pipeline import inspect_fields
-from pipeline.stage import StageError
+from pipeline.results import ResultsError
 
 
 @pytest.fixture(scope="module")
@@ -183,13 +183,13 @@ def test_files_where_there_is_no_window(field, tmp_path, capsys):
 
 
 def test_fields_of_a_study(half_machine, tmp_path):
-    with pytest.raises(StageError, match="no fields to look at yet"):
+    with pytest.raises(ResultsError, match="no fields to look at yet"):
         inspect_fields.read_fields(tmp_path)
     write_vtu(tmp_path / "nominal.vtu", half_machine)
-    (tmp_path / ".half.part.vtu").write_text("being written")
+    (tmp_path / ".half.partxy.vtu").write_text("being written")
     assert list(inspect_fields.read_fields(tmp_path)) == ["nominal"]
     (tmp_path / "broken.vtu").write_text("broken")
-    with pytest.raises(StageError, match="broken.vtu is not a .vtu file.*make fields"):
+    with pytest.raises(ResultsError, match="broken.vtu is not a .vtu file.*make fields"):
         inspect_fields.read_fields(tmp_path)
 
 
