@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Protocol, runtime_checkable
+
 import numpy as np
 
+from geometry.cross_section import CrossSection
 from geometry.machine import GeometryError
 from magnetostatics.model import FieldSolution
+
+
+@runtime_checkable
+class _OfPhases(Protocol):
+    """A state whose three phases carry one current each."""
+
+    def ampere_turns(self, section: CrossSection) -> np.ndarray: ...
 
 
 def phase_flux_linkage(solution: FieldSolution) -> np.ndarray:
@@ -38,6 +48,8 @@ def flux_linkage_torque(solution: FieldSolution) -> float:
     torque (to 0.1 % at 9 and 12 slots); cogging is not in it. For states with ``ampere_turns``, such as OperatingPoint.
     """
     section, point = solution.model.section, solution.point
+    if not isinstance(point, _OfPhases):
+        raise TypeError(f"the dq torque needs the currents of three phases, found {type(point).__name__}")
     electrical = section.machine.pole_pairs * point.angle
     psi_d, psi_q = park(phase_flux_linkage(solution), electrical, section.layout.phase_axis)
     i_d, i_q = park(point.ampere_turns(section), electrical, section.layout.phase_axis)

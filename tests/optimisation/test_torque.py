@@ -1,4 +1,4 @@
-"""The torque of a design: the mean over one electrical period whatever the reading, and how close its quick form comes."""
+"""The torque of a design: the mean over one electrical period whatever the reading, and how close its quick form is."""
 
 from dataclasses import replace
 
@@ -15,7 +15,12 @@ from study.read import read_study
 
 CASE = field_case(read_study("motorcycle"))
 # (slots, stator radius [m], back iron and rotor radius as shares of it): two optima, a corner of the sweep, a large one
-DESIGNS = ((12, 42.5e-3, 0.0692, 0.3426), (9, 42.5e-3, 0.0631, 0.4053), (12, 42.5e-3, 0.05, 0.44), (9, 57.5e-3, 0.061, 0.4525))
+DESIGNS = (
+    (12, 42.5e-3, 0.0692, 0.3426),
+    (9, 42.5e-3, 0.0631, 0.4053),
+    (12, 42.5e-3, 0.05, 0.44),
+    (9, 57.5e-3, 0.061, 0.4525),
+)
 
 
 def machine(slots, outer, width, rotor):
@@ -39,7 +44,7 @@ def test_six_positions_are_the_mean_of_many_and_the_quick_mean_is_close(design):
     one = machine(*design)
     mean = mean_of_many(one, CASE.nominal_density)
     assert judged(one, MeanTorque()).torque == pytest.approx(mean, rel=2e-4)
-    assert judged(one, QuickMeanTorque()).torque == pytest.approx(mean, rel=2.5e-3)
+    assert judged(one, QuickMeanTorque()).torque == pytest.approx(mean, rel=3e-3)
 
 
 @pytest.mark.parametrize("design", DESIGNS[:2])
