@@ -61,7 +61,7 @@ class CrossSection:
         between`` and boundaries ``outer, stator_start, stator_end, rotor_start, rotor_end, stator_slide, rotor_slide``
     sectors: how many such sectors make up the machine
     antiperiodic: True when the field changes sign from one sector to the next
-    pieces: the half cells of stator and rotor that the mesh is copied from
+    pieces: the half cells of stator and rotor that the mesh is copied from; none where it was refined or read
     assembly: where the parts stand that have been moved against each other
     """
 

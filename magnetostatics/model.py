@@ -302,7 +302,8 @@ class FieldModel:
     @cached_property
     def coarse_model(self) -> FieldModel:
         """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
-        return FieldModel(self.section, self.materials, _COARSE, topology=self._coarse_topology)
+        settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, self.settings.tolerance))
+        return FieldModel(self.section, self.materials, settings, topology=self._coarse_topology)
 
     @cached_property
     def _coarse_topology(self) -> Topology:

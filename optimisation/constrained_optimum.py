@@ -1,8 +1,8 @@
 """Largest torque of a cross-section under a flux-density limit, refined with the field solver beyond any grid.
 
-Around the current point both torque and limited flux density are fitted by quadratics in (back-iron width, rotor radius)
-to nine field solutions in a trust box; the constrained maximum of the quadratics is the next point; the box moves when the
-maximum lies on its edge and shrinks otherwise. The nine designs move one mesh, so that they differ by their dimensions
+Around the current point both torque and limited flux density are fitted by quadratics in (back-iron width, rotor
+radius) to nine field solutions in a trust box; the constrained maximum of the quadratics is the next point; the box
+moves when the maximum lies on its edge and shrinks otherwise. The nine designs move one mesh, so that they differ by their dimensions
 alone. At the end the machine is meshed anew and a last step in the width puts the limit to its tolerance.
 """
 
@@ -143,14 +143,15 @@ def _quadratic(offsets: np.ndarray, values: list[float]) -> np.ndarray:
 def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarray:
     """argmax of one quadratic under another one's limit in the unit box; nearest approach when nothing is feasible."""
     scale = abs(torque[0])
-    allowed = {"type": "ineq", "fun": lambda x: (limit - _terms(x) @ limited) / limit}
+    room = lambda x: (limit - _terms(x) @ limited) / limit  # noqa: E731
+    allowed = {"type": "ineq", "fun": room}
     results = [
         minimize(
             lambda x: -(_terms(x) @ torque) / scale, start, method="SLSQP", bounds=[(-1, 1)] * 2, constraints=[allowed]
         )
         for start in ((0.0, 0.0), (1.0, 0.0), (0.5, -0.5), (0.5, 0.5))
     ]
-    feasible = [r for r in results if allowed["fun"](r.x) > -1e-6]
+    feasible = [r for r in results if room(r.x) > -1e-6]
     if not feasible:  # move towards the limit
         return minimize(lambda x: _terms(x) @ limited, (0.0, 0.0), bounds=[(-1, 1)] * 2).x
     return min(feasible, key=lambda r: r.fun).x
@@ -185,9 +186,9 @@ def _require(search: _Search, width: float, radius: float) -> Design:
     return design
 
 
-def _where(search: _Search, point: Sequence[float]) -> str:
+def _where(search: _Search, point: Sequence[float] | np.ndarray) -> str:
     width, radius = (length / MILLIMETRE for length in point)
     return (
-        f"{search.slots} slots, stator radius {search.stator_outer_radius / MILLIMETRE:g} mm, near back iron {width:.3f} mm "
-        f"and rotor radius {radius:.3f} mm: "
+        f"{search.slots} slots, stator radius {search.stator_outer_radius / MILLIMETRE:g} mm, near back iron "
+        f"{width:.3f} mm and rotor radius {radius:.3f} mm: "
     )

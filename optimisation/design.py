@@ -18,7 +18,7 @@ from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import aligned_teeth
 from magnetostatics.probes import ProbeReader, probe_reader
-from magnetostatics.sensitivity import sensitivities
+from magnetostatics.sensitivity import Variation, sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from magnetostatics.variations import Dimension
 from optimisation.states import SaturationReading
@@ -134,15 +134,17 @@ class DesignSolver:
 
     def _summary(self, solved: _Solved, probes: ProbeReader) -> Design:
         seen = np.array([_flux_densities(state, probes) for state in solved.states])
-        worst = [_worst(column) for column in seen.T]
+        aligned, tooth, back_iron = (_worst(column) for column in seen.T)
         section, torque = solved.states[0].model.section, self.judge.torque
         return Design(
             solved.machine,
-            torque.torque(solved.states, solved.further),
-            _null_torque(solved.states),
-            _ring_torque(torque, solved),
-            *worst,
-            limited=self.judge.reading.limited(*worst),
+            torque=torque.torque(solved.states, solved.further),
+            torque_null=_null_torque(solved.states),
+            torque_ring=_ring_torque(torque, solved),
+            tooth_aligned=aligned,
+            tooth_worst=tooth,
+            back_iron_worst=back_iron,
+            limited=self.judge.reading.limited(aligned, tooth, back_iron),
             coil_side_area=section.half_slot_area * section.half_slots_per_coil_side,
             newton_iterations=solved.iterations,
         )
@@ -152,7 +154,9 @@ class DesignSolver:
 
         machine_of: changes (k,) -> machine, zero for the last design; steps: small size of each change
         """
-        variations = {
+        if self._morpher is None:
+            raise ValueError("no design has been judged yet, so there is none to take derivatives of")
+        variations: dict[str, Variation] = {
             str(number): Dimension(self._morpher, partial(_one_change, machine_of, number, len(steps)), step)
             for number, step in enumerate(steps)
         }
@@ -209,7 +213,7 @@ class _ValuesAndSlopes:
 
 
 def _values_and_slopes(
-    solutions: list[FieldSolution], variations: dict[str, Dimension], read: Callable[[FieldSolution], np.ndarray]
+    solutions: list[FieldSolution], variations: dict[str, Variation], read: Callable[[FieldSolution], np.ndarray]
 ) -> _ValuesAndSlopes:
     found = [sensitivities(solution, variations, read) for solution in solutions]
     slopes = [[state[name] for name in variations] for state in found]

@@ -83,8 +83,8 @@ class GridEdge:
         """Where the optimum lies and what to widen."""
         way = "lower" if self.key.endswith("_min") else "raise"
         return (
-            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at {self.found:.4f} of "
-            f"the stator radius, on or beyond the edge of the sweep at {self.edge:g}: {way} {self.key}"
+            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at {self.found:.4f} "
+            f"of the stator radius, on or beyond the edge of the sweep at {self.edge:g}: {way} {self.key}"
         )
 
 
@@ -239,7 +239,7 @@ def _densities(case: FieldCase) -> tuple[float, float]:
 
 def _over_period(case: FieldCase, model: FieldModel, density: float) -> list[FieldSolution]:
     """The fields that ``MeanTorque`` is the mean of."""
-    section, solutions = model.section, []
+    section, solutions = model.section, list[FieldSolution]()
     for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):
         solutions.append(model.solve(point, start=solutions[-1] if solutions else None))
     return solutions

@@ -13,6 +13,8 @@ ORDER = 2
 _LARGEST_RELATIVE_RESIDUAL = 0.03
 _ROUNDING = 1e-9  # m, beyond the range
 
+Values = Sequence[float] | np.ndarray
+
 
 class FitRefused(ValueError):
     """A fit that must not be used; the message says why and what to look at."""
@@ -52,19 +54,19 @@ class PolynomialFit:
         if np.any(np.asarray(radius) < low - _ROUNDING) or np.any(np.asarray(radius) > high + _ROUNDING):
             asked = np.asarray(radius) / MILLIMETRE
             raise FitRefused(
-                f"the fit of {self.quantity} holds from {low / MILLIMETRE:g} to {high / MILLIMETRE:g} mm of stator radius, "
-                f"asked for {asked} mm: widen sweep.stator_diameters_mm"
+                f"the fit of {self.quantity} holds from {low / MILLIMETRE:g} to {high / MILLIMETRE:g} mm of stator "
+                f"radius, asked for {asked} mm: widen sweep.stator_diameters_mm"
             )
         return np.polyval(self.coefficients, (radius - self.centre) / self.scale)
 
 
-def fit_polynomial(quantity: str, radii: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> PolynomialFit:
+def fit_polynomial(quantity: str, radii: Values, values: Values) -> PolynomialFit:
     """Least-squares second-order polynomial over the stator radius [m] with its residuals and R^2.
 
     The fit is marked as refused when there are too few points for its order to be tested, or when a
     residual exceeds 3 % of the mean (a flat quantity may have a low R^2 and still be described well).
     """
-    x, y = np.asarray(radii, dtype=float), np.asarray(y, dtype=float)
+    x, y = np.asarray(radii, dtype=float), np.asarray(values, dtype=float)
     if len(x) < ORDER + 2:
         return _too_few(quantity, x)
     centre, scale = float((x.min() + x.max()) / 2), float(np.ptp(x) / 2)
@@ -96,7 +98,7 @@ def _reason_to_refuse(where: float, relative: float, r_squared: float) -> str:
     if relative <= _LARGEST_RELATIVE_RESIDUAL:
         return ""
     return (
-        f"the point at {where / MILLIMETRE:g} mm is {relative:.1%} of the mean away from the curve (R^2 = {r_squared:.4f}), "
-        f"more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit a narrower range "
+        f"the point at {where / MILLIMETRE:g} mm is {relative:.1%} of the mean away from the curve "
+        f"(R^2 = {r_squared:.4f}), more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit a narrower range "
         "(sweep.stator_diameters_mm)"
     )

@@ -171,10 +171,13 @@ def _dataset(grid: SweepGrid, blocks: list[np.ndarray]) -> xr.Dataset:
     outer = np.array(grid.stator_outer_radii)
     shape = len(grid.slots), len(outer), grid.rotor_radius_steps, grid.back_iron_steps, len(VARIABLES)
     values = np.concatenate(blocks).reshape(shape).swapaxes(2, 3)
-    data = {name: (_DIMENSIONS, values[..., k]) for k, name in enumerate(VARIABLES)}
+    data: dict[str, object] = {name: (_DIMENSIONS, values[..., k]) for k, name in enumerate(VARIABLES)}
     data |= {
         "back_iron_width": (_DIMENSIONS[1:3], np.outer(outer, grid.back_iron)),
         "rotor_outer_radius": ((_DIMENSIONS[1], _DIMENSIONS[3]), np.outer(outer, grid.rotor)),
     }
-    shares = {"back_iron_fraction": ("back_iron", grid.back_iron), "rotor_radius_fraction": ("rotor_radius", grid.rotor)}
+    shares = {
+        "back_iron_fraction": ("back_iron", grid.back_iron),
+        "rotor_radius_fraction": ("rotor_radius", grid.rotor),
+    }
     return xr.Dataset(data, {"slots": list(grid.slots), "stator_outer_radius": outer, **shares})

@@ -32,9 +32,9 @@ def machine(found: Rotations) -> Section:
     """The study's own machine and its field."""
     seen = found.reference
     text = (
-        f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one electrical period "
-        f"(± bounds the error of the mesh) with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging "
-        f"up to {seen.cogging:.2f} Nm/m. The two torque routes differ by at most {seen.routes_apart:.2%}."
+        f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one electrical "
+        f"period (± bounds the error of the mesh) with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to "
+        f"peak, cogging up to {seen.cogging:.2f} Nm/m. The two torque routes differ by at most {seen.routes_apart:.2%}."
     )
     return Section(
         "Reference machine and its field",
@@ -53,8 +53,9 @@ def matched(found: Rotations) -> Section | None:
     if seen is None:
         return None
     text = (
-        f"The machine that the polynomials lead to, meshed and solved again: mean torque {_torque(seen)} over one electrical "
-        f"period with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging up to {seen.cogging:.2f} Nm/m."
+        f"The machine that the polynomials lead to, meshed and solved again: mean torque {_torque(seen)} over one "
+        f"electrical period with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging up to "
+        f"{seen.cogging:.2f} Nm/m."
     )
     return Section(
         "The matched machine",

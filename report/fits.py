@@ -17,6 +17,7 @@ from units import FACTORS, MILLIMETRE
 
 _UNITS = {"back_iron_width": "mm", "rotor_outer_radius": "mm", "half_slot_area": "mm2"}  # the others are torques
 _TORQUE_UNIT = "Nm_per_m"
+_ORDER = sorted(QUANTITIES, key=lambda name: not name.startswith("torque"))  # of the table: torques first
 
 
 def files(fits: SectionFits, optima: Optima) -> Iterator[File]:
@@ -33,7 +34,8 @@ def section(fits: SectionFits) -> Section:
     shown = table[columns].assign(quantity=table.quantity.map(heading))
     caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
     refused = [f"Refused: {fit.quantity}: {fit.refused}" for one in fits.by_slots for fit in one.fits if fit.refused]
-    picture = Picture(picture_name("fits"), "Optima (points) and second-order polynomials (lines) over the stator radius.")
+    words = "Optima (points) and second-order polynomials (lines) over the stator radius."
+    picture = Picture(picture_name("fits"), words)
     return Section(
         "Polynomials over the stator radius", (picture, Table(shown, caption, headings={"r_squared": "R²"}), *refused)
     )
@@ -42,7 +44,7 @@ def section(fits: SectionFits) -> Section:
 def fits_table(fits: SectionFits) -> pd.DataFrame:
     """Coefficients p2, p1, p0 in the unit of the quantity and millimetres of radius, with residuals and range."""
     return pd.DataFrame(
-        [_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in QUANTITIES]
+        [_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in _ORDER]
     )
 
 

@@ -32,6 +32,7 @@ _SHOWN = (
     "torque_overload_error_Nm_per_m", "torque_overload_linear_Nm_per_m", "limited_T", "tooth_worst_T",
 )  # fmt: skip
 _MAPS = ("torque", "torque_null", "tooth_aligned", "tooth_worst", "back_iron_worst", "limited")
+_LARGE = "Torque and probe flux densities over back-iron width and rotor radius."
 _TORQUES = ("torque", "torque_null")
 
 
@@ -63,7 +64,7 @@ def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComp
         "Optimum cross-sections",
         (
             _what(maps),
-            Picture(picture_name("design_map"), "Torque and probe flux densities over back-iron width and rotor radius."),
+            Picture(picture_name("design_map"), _LARGE),
             Picture(picture_name("design_maps"), "The same for every stator diameter, as shares of the stator radius."),
             *(Remark(f"{edge.sentence}.") for edge in optima.edges),
             *(Remark(f"{one.reason}.") for one in optima.without),
@@ -119,29 +120,29 @@ def _row(optimum: Optimum, optima: Optima) -> dict[str, object]:
 
 def _closest(maps: DesignMaps, case: FieldCase) -> tuple[int, float]:
     """Slot count and stator diameter [mm] of the sweep that are closest to the machine of the study."""
+    own = case.family
     slots, outer = min(
-        maps.grid.sections, key=lambda one: (abs(one[0] - case.family.slots), abs(one[1] - case.family.stator_outer_radius))
+        maps.grid.sections, key=lambda one: (abs(one[0] - own.slots), abs(one[1] - own.stator_outer_radius))
     )
     return slots, round(2 * outer / MILLIMETRE, 9)
 
 
 def _what(maps: DesignMaps) -> str:
     return (
-        f"Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux density of at "
-        f"most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs for every slot count "
-        f"and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined with further field solutions "
-        "until the limit is met to 0.02 %."
+        f"Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux density "
+        f"of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs for every "
+        f"slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined with further "
+        "field solutions until the limit is met to 0.02 %."
     )
 
 
 def _overload(case: FieldCase, optima: Optima) -> str:
     over = [(one.torque_overload_linear / one.torque_overload - 1) * 100 for one in optima.found]
-    nominal, overload = (
-        amplitude / np.sqrt(2) / AMPERE_PER_SQUARE_MILLIMETRE for amplitude in (case.nominal_density, case.overload_density)
-    )
+    amplitudes = case.nominal_density, case.overload_density
+    nominal, overload = (amplitude / np.sqrt(2) / AMPERE_PER_SQUARE_MILLIMETRE for amplitude in amplitudes)
     return (
-        f"At the overload of {overload:g} A/mm² RMS the field gives less than linear scaling from {nominal:g} A/mm² promises: "
-        f"the assumption is too high by {min(over):.0f} to {max(over):.0f} %."
+        f"At the overload of {overload:g} A/mm² RMS the field gives less than linear scaling from {nominal:g} A/mm² "
+        f"promises: the assumption is too high by {min(over):.0f} to {max(over):.0f} %."
     )
 
 
@@ -149,7 +150,8 @@ def _readings(limits: LimitComparison | None) -> tuple[str | Picture, ...]:
     if limits is None:
         return ()
     text = (
-        "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles count; "
-        "the torque is the same mean over the period in all of them. Points of this figure are read off a map by interpolation."
+        "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles "
+        "count; the torque is the same mean over the period in all of them. Points of this figure are read off a map by "
+        "interpolation."
     )
     return text, Picture(picture_name("limits"), "Optimum against the flux-density limit, for each reading of it.")

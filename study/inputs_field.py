@@ -60,7 +60,7 @@ def machine_family(section: MachineSection) -> MachineFamily:
 
 
 def machine_materials(study: Study) -> MachineMaterials:
-    """Steel and magnet; the steel's path counts from the study file, the remanence is that at the working temperature."""
+    """Steel, whose path counts from the study file, and magnet with the remanence at the working temperature."""
     steel = load_steel(study.materials.steel, study.path.parent)
     section = study.materials.si
     return MachineMaterials(steel, steel, Magnet(section.remanence, section.recoil_permeability))

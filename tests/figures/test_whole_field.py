@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from figures.whole_field import describe, whole_field, whole_geometry
+from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.model import OperatingPoint
 from units import DEGREE, MILLIMETRE
 
@@ -112,3 +113,18 @@ def test_operating_point_in_words():
         "rotor at −21°, 8.485 A/mm² (peak), current angle 0°"
     )
     assert describe(OperatingPoint(0.0)) == "rotor at 0°, no current"
+
+
+def test_phase_and_coil_currents_in_words():
+    assert describe(PhaseCurrents(0.0, (10.0, -5.0, -5.0), 7)) == "rotor at 0°, 70, -35, -35 ampere-turns in phases A, B, C"
+    assert describe(PhaseCurrents(0.0, (0.0, 0.0, 0.0))) == "rotor at 0°, no current"
+    assert describe(CoilCurrents(0.0, (3.0, -8.0))) == "rotor at 0°, coils with up to 8 ampere-turns"
+
+
+def test_linear_elements_and_phase_currents_can_be_drawn(half_machine, half):
+    """The same triangles with linear elements: the potential is refined, the fluxes are close to those of the finer."""
+    model = half_machine.model.coarse_model
+    turns = tuple(half_machine.point.ampere_turns(model.section))
+    field = whole_field(model.solve(PhaseCurrents(half_machine.point.angle, turns)))
+    assert field.a.shape == half.a.shape
+    assert field.a.max() == pytest.approx(half.a.max(), rel=0.02)

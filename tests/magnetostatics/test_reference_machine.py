@@ -20,7 +20,7 @@ from magnetostatics.model import OperatingPoint
 from magnetostatics.per_turn import per_turn_values
 from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from optimisation.states import null_angle, null_current_angle
+from magnetostatics.positions import null_angle, null_current_angle
 from tests.magnetostatics.reference_machine import FINE, SWEEP, model_of, reference_machine
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 

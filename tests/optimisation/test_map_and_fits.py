@@ -36,29 +36,39 @@ def test_no_best_point_below_every_flux_density():
     assert known_map().best_point(0.9) is None
 
 
-X = np.linspace(35, 57.5, 10)
+X = np.linspace(35e-3, 57.5e-3, 10)  # m
+
+
+def parabola(x):
+    return 1e5 * x**2 - 3000 * x + 60
 
 
 def test_a_parabola_is_found_exactly():
-    fit = fit_polynomial("torque", X, 0.1 * X**2 - 3 * X + 20)
-    assert fit.coefficients == pytest.approx((0.1, -3, 20))
+    fit = fit_polynomial("torque", X, parabola(X))
+    assert fit.powers == pytest.approx((1e5, -3000, 60))
     assert fit.r_squared == pytest.approx(1.0)
-    assert fit(40.0) == pytest.approx(60.0)
+    assert fit(40e-3) == pytest.approx(parabola(40e-3))
+
+
+def test_the_coefficients_are_of_one_size():
+    """In powers of the radius in metres they differ by 1e3; centred and scaled they do not."""
+    c2, c1, c0 = np.abs(fit_polynomial("torque", X, parabola(X)).coefficients)
+    assert max(c2, c1, c0) / min(c2, c1, c0) < 20
 
 
 def test_an_outlier_makes_the_fit_refused():
-    y = 0.1 * X**2 - 3 * X + 60
+    y = parabola(X)
     y[4] *= 1.2
     fit = fit_polynomial("torque", X, y)
-    with pytest.raises(FitRefused, match="45 is .* of the mean away"):
-        fit(40.0)
+    with pytest.raises(FitRefused, match="45 mm is .* of the mean away.*sweep.stator_diameters_mm"):
+        fit(40e-3)
 
 
 def test_three_points_cannot_test_a_parabola():
-    with pytest.raises(FitRefused, match="3 points cannot test"):
-        fit_polynomial("torque", X[:3], X[:3])(36.0)
+    with pytest.raises(FitRefused, match="3 points cannot test.*sweep.stator_diameters_mm"):
+        fit_polynomial("torque", X[:3], X[:3])(36e-3)
 
 
 def test_a_fit_does_not_extrapolate():
-    with pytest.raises(FitRefused, match="holds from 35 to 57.5, asked for 60"):
-        fit_polynomial("torque", X, X)(60.0)
+    with pytest.raises(FitRefused, match="holds from 35 to 57.5 mm of stator radius, asked for 60"):
+        fit_polynomial("torque", X, X)(60e-3)

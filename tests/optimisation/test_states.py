@@ -5,22 +5,17 @@ from math import gcd, pi
 import pytest
 
 from geometry.winding import star_of_slots
-from optimisation.states import (
-    READINGS,
-    aligned_teeth,
-    null_angle,
-    null_current_angle,
-    q_axis_angle,
-)
-from pipeline.models import StudyFamily
+from magnetostatics.positions import aligned_teeth, null_angle, null_current_angle, q_axis_angle
+from optimisation.states import READINGS
+from study.inputs_field import machine_family
 from study.read import read_study
 
 DEGREE = pi / 180
+FAMILY = machine_family(read_study("motorcycle").machine)
 
 
 def machine(slots):
-    family = StudyFamily(read_study("motorcycle").machine)
-    return family.machine(slots, 42.5e-3, 3.3e-3, 15.7e-3)
+    return FAMILY.machine(slots, 42.5e-3, 3.3e-3, 15.7e-3)
 
 
 def test_null_position_of_12_slots_and_10_poles():
