@@ -94,7 +94,19 @@ class Stage:
     on_request: bool = False
 
 
+@dataclass(frozen=True)
+class Export:
+    """The files that people read of a stage: a step of its own, which may read what later stages make.
+
+    name: of the stage with ``.files``; function: typed values -> ``figures.files.File``s
+    """
+
+    name: str
+    function: Callable
+
+
 Node = Source | View | Stage
+Step = Stage | Export
 
 
 @dataclass(frozen=True)
@@ -134,6 +146,17 @@ class Graph:
         """The stages that one needs, and the one itself, in order."""
         needed = {stage.name} | {one.name for one in _stages_behind(self, stage)}
         return tuple(one for one in self.stages if one.name in needed)
+
+    def steps(self, stages: tuple[Stage, ...]) -> tuple[Step, ...]:
+        """These stages in order, each export as soon as everything that it reads is made."""
+        found: list[Step] = []
+        waiting = [(stage, Export(f"{stage.name}.files", stage.files)) for stage in stages if stage.files is not None]
+        for stage in stages:
+            found.append(stage)
+            ready = [pair for pair in waiting if {*self.parents(pair[1].function), pair[0]} <= set(found)]
+            found += [export for _, export in ready]
+            waiting = [pair for pair in waiting if pair not in ready]
+        return tuple(found)
 
     def parents(self, function: Callable) -> tuple[Stage, ...]:
         """The stages whose artefacts a function reads, directly or through views."""

@@ -1,6 +1,7 @@
 """Files: .vtu and back, the scene, the report, and looking into the fields of a study."""
 
 import base64
+from pathlib import Path
 import json
 import re
 
@@ -125,10 +126,10 @@ def test_report_reads_from_top_to_bottom(tmp_path):
 
 
 def test_picture_from_a_file_is_the_file(tmp_path):
-    path = tmp_path / "one.png"
-    path.write_bytes(b"\x89PNG picture")
-    assert Picture(path, "").source == Picture(b"\x89PNG picture", "").source
-    assert base64.b64decode(Picture(path, "").source.split(",")[1]) == b"\x89PNG picture"
+    (tmp_path / "one.png").write_bytes(b"\x89PNG picture")
+    source = Picture("one.png", "").source(tmp_path)
+    assert source == Picture(b"\x89PNG picture", "").source(Path())
+    assert base64.b64decode(source.split(",")[1]) == b"\x89PNG picture"
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from drivetrain.matching import NamedMatch
+from drivetrain.output import Wheel
 from figures.report import Remark, Table
 from report.match import PARTS, TABLE, files, over_radius, parts_table, section
 from tests.drivetrain.test_matching import STATED, no_field, stage
@@ -21,12 +22,12 @@ def texts(page):
 
 
 def test_files(found):
-    names = {file.name for file in files(found)}
+    names = {file.name for file in files(found, Wheel())}
     assert names == {TABLE, PARTS, "figures/match_curves.png", "figures/match_over_radius.png"}
 
 
 def test_table_over_the_radius(found):
-    table = over_radius(found)
+    table = over_radius(found, Wheel())
     assert list(table.columns) == [
         "slots", "overload", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm", "cost",
     ]  # fmt: skip
@@ -41,7 +42,7 @@ def test_parts_in_drawing_units(found):
 
 
 def test_the_section_says_what_must_not_be_overlooked(found):
-    page = section(found)
+    page = section(found, Wheel())
     said = texts(page)
     assert "Decision: chosen in the study file" in said and "sweep.stator_diameters_mm" in said
     assert f"{found.parts.total:.2f} kg" in said and f"{found.cylinder_mass:.2f} kg" in said
@@ -57,5 +58,5 @@ def test_the_section_without_matches_beside(found):
 
     none = NamedMatch("reference machine, field torque", "", None, "the force is too large")
     stated = NamedMatch("stated values", "", None, "too far")
-    said = texts(section(replace(found, reference=none, reference_cylinder=None, printed=None, stated=stated)))
+    said = texts(section(replace(found, reference=none, reference_cylinder=None, printed=None, stated=stated), Wheel()))
     assert "no match, the force is too large" in said and "there is no match: too far" in said

@@ -8,7 +8,6 @@ import pytest
 from gearbox.efficiency import stage_efficiency
 from gearbox.errors import GearError
 from gearbox.layout import Housing, MachineEnvelope, actuator_layout
-from gearbox.summary import train_summary
 from units import MILLIMETRE
 
 MM = MILLIMETRE
@@ -66,14 +65,3 @@ def test_parts_of_different_kinds_do_not_share_room(train):
 def test_a_rotor_larger_than_its_stator_is_refused(train):
     with pytest.raises(GearError, match="rotor radius 50 mm must be below"):
         actuator_layout(train, replace(MACHINE, rotor_outer_radius=50 * MM), HOUSING)
-
-
-def test_summary_is_in_drawing_units(train, load, rules):
-    row = train_summary(train, load, rules)
-    first, second = row["stages"]
-    assert row["ratio"] == pytest.approx(77.19, abs=0.01)
-    assert (first["face_width_mm"], second["face_width_mm"]) == (pytest.approx(12), pytest.approx(4.5))
-    assert (first["teeth_sun"], first["teeth_ring"], first["common_factor"]) == (14, -109, True)
-    masses = sum(value for stage in row["stages"] for key, value in stage.items() if key.startswith("mass_"))
-    assert masses == pytest.approx(row["mass_kg"])
-    assert all(np.isfinite(value) for stage in row["stages"] for value in stage.values())
