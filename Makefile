@@ -62,7 +62,7 @@ $(BENCHMARK_SET_UP): benchmarks/peer_requirements.txt benchmarks/set_up
 
 clean:
 	find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
-	find . -path ./.venv -prune -o \( -name __pycache__ -o -name .pytest_cache -o -name .mypy_cache -o -name .ruff_cache \) -type d -exec rm -rf {} +
+	find . -path ./.venv -prune -o \( -name __pycache__ -o -name ".*_cache" \) -type d -exec rm -rf {} +
 
 $(SET_UP): pyproject.toml constraints.txt pipeline/setup
 	@sh pipeline/setup

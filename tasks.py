@@ -6,7 +6,8 @@ it can travel to another process or another machine. A stage takes ``workers: Wo
 
 from __future__ import annotations
 
-from typing import Callable, Mapping, Protocol, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Protocol, TypeVar
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")

@@ -4,8 +4,13 @@
 unit of their own inside: temperatures are in degrees Celsius and frequencies in hertz.
 """
 
+from collections.abc import Iterable, Mapping
 from math import pi
-from typing import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -62,9 +67,10 @@ MICROHENRY = FACTORS["uH"]  # H
 MU_0 = 4e-7 * pi  # H/m, vacuum permeability (the 2019 SI value differs by 1e-10)
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 
-# How a unit is written where that is not its own name with "per" as a stroke.
-_WRITTEN = {"deg": "°", "degC": "°C", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "rad2": "rad²", "percent": "%", "ohm": "Ω",
-            "Ohm": "Ω", "mOhm": "mΩ", "mohm": "mΩ", "kOhm": "kΩ", "uH": "µH", "um": "µm"}  # fmt: skip
+# How the parts of a unit are written that are not their own names.
+_WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "m3": "m³", "cm3": "cm³",
+            "s2": "s²", "rad2": "rad²", "deg2": "deg²", "percent": "%", "ohm": "Ω", "Ohm": "Ω", "mOhm": "mΩ",
+            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm"}  # fmt: skip
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -75,39 +81,40 @@ def split_unit(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def to_si(name: str, value):
+def to_si(name: str, value: Any) -> tuple[str, Any]:
     """(quantity, value in SI) of a named value in drawing units; a tuple entry by entry, None and text as they are."""
     quantity, unit = split_unit(name)
     factor = FACTORS.get(unit, 1.0)
     if isinstance(value, tuple):
         return quantity, tuple(to_si(name, one)[1] for one in value)
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return quantity, value * factor if is_number and factor != 1.0 else value
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and factor != 1.0:
+        return quantity, value * factor
+    return quantity, value
 
 
 def drawn(values: Mapping[str, object] | object, names: Iterable[str]) -> dict[str, object]:
-    """Values in SI as a drawing or table shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
+    """Values in SI as a drawing shows them: ``drawn(match, ["active_length_mm"])`` -> {"active_length_mm": 36.8}.
 
     values: mapping or object with the quantity (``active_length``) as key or attribute
     names: with the unit to show as their end; None stays None
     """
-    read = values.__getitem__ if isinstance(values, Mapping) else lambda name: getattr(values, name)
-    found = {}
+    found: dict[str, object] = {}
     for name in names:
         quantity, unit = split_unit(name)
-        value = read(quantity)
+        value: Any = values[quantity] if isinstance(values, Mapping) else getattr(values, quantity)
         is_number = hasattr(value, "__truediv__") and unit != ""
         found[name] = value / FACTORS[unit] if is_number else value
     return found
 
 
 def written(unit: str) -> str:
-    """A unit as a heading writes it: ``mm/rad`` of ``mm_per_rad``, ``°`` of ``deg``."""
-    if unit in _WRITTEN:
-        return _WRITTEN[unit]
-    above, per, below = unit.partition("_per_")
-    text = "/".join(_WRITTEN.get(part, part.replace("_", " ")) for part in ((above, below) if per else (above,)))
-    return text.replace("s2", "s²").replace("m2", "m²").replace("m3", "m³")
+    """A unit as a heading writes it: ``mm/rad`` of ``mm_per_rad``, ``°`` of ``deg``, ``1/K`` of ``per_K``."""
+    return "/".join(_written_product(part) for part in f"_{unit}".split("_per_")) if unit else ""
+
+
+def _written_product(unit: str) -> str:
+    parts = unit.removeprefix("_").split("_")
+    return " ".join(_WRITTEN.get(part, part) for part in parts) or "1"
 
 
 def same_quantity(unit: str, other: str) -> bool:
@@ -122,3 +129,43 @@ def converted(value: float, unit: str, other: str) -> float | None:
     if from_unit is None or to_unit is None:
         return None
     return value * from_unit / to_unit
+
+
+# What the last word of a name is measured in throughout the project, as docstrings write it; "1" is a pure number.
+# Words that mean several things (speed, density, ratio) are not here: a docstring states their unit.
+SYMBOLS: dict[str, str] = {
+    word: unit
+    for unit, words in {
+        "m": "radius diameter length width depth airgap opening thickness distance stroke height wavelength",
+        "m^2": "area",
+        "rad": "angle swing",
+        "m/s": "velocity",
+        "N": "force",
+        "Nm": "torque",
+        "kg": "mass",
+        "kg m^2": "inertia",
+        "N/m": "stiffness",
+        "Ns/m": "damping",
+        "W": "power",
+        "V": "voltage",
+        "A": "i_d i_q current",
+        "Wb": "psi_d psi_q",
+        "ohm": "resistance",
+        "ohm m": "resistivity",
+        "H": "inductance inductance_d inductance_q",
+        "Hz": "frequency",
+        "s": "time duration",
+        "degC": "temperature",
+        "m/rad": "transmission_ratio linkage_ratio",
+        "1": "fraction factor share packing efficiency teeth planets slots poles pairs order turns strands layers "
+        "count",
+    }.items()
+    for word in words.split()
+}
+
+
+def usual_unit(name: str) -> str | None:
+    """Unit of a name by ``SYMBOLS``: that of the longest ending, None where it has none."""
+    words = name.split("_")
+    endings = ("_".join(words[first:]) for first in range(len(words)))
+    return next((SYMBOLS[ending] for ending in endings if ending in SYMBOLS), None)

@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 from benchmarks.processes import Cost
 from benchmarks.reference_case import FieldCase
 from benchmarks.result import CodeResult
-from magnetostatics.elements import dof_locations
+from magnetostatics.elements import dof_locations, element_dofs
 from magnetostatics.flux_linkage import phase_flux_linkage
-from magnetostatics.model import FieldModel, FieldSolution
+from magnetostatics.model import FieldModel
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 
@@ -38,20 +38,16 @@ def _solve(code: str, model: FieldModel, case: FieldCase, began: tuple[float, fl
     torque, linkage = arkkio_torque(solution), phase_flux_linkage(solution)
     cost = Cost(time.process_time() - began[0], time.perf_counter() - began[1])
     others = {"torque_by_contour": maxwell_torque(solution), "unknowns": model.unknowns.count}
-    return CodeResult(code, torque, linkage, solution.newton.residuals, cost, _at_mesh(solution, case), others)
+    return CodeResult(code, torque, linkage, solution.newton.residuals, cost, solution.a[corner_dofs(case)], others)
 
 
-def _at_mesh(solution: FieldSolution, case: FieldCase) -> np.ndarray:
-    """Potential at the corners of the case's mesh (n,)."""
-    section, angle = case.section, case.state.point.angle
-    x, y = dof_locations(section.mesh, case.order)
-    rotor = np.unique(solution.model.elements.dofs[:, _rotor_elements(solution)])
+def corner_dofs(case: FieldCase) -> np.ndarray:
+    """Degree of freedom of this project's numbering at every corner of the case's mesh (n,)."""
+    mesh, angle = case.section.mesh, case.state.point.angle
+    x, y = dof_locations(mesh, case.order)
+    is_rotor = np.hypot(*mesh.p[:, mesh.t].mean(axis=1)) < case.section.machine.mid_gap_radius
+    rotor = np.unique(element_dofs(mesh, case.order)[0][:, is_rotor])
     place = x + 1j * y
     place[rotor] *= np.exp(1j * angle)
-    _, nearest = cKDTree(np.column_stack([place.real, place.imag])).query(case.mesh.points[: case.mesh.corners])
-    return solution.a[nearest]
-
-
-def _rotor_elements(solution: FieldSolution) -> np.ndarray:
-    section = solution.model.section
-    return np.flatnonzero(np.hypot(*section.mesh.p[:, section.mesh.t].mean(axis=1)) < section.machine.mid_gap_radius)
+    corners = case.mesh.points[: case.mesh.corners]
+    return cKDTree(np.column_stack([place.real, place.imag])).query(corners)[1]

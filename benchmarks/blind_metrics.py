@@ -5,9 +5,9 @@ A case is a dictionary as ``blind_score.score_case`` returns it. Bounds: Clopper
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import permutations
-from typing import Callable, Iterable, Sequence
 
 import numpy as np
 from scipy.stats import beta

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
-from typing import Callable
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from benchmarks.getdp_run import AS_INSTALLED, FASTEST, solve_getdp
 from benchmarks.ngsolve_run import solve_ngsolve
 from benchmarks.reference_case import FieldCase
 from benchmarks.result import CodeResult
+from benchmarks.weak_form_run import SCIKIT_FEM, solve_weak_form
 
 EXACT = 1e-9  # relative residual at which codes are compared
 USUAL = 1e-4  # relative residual at which they are timed, the solver's default
@@ -22,6 +23,7 @@ MANY_POINTS = 7  # of the quadrature in a triangle, where three are the rule
 TIMED = {
     COLD: "from the mesh in memory to torque and flux linkage, nothing prepared",
     PREPARED: "the same with numbering and pattern there, from zero field",
+    SCIKIT_FEM: "the weak form of this project, from the mesh in memory to torque and flux linkage, nothing prepared",
     "NGSolve": "Newton's method alone, mesh, space and forms there",
     FASTEST.name: "whole process, quickest linear solver",
     AS_INSTALLED.name: "whole process, linear solver as installed",
@@ -72,11 +74,12 @@ class Timing:
 
 
 def compare(case: FieldCase) -> list[Agreement]:
-    """This project's converged solution against GetDP's and NGSolve's."""
+    """This project's converged solution against those of its weak form in scikit-fem, of GetDP and of NGSolve."""
     ours = solve_cold(case, EXACT)
     getdp = solve_getdp(case, EXACT, with_potential=True), solve_getdp(case, EXACT, points=MANY_POINTS)
     ngsolve = solve_ngsolve(case, EXACT), solve_ngsolve(case, EXACT, points=MANY_POINTS)
-    return [_agreement(case, ours, *peer) for peer in (getdp, ngsolve)]
+    scikit_fem = solve_weak_form(case, EXACT), solve_weak_form(case, EXACT, points=MANY_POINTS)
+    return [_agreement(case, ours, *peer) for peer in (scikit_fem, getdp, ngsolve)]
 
 
 def _agreement(case: FieldCase, ours: CodeResult, peer: CodeResult, fine: CodeResult) -> Agreement:
@@ -104,6 +107,7 @@ def time_codes(case: FieldCase, rounds: int) -> list[Timing]:
     codes: tuple[Callable[[], CodeResult], ...] = (
         lambda: _second_of(lambda: solve_cold(case, USUAL)),
         lambda: solve_prepared(case, USUAL),
+        lambda: _second_of(lambda: solve_weak_form(case, USUAL)),
         lambda: solve_ngsolve(case, USUAL),
         lambda: solve_getdp(case, USUAL, FASTEST),
         lambda: solve_getdp(case, USUAL, AS_INSTALLED),

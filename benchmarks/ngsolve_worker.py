@@ -14,8 +14,28 @@ from pathlib import Path
 import netgen.meshing
 import ngsolve
 import numpy as np
-from ngsolve import TRIG, BilinearForm, BitArray, BSpline, GridFunction, H1, InnerProduct, IntegrationRule, Integrate
-from ngsolve import LinearForm, Mesh, Norm, OuterProduct, Periodic, Projector, dx, grad, sqrt, x, y
+from ngsolve import (
+    H1,
+    TRIG,
+    BilinearForm,
+    BitArray,
+    BSpline,
+    GridFunction,
+    InnerProduct,
+    Integrate,
+    IntegrationRule,
+    LinearForm,
+    Mesh,
+    Norm,
+    OuterProduct,
+    Periodic,
+    Projector,
+    dx,
+    grad,
+    sqrt,
+    x,
+    y,
+)
 
 MOST_STEPS = 40
 MANY_POINTS = 6  # order of the quadrature that shows what three points leave out

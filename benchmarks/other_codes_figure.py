@@ -9,7 +9,7 @@ from figures.style import MARKERS, SERIES, letter, new_figure, show_grid, styled
 
 _HEIGHT = 4.2  # inches
 _ACCEPTED = 2e-4  # relative difference
-_APART = 0.15  # of the two peers in a column
+_APART = 0.2  # of two peers in a column
 
 
 @styled
@@ -37,7 +37,7 @@ def _draw_times(axis, timings: list[Timing]) -> None:
     axis.set_xlabel("part of the machine, order, unknowns")
     axis.set_title("Cost, median", loc="left")
     axis.legend(loc="upper left")
-    axis.set_ylim(top=axis.get_ylim()[1] * 3)
+    axis.set_ylim(top=axis.get_ylim()[1] * 20)
     show_grid(axis)
 
 
@@ -48,10 +48,11 @@ def _draw_differences(axis, agreements: list[Agreement]) -> None:
         "potential": "potential_difference",
         "torque,\n7 points": "fine_torque_difference",
     }
-    for k, code in enumerate(dict.fromkeys(a.code for a in agreements)):
+    codes = list(dict.fromkeys(a.code for a in agreements))
+    for k, code in enumerate(codes):
         for i, field in enumerate(columns.values()):
             values = [getattr(a, field) for a in agreements if a.code == code]
-            places = [i + _APART * (2 * k - 1)] * len(values)
+            places = [i + _APART * (k - (len(codes) - 1) / 2)] * len(values)
             axis.plot(places, values, MARKERS[k], color=SERIES[k], label=None if i else code)
     axis.axhline(_ACCEPTED, color=SERIES[4], linestyle="--", label="0.02 %")
     axis.set_xticks(range(len(columns)), columns)

@@ -226,7 +226,7 @@ def designs_solved() -> pd.DataFrame:
     solve_block(tasks[0])
     rows, seconds, designs = [], 0.0, 0
     for task in tasks[1::9]:
-        seconds += cost(lambda: solve_block(task))
+        seconds += cost(partial(solve_block, task))
         designs += len(task["back_iron_widths_mm"]) * len(task["rotor_outer_radii_mm"])
         rows.append({"designs": designs, "cpu_s": seconds})
     return pd.DataFrame(rows)

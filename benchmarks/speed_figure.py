@@ -7,7 +7,6 @@ from matplotlib.ticker import NullFormatter
 
 from figures.style import new_figure, show_grid, styled
 
-
 _EFFICIENCY = 0.85  # wanted of two processes
 
 

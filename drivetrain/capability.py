@@ -1,67 +1,64 @@
-"""What a wound machine can do at the wheel, which requirements hold, and what would make them hold.
+"""What a wound machine can do at the output.
 
-The machine is its flux map, so that saturation, current and voltage are in every number; gears and bearings are free of
-loss here.
+The output is a wheel behind a linkage or a shaft: an effort [N or Nm], a speed [m/s or rad/s] and an inertia [kg or
+kg m^2] behind a transmission ratio [m/rad or 1]. The machine is its flux map, so that saturation, current and voltage
+are in every number; gears and bearings are free of loss here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from math import pi, sqrt
+from math import sqrt
+from typing import Any
 
 import numpy as np
 
-from drivetrain.constraints import winding_damping
-from electrical.flux_map_limits import mtpa_currents, torque_speed_envelope
+from electrical.dq import DriveLimits, mtpa_currents, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
-from electrical.synchronous_machine import DriveLimits
-from units import MILLIMETRE
+from electrical.short_circuit import winding_damping
 
-SLACK = 1e-6  # relative; a capability this close to its requirement is met
-LEVER_RANGE = 3.0  # a lever is moved to a third of its value or to three times it, not further
-_STEPS = 4  # between which the bisection starts
-_BISECTIONS = 7  # of a lever: its value to 0.2 %
+_IN_A_BATCH = ("turns", "strands", "active_length", "dc_voltage", "transmission_ratio")
+Values = Any  # a number, or one for each design of a batch (designs,)
 
 
 @dataclass(frozen=True, eq=False)
 class ActuatorDesign:
     """Machine, winding, supply and transmission of an actuator, SI.
 
-    flux_map: per turn and metre over angle, id, iq, as ``magnetostatics.flux_map`` gives it
+    per_turn: the machine with one turn a coil, one metre long and without resistance
+    peak_torque_per_length: at the overload current density [Nm/m], as the winding stage states it
     turns, strands: wires of one turn, need not be whole while a lever is moved; wire_area [m^2]; resistivity [ohm m]
     coils_in_series of a phase; active_length, end_turn_length [m]
     nominal_density, overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
-    transmission_ratio: tau_t [m/rad]
-    stator_outer_radius, rotor_outer_radius [m]; density [kg/m^3]: the motor is a solid steel cylinder, its rotor too
-    gearbox_mass, other_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
+    transmission_ratio: tau_t [m/rad or 1]
+    rotor_inertia_per_length [kg m]; gearbox_inertia: at the rotor shaft [kg m^2]
+
+    turns, strands, active_length, dc_voltage and transmission_ratio may be arrays (designs,): a batch of designs. Their
+    product of turns and strands is the same in all, so that the ampere-turns are.
     """
 
-    flux_map: object
-    turns: float
-    strands: float
+    per_turn: FluxMapMachine
+    peak_torque_per_length: float
+    turns: Values
+    strands: Values
     wire_area: float
     resistivity: float
     coils_in_series: int
-    active_length: float
+    active_length: Values
     end_turn_length: float
     nominal_density: float
     overload_density: float
-    dc_voltage: float
-    transmission_ratio: float
-    stator_outer_radius: float
-    rotor_outer_radius: float
-    density: float
-    gearbox_mass: float
-    other_mass: float
+    dc_voltage: Values
+    transmission_ratio: Values
+    rotor_inertia_per_length: float
     gearbox_inertia: float
 
-    @cached_property
-    def machine(self) -> FluxMapMachine:
-        """The machine with its winding."""
-        resistance = phase_resistance(
+    @property
+    def resistance(self) -> Values:
+        """Of one phase [ohm]."""
+        return phase_resistance(
             turns=self.turns,
             strands=self.strands,
             wire_area=self.wire_area,
@@ -70,173 +67,81 @@ class ActuatorDesign:
             coils_in_series=self.coils_in_series,
             resistivity=self.resistivity,
         )
-        return FluxMapMachine.from_per_turn(
-            self.flux_map, turns=self.turns, active_length=self.active_length, resistance=resistance
-        )
+
+    def _ampere_turns(self, density: float) -> float:
+        """Peak phase current at an RMS current density, times the turns [A]."""
+        return sqrt(2) * density * self.wire_area * float(np.max(self.turns * self.strands))
 
     @property
-    def limits(self) -> DriveLimits:
-        """Peak phase current of the overload and peak phase voltage of the bus."""
-        return DriveLimits.from_dc_bus(self._current(self.overload_density), self.dc_voltage)
+    def phase_current_rms(self) -> Values:
+        """RMS phase current of the overload [A]."""
+        return self.overload_density * self.wire_area * self.strands
 
-    def _current(self, density: float) -> float:
-        """Peak phase current at an RMS current density [A]."""
-        return sqrt(2) * density * self.wire_area * self.strands
+    def effort_at(self, speed: float) -> Values:
+        """Largest effort [N or Nm] at an output speed [m/s or rad/s], magnitude, within current and voltage; 0 where
+        none is left."""
+        designs = np.broadcast_shapes(np.shape(self._volts_per_turn), np.shape(self.transmission_ratio))
+        return self.effort_over(np.full(designs, abs(speed)))
 
-    def force_at(self, velocity):
-        """Largest force [N] at wheel velocities [m/s], magnitudes, within current and voltage; 0 where none is left."""
-        speed = np.abs(np.atleast_1d(velocity)) / self.transmission_ratio
-        torque = torque_speed_envelope(self.machine, self.limits, speed).torque
-        return np.nan_to_num(torque, nan=0.0) / self.transmission_ratio
-
-    @property
-    def peak_torque(self) -> float:
-        """Largest torque at rest [Nm]."""
-        return float(self.machine.torque(*mtpa_currents(self.machine, self.limits.current_peak)))
+    def effort_over(self, speed: np.ndarray) -> np.ndarray:
+        """The same over speeds, an array, for one design; for a batch one speed a design."""
+        torque = self._torque_per_length(np.abs(speed) / self.transmission_ratio) * self.active_length
+        return torque / self.transmission_ratio
 
     @property
-    def force_peak(self) -> float:
-        """Largest force at rest [N]."""
+    def _volts_per_turn(self) -> Values:
+        """Bus voltage for each turn and metre [V/m]."""
+        return self.dc_voltage / (self.turns * self.active_length)
+
+    def _torque_per_length(self, rotor_speed: np.ndarray) -> np.ndarray:
+        """Envelope per turn and metre [Nm/m]: v = N l v_1, i = i_1 / N, R = N^2 l R_1."""
+        one_turn = self.resistance / (self.turns**2 * self.active_length)
+        shape = np.broadcast_shapes(np.shape(rotor_speed), np.shape(one_turn), np.shape(self._volts_per_turn))
+        machine = self.per_turn.with_resistance(np.broadcast_to(one_turn, shape))
+        volts = np.broadcast_to(self._volts_per_turn, shape)
+        limits = DriveLimits.from_dc_bus(self._ampere_turns(self.overload_density), volts)
+        envelope = torque_speed_envelope(machine, limits, np.broadcast_to(rotor_speed, shape))
+        return np.asarray(np.nan_to_num(envelope.torque, nan=0.0))
+
+    @property
+    def peak_torque(self) -> Values:
+        """Largest torque of the machine at rest [Nm]."""
+        return self.peak_torque_per_length * self.active_length
+
+    @property
+    def effort_peak(self) -> Values:
+        """Largest effort at rest [N or Nm]."""
         return self.peak_torque / self.transmission_ratio
 
     @property
-    def force_continuous(self) -> float:
-        """Force at the nominal current density [N]."""
-        current = self._current(self.nominal_density)
-        return float(self.machine.torque(*mtpa_currents(self.machine, current))) / self.transmission_ratio
+    def effort_continuous(self) -> Values:
+        """Effort at the nominal current density [N or Nm]."""
+        currents = mtpa_currents(self.per_turn, self._ampere_turns(self.nominal_density))
+        return float(self.per_turn.torque(*currents)) * self.active_length / self.transmission_ratio
 
     @property
-    def regenerative_damping(self) -> float:
-        """Damping with short-circuited phases at low speed, 2 K_t^2 / (3 R tau_t^2) [Ns/m] (3.75), no-load flux."""
-        machine = self.machine
-        torque_constant = 1.5 * machine.pole_pairs * float(machine.flux_linkage(0.0, 0.0)[0])
+    def low_speed_damping(self) -> Values:
+        """Damping with short-circuited phases at low speed, 2 K_t^2 / (3 R tau_t^2) (3.75), no-load flux
+        [Ns/m or Nms/rad]."""
+        flux = float(self.per_turn.flux_linkage(0.0, 0.0)[0]) * self.turns * self.active_length
         return winding_damping(
-            torque_constant=torque_constant,
-            phase_resistance=machine.resistance,
+            torque_constant=1.5 * self.per_turn.pole_pairs * flux,
+            phase_resistance=self.resistance,
             transmission_ratio=self.transmission_ratio,
         )
 
     @property
-    def mass(self) -> float:
-        """[kg]"""
-        motor = self.density * pi * self.stator_outer_radius**2 * self.active_length
-        return motor + self.gearbox_mass + self.other_mass
-
-    @property
-    def equivalent_mass(self) -> float:
-        """Rotor and gears at the wheel, J / tau_t^2 [kg] (3.100, 3.102 with R_ro^4)."""
-        rotor = self.density * pi * self.rotor_outer_radius**4 * self.active_length / 2
+    def equivalent_mass(self) -> Values:
+        """Rotor and gears at the output, J / tau_t^2 [kg or kg m^2] (3.100)."""
+        rotor = self.rotor_inertia_per_length * self.active_length
         return (rotor + self.gearbox_inertia) / self.transmission_ratio**2
 
 
-@dataclass(frozen=True)
-class Requirement:
-    """One demand: what is needed, how it is read off a design, and whether that is a lower or an upper bound.
-
-    scale, unit: of the number as it is shown, value / scale
-    """
-
-    name: str
-    needed: float
-    reading: Callable[[ActuatorDesign], float]
-    at_most: bool = False
-    scale: float = 1.0
-    unit: str = ""
-
-    def check(self, design: ActuatorDesign) -> Check:
-        """The requirement against one design."""
-        return Check(self, float(self.reading(design)))
-
-
-@dataclass(frozen=True)
-class Check:
-    """A requirement and the value that a design reaches."""
-
-    requirement: Requirement
-    reached: float
-
-    @property
-    def margin(self) -> float:
-        """Relative; negative where the requirement does not hold."""
-        ratio = self.reached / self.requirement.needed - 1
-        return -ratio if self.requirement.at_most else ratio
-
-    @property
-    def holds(self) -> bool:
-        return self.margin >= -SLACK
-
-
-@dataclass(frozen=True)
-class Lever:
-    """An input that can be moved: its present value, unit for showing, and the design with another value."""
-
-    name: str
-    value: float
-    scale: float
-    unit: str
-    moved: Callable[[ActuatorDesign, float], ActuatorDesign]
-
-
-def levers_of(design: ActuatorDesign) -> tuple[Lever, ...]:
-    """Active length, transmission ratio, bus voltage, and turns at constant copper (the current grows as they fall)."""
-
-    def rewound(one: ActuatorDesign, turns: float) -> ActuatorDesign:
-        return replace(one, turns=turns, strands=one.turns * one.strands / turns)
-
-    return (
-        Lever("active length", design.active_length, MILLIMETRE, "mm", lambda d, x: replace(d, active_length=x)),
-        Lever("transmission ratio", design.transmission_ratio, MILLIMETRE, "mm/rad",
-              lambda d, x: replace(d, transmission_ratio=x)),
-        Lever("bus voltage", design.dc_voltage, 1.0, "V", lambda d, x: replace(d, dc_voltage=x)),
-        Lever("turns, at the same copper", design.turns, 1.0, "", rewound),
-    )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Remedy:
-    """The smallest move of one lever that makes a failing requirement hold, and what would fail then.
-
-    value: None where the lever does not reach it within ``LEVER_RANGE``
-    """
-
-    requirement: Requirement
-    lever: Lever
-    value: float | None
-    fails_then: tuple[str, ...] = ()
-
-
-def remedies(design: ActuatorDesign, requirements: Sequence[Requirement]) -> tuple[Remedy, ...]:
-    """For every requirement that does not hold: each lever alone, in both directions, the smaller move of the two."""
-    failing = [one for one in requirements if not one.check(design).holds]
-    return tuple(_remedy(design, one, lever, requirements) for one in failing for lever in levers_of(design))
-
-
-def _remedy(design, requirement, lever, requirements) -> Remedy:
-    found = [_smallest_move(design, requirement, lever, factor) for factor in (LEVER_RANGE, 1 / LEVER_RANGE)]
-    reached = [value for value in found if value is not None]
-    if not reached:
-        return Remedy(requirement, lever, None)
-    value = min(reached, key=lambda x: abs(np.log(x / lever.value)))
-    moved = lever.moved(design, value)
-    others = tuple(
-        one.name for one in requirements if one is not requirement
-        and one.check(design).holds and not one.check(moved).holds
-    )  # fmt: skip
-    return Remedy(requirement, lever, value, others)
-
-
-def _smallest_move(design, requirement, lever, factor):
-    """Value of the lever nearest to the present one at which the requirement holds, towards ``factor`` times it."""
-
-    def holds(share):
-        return requirement.check(lever.moved(design, lever.value * factor**share)).holds
-
-    shares = np.linspace(0, 1, _STEPS + 1)[1:]
-    first = next((k for k, share in enumerate(shares) if holds(share)), None)
-    if first is None:
-        return None
-    low, high = (shares[first - 1] if first else 0.0), shares[first]
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return lever.value * factor**high
+def together(designs: Sequence[ActuatorDesign]) -> ActuatorDesign:
+    """One batch of designs that differ in turns, strands, length, voltage or transmission ratio; each may be one."""
+    sizes = [np.broadcast_shapes((1,), *(np.shape(getattr(one, name)) for name in _IN_A_BATCH)) for one in designs]
+    rows = list(zip(designs, sizes, strict=True))
+    changed: dict[str, Any] = {
+        name: np.concatenate([np.broadcast_to(getattr(one, name), size) for one, size in rows]) for name in _IN_A_BATCH
+    }
+    return replace(designs[0], **changed)

@@ -7,13 +7,14 @@ reported ones.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, pi, sin
 
 import numpy as np
 
 from units import MILLIMETRE
 
 CAPABILITY_SLACK = 1e-6  # relative; a capability this close below its requirement is met
+Numbers = float | np.ndarray  # one value or an array of any shape
 
 
 class Constraint:
@@ -21,7 +22,7 @@ class Constraint:
 
     name: str = "constraint"
 
-    def minimum_length(self, ratio):
+    def minimum_length(self, ratio: Numbers) -> Numbers:
         """Smallest active length allowed at these ratios [m], same shape as ``ratio``; not falling in the ratio."""
         return np.zeros_like(np.asarray(ratio, dtype=float))[()]
 
@@ -41,14 +42,17 @@ class Constraint:
 class _Force(Constraint):
     """l_em >= F tau_t / r_Tl (3.66) for one force and one torque per length."""
 
-    def minimum_length(self, ratio):
+    force: float
+    torque_per_length: float
+
+    def minimum_length(self, ratio: Numbers) -> Numbers:
         return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
 
-    def capability(self, ratio, length):
+    def capability(self, ratio: float, length: float) -> float:
         """Force at the wheel, r_Tl l_em / tau_t [N]."""
         return self.torque_per_length * length / ratio
 
-    def violation(self, ratio, length):
+    def violation(self, ratio: float, length: float) -> str | None:
         reached = self.capability(ratio, length)
         if reached >= self.force * (1 - CAPABILITY_SLACK):
             return None
@@ -81,7 +85,8 @@ class OverloadForce(_Force):
 class RegenerativeDamping(Constraint):
     """Damping of the short-circuited machine, c = alpha l^2 / (l + l_et) / tau_t^2 (3.92).
 
-    damping: c required [Ns/m]; alpha: [Ns m/rad^2 per metre], see ``damping_coefficient``; end_turn_length: [m]
+    damping: c required [Ns/m], 0 where none is; alpha: [Ns m/rad^2 per metre], see ``damping_coefficient``;
+        end_turn_length: [m]
     Equations 3.94 and 3.97 call required and available damping by mixed names; the available one must not be smaller.
     """
 
@@ -90,16 +95,18 @@ class RegenerativeDamping(Constraint):
     end_turn_length: float
     name: str = "regenerative damping"
 
-    def minimum_length(self, ratio):
-        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94)."""
+    def minimum_length(self, ratio: Numbers) -> Numbers:
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping."""
+        if self.damping == 0:
+            return super().minimum_length(ratio)
         a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)
         return ((1 + np.sqrt(1 + 4 * self.end_turn_length * a)) / (2 * a))[()]
 
-    def capability(self, ratio, length):
+    def capability(self, ratio: float, length: float) -> float:
         """Largest damping coefficient at the wheel [Ns/m] (3.92)."""
         return self.alpha * length**2 / (length + self.end_turn_length) / ratio**2
 
-    def violation(self, ratio, length):
+    def violation(self, ratio: float, length: float) -> str | None:
         reached = self.capability(ratio, length)
         if reached >= self.damping * (1 - CAPABILITY_SLACK):
             return None
@@ -120,10 +127,10 @@ class SpeedLimit(Constraint):
     speed: float
     name: str = "rotor speed"
 
-    def minimum_ratio(self):
+    def minimum_ratio(self) -> float:
         return abs(self.velocity) / self.speed
 
-    def violation(self, ratio, length):
+    def violation(self, ratio: float, length: float) -> str | None:
         if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
             return None
         return (
@@ -139,32 +146,68 @@ class LengthLimit(Constraint):
     length: float
     name: str = "active length"
 
-    def maximum_length(self):
+    def maximum_length(self) -> float:
         return self.length
 
-    def violation(self, ratio, length):
+    def violation(self, ratio: float, length: float) -> str | None:
         if length <= self.length * (1 + CAPABILITY_SLACK):
             return None
         return f"{self.name} {length / MILLIMETRE:.1f} mm is above the limit of {self.length / MILLIMETRE:.1f} mm"
 
 
+def largest_stage_ratio(planets: int) -> float:
+    """Stage ratio i at which the pitch circles of neighbouring planets touch, 2 / (1 - sin(pi/n)); 14.93 for three.
+
+    d_carrier sin(pi/n) > d_planet with d_carrier = d_ring i / (2 (i - 1)), d_planet = d_ring (i - 2) / (2 (i - 1))
+    planets: n, two or more; two clear each other at any ratio
+    """
+    between = sin(pi / planets)
+    return inf if between == 1 else 2 / (1 - between)
+
+
+@dataclass(frozen=True)
+class PlanetClearance(Constraint):
+    """tau_t >= tau_l / i_max^N: neighbouring planets of N equal stages clear each other.
+
+    stage_count: N, 0 for a direct drive, whose only ratio is tau_l; planets: of a stage; linkage_ratio: tau_l [m/rad]
+    """
+
+    stage_count: int
+    planets: int
+    linkage_ratio: float
+    name: str = "planet clearance"
+
+    def minimum_ratio(self) -> float:
+        if self.stage_count == 0:
+            return 0.0
+        touching = self.linkage_ratio / largest_stage_ratio(self.planets) ** self.stage_count
+        return touching * (1 + CAPABILITY_SLACK)
+
+    def violation(self, ratio: float, length: float) -> str | None:
+        if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
+            return None
+        stage_ratio = (self.linkage_ratio / ratio) ** (1 / self.stage_count)
+        return (
+            f"{self.planets} planets overlap at a stage ratio of {stage_ratio:.2f}, they clear each other below "
+            f"{largest_stage_ratio(self.planets):.2f}; it would need more stages, or "
+            f"{self.minimum_ratio() / MILLIMETRE:.3f} mm/rad at least"
+        )
+
+
 def damping_coefficient(
-    *, torque_per_length, current_density, coils_in_series, resistivity, packing, half_slot_area
-):
+    *,
+    torque_per_length: float,
+    current_density: float,
+    coils_in_series: int,
+    resistivity: float,
+    packing: float,
+    coil_side_area: float,
+) -> float:
     """alpha_em = r_Tl^2 / (6 N_c rho k_cp A_s J^2) [Ns m/rad^2 per metre] (3.91).
 
     torque_per_length: [Nm/m] at current_density, RMS [A/m^2 of copper]; resistivity [ohm m]; packing k_cp;
-    half_slot_area A_s [m^2]. The turns cancel. ``capability`` with the thesis's numbers is 27.4 kNs/m at 2.3 mm/rad
+    coil_side_area A_s [m^2]. The turns cancel. ``capability`` with the thesis's numbers is 27.4 kNs/m at 2.3 mm/rad
     and 36 mm, not the 40 kNs/m required.
     """
-    copper = packing * half_slot_area
+    copper = packing * coil_side_area
     return torque_per_length**2 / (6 * coils_in_series * resistivity * copper * current_density**2)
-
-
-def winding_damping(*, torque_constant, phase_resistance, transmission_ratio):
-    """Damping of a wound machine in short circuit, 2 K_t^2 / (3 R_ph tau_t^2) [Ns/m] (3.75).
-
-    torque_constant: [Nm per peak ampere]; phase_resistance: [ohm]; transmission_ratio: [m/rad]. Well below the
-    electrical pole, p omega << R/L.
-    """
-    return 2 * torque_constant**2 / (3 * phase_resistance * transmission_ratio**2)

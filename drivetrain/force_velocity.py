@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from electrical.synchronous_machine import DriveLimits, OperatingMap, SynchronousMachine, operating_map
+from electrical.dq import DqMachine, DriveLimits, OperatingMap, Values, operating_map
 
 
 def force_velocity_map(
-    machine: SynchronousMachine, limits: DriveLimits, transmission_ratio: float, force, velocity
+    machine: DqMachine, limits: DriveLimits, transmission_ratio: float, force: Values, velocity: Values
 ) -> OperatingMap:
     """Currents and voltage needed for each actuator force [N] and velocity [m/s] (thesis Fig. 3.27).
 

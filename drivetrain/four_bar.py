@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from units import MILLIMETRE
 
@@ -31,7 +32,7 @@ class SwingArm:
     hardpoint_a: complex
     wheel_axle: complex
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (abs(self.hardpoint_a) > 0 and self.wheel_axle.real > 0):
             raise LinkageError(
                 "the swing arm needs hardpoint A away from its pivot and the wheel axle behind it (x above 0); found "
@@ -43,7 +44,7 @@ class SwingArm:
         """l_OW [m] (3.28)."""
         return abs(self.wheel_axle)
 
-    def turn(self, travel):
+    def turn(self, travel: ArrayLike) -> np.ndarray:
         """Rotation of the arm from its nominal position [rad]: asin((dz + y_W) / l_OW) - angle(OW_nom).
 
         travel: dz [m], any shape. Equation 3.34 with the bracket corrected: the printed one adds the nominal angle
@@ -59,7 +60,7 @@ class SwingArm:
             )
         return np.arcsin(sine) - np.angle(self.wheel_axle)
 
-    def turn_per_travel(self, travel):
+    def turn_per_travel(self, travel: ArrayLike) -> np.ndarray:
         """d(theta_OA)/d(dz) = 1 / (l_OW cos theta_OW) [rad/m]."""
         return 1 / (self.length * np.cos(self.turn(travel) + np.angle(self.wheel_axle)))
 
@@ -98,16 +99,16 @@ class FourBar:
     hardpoint_c: complex | np.ndarray
 
     @property
-    def coupler_length(self):
+    def coupler_length(self) -> float | np.ndarray:
         """l_AB [m] (3.31)."""
         return np.abs(self.hardpoint_b - self.arm.hardpoint_a)
 
     @property
-    def lever_length(self):
+    def lever_length(self) -> float | np.ndarray:
         """l_BC [m] (3.32)."""
         return np.abs(self.hardpoint_c - self.hardpoint_b)
 
-    def motion(self, travel) -> Motion:
+    def motion(self, travel: ArrayLike) -> Motion:
         """The linkage at wheel travels [m]; raises LinkageError when it does not close at each of them."""
         found = self.try_motion(travel)
         worst = np.unravel_index(np.argmax(found.reach), found.reach.shape)
@@ -120,7 +121,7 @@ class FourBar:
             )
         return found
 
-    def try_motion(self, travel) -> Motion:
+    def try_motion(self, travel: ArrayLike) -> Motion:
         """As ``motion``, with NaN and a positive ``reach`` where a linkage does not close, for a whole population.
 
         B is where the circles about A (radius l_AB) and C (radius l_BC) meet, on the side of AC on which it is
@@ -137,7 +138,7 @@ class FourBar:
         gamma, lambda_ = angle_between(a - b, c - b), angle_between(-a, b - a)
         return Motion(travel, a, b, c, ratio, gamma, lambda_, reach)
 
-    def _third_corner(self, a, c):
+    def _third_corner(self, a: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """B [m] from A and C, and the gap [m] where the triangle A, B, C does not close."""
         coupler, lever = (np.asarray(length)[..., None] for length in (self.coupler_length, self.lever_length))
         distance = np.abs(c - a)
@@ -166,12 +167,12 @@ def from_lengths(arm: SwingArm, hardpoint_c: complex, coupler_length: float, lev
     return FourBar(arm, max(corners, key=lambda b: b.imag), hardpoint_c)
 
 
-def cross(u, v):
+def cross(u: complex | np.ndarray, v: complex | np.ndarray) -> np.ndarray:
     """z component of the cross product of two plane vectors in complex form."""
     return (np.conj(u) * v).imag
 
 
-def angle_between(u, v):
+def angle_between(u: complex | np.ndarray, v: complex | np.ndarray) -> np.ndarray:
     """Angle between two plane vectors [rad], 0 ... pi."""
     return np.abs(np.angle(np.conj(u) * v))
 

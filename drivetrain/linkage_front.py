@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from pymoo.algorithms.moo.nsga2 import NSGA2
@@ -12,6 +13,7 @@ from scipy.optimize import minimize as minimize_locally
 
 from drivetrain.four_bar import FourBar, LinkageError
 from drivetrain.linkage_problem import CONSTRAINTS, LinkageProblem, constraint_text
+from drivetrain.pareto import non_dominated
 
 _STEP = 1e-6  # of the width of a box, for derivatives
 _SAFETY = 1e-8  # kept from every limit, so that rounding does not cost the feasibility
@@ -26,7 +28,7 @@ class GeneticSettings:
     generations: int = 150
     sharpened_points: int = 120
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.seeds and self.population >= 4 and self.generations >= 1):
             raise LinkageError(
                 "the genetic algorithm needs one seed, four individuals and one generation at least; found "
@@ -62,12 +64,13 @@ class ParetoFront:
 
     def first_at(self, second: float) -> float:
         """f1 of the front at this f2, linear between its points; NaN outside the front."""
-        order = np.argsort(self.objectives[:, 1])
-        return float(np.interp(second, *self.objectives[order][:, ::-1].T, left=np.nan, right=np.nan))
+        firsts, seconds = self.objectives[np.argsort(self.objectives[:, 1])].T
+        return float(np.interp(second, seconds, firsts, left=np.nan, right=np.nan))
 
     def second_at(self, first: float) -> float:
         """f2 of the front at this f1, linear between its points; NaN outside the front."""
-        return float(np.interp(first, *self.objectives.T, left=np.nan, right=np.nan))
+        firsts, seconds = self.objectives.T
+        return float(np.interp(first, firsts, seconds, left=np.nan, right=np.nan))
 
 
 @dataclass(frozen=True)
@@ -87,12 +90,12 @@ class Standing:
 class _Population(Problem):
     """``LinkageProblem`` as pymoo calls it, one array of designs at a time."""
 
-    def __init__(self, problem: LinkageProblem):
+    def __init__(self, problem: LinkageProblem) -> None:
         lower, upper = problem.bounds
         super().__init__(n_var=4, n_obj=2, n_ieq_constr=len(CONSTRAINTS), xl=lower, xu=upper)
         self.problem = problem
 
-    def _evaluate(self, x, out, *arguments, **named):
+    def _evaluate(self, x: np.ndarray, out: dict[str, np.ndarray], *arguments: Any, **named: Any) -> None:
         scores = self.problem.score(self.problem.linkage(x))
         # NSGA-II ranks infeasible designs by their constraints alone; infinity is never compared with an objective.
         out["F"] = np.where(np.isnan(scores.objectives), np.inf, scores.objectives)
@@ -117,7 +120,7 @@ def pareto_front(problem: LinkageProblem, settings: GeneticSettings = GeneticSet
     return sharpened(_front(problem, designs[keep], seeds[keep]), settings.sharpened_points)
 
 
-def _front(problem, designs, seeds):
+def _front(problem: LinkageProblem, designs: np.ndarray, seeds: np.ndarray) -> ParetoFront:
     """The non-dominated among feasible designs."""
     objectives = problem.score(problem.linkage(designs)).objectives
     keep = non_dominated(objectives)
@@ -139,23 +142,23 @@ def sharpened(front: ParetoFront, points: int) -> ParetoFront:
     return _front(problem, np.where(usable, designs, front.designs[starts]), front.seed[starts])
 
 
-def _first(problem, design):
+def _first(problem: LinkageProblem, design: np.ndarray) -> float:
     """f1 of one design."""
     return problem.score(problem.linkage(design[None])).objectives[0, 0]
 
 
-def _descend(problem, start, objective, largest_first):
+def _descend(problem: LinkageProblem, start: np.ndarray, objective: int, largest_first: float) -> np.ndarray:
     """Feasible design of least objective near a start with f1 <= largest_first, by sequential quadratic programs."""
     lower, upper = problem.bounds
     span = np.where(upper > lower, upper - lower, 1.0)
 
-    def values(unit):
+    def values(unit: np.ndarray) -> np.ndarray:
         """The objective and the slacks of all limits at unit designs, (designs, 1 + limits)."""
         scores = problem.score(problem.linkage(lower + np.atleast_2d(unit) * span))
         slack = np.column_stack([largest_first - scores.objectives[:, 0], -scores.constraints])
         return np.column_stack([scores.objectives[:, objective], slack[:, np.isfinite(slack).all(axis=0)]])
 
-    def slopes(unit):
+    def slopes(unit: np.ndarray) -> np.ndarray:
         """Derivatives of ``values`` [per unit], (4, 1 + limits), one-sided and inwards at the bounds."""
         step = np.where(unit > 0.5, -_STEP, _STEP)
         around = values(np.vstack([unit, unit + np.diag(step)]))
@@ -169,14 +172,14 @@ def _descend(problem, start, objective, largest_first):
     return lower + np.clip(result.x, 0, 1) * span
 
 
-def _run(problem, settings, seed):
+def _run(problem: LinkageProblem, settings: GeneticSettings, seed: int) -> np.ndarray:
     """Last generation of one run, (population, 4)."""
     algorithm = NSGA2(pop_size=settings.population)
     result = minimize(_Population(problem), algorithm, ("n_gen", settings.generations), seed=seed, verbose=False)
     return result.pop.get("X")
 
 
-def _nothing_feasible(problem, constraints):
+def _nothing_feasible(problem: LinkageProblem, constraints: np.ndarray) -> str:
     """Sentence on the design that misses least, among those that close if any does."""
     closure = CONSTRAINTS.index("closure over the travel")
     closing = constraints[:, closure] <= 0
@@ -187,13 +190,6 @@ def _nothing_feasible(problem, constraints):
         "no linkage with B and C inside their boxes satisfies the constraints; where the miss is smallest, "
         f"{constraint_text(problem, worst, nearest[worst])}: widen the boxes or relax that limit"
     )
-
-
-def non_dominated(objectives: np.ndarray) -> np.ndarray:
-    """Indices of the points, (points, 2), that no other one dominates, in the order of rising first objective."""
-    order = np.lexsort((objectives[:, 1], objectives[:, 0]))
-    best = np.minimum.accumulate(objectives[order, 1])
-    return order[np.concatenate([[True], objectives[order, 1][1:] < best[:-1]])]
 
 
 def standing(front: ParetoFront, linkage: FourBar) -> Standing:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from drivetrain.four_bar import FourBar, LinkageError, Motion, SwingArm, point_text
 from units import DEGREE, MILLIMETRE
@@ -35,7 +36,7 @@ class Box:
     high: complex
     name: str
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.low.real <= self.high.real and self.low.imag <= self.high.imag):
             raise LinkageError(
                 f"the box of hardpoint {self.name} needs its lower left corner before its upper right one; found "
@@ -51,7 +52,7 @@ class Travel:
     highest: float
     positions: int = TRAVEL_POSITIONS
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.lowest < 0 < self.highest:
             raise LinkageError(
                 "the wheel travel must run from below to above the nominal position, upwards positive; found "
@@ -77,7 +78,7 @@ class Limits:
     lever_length: float
     ratio_weight: float = 1.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 0 <= self.ratio_weight <= 1:
             raise LinkageError(f"the weight of the nominal ratio must lie between 0 and 1; found {self.ratio_weight:g}")
 
@@ -115,7 +116,7 @@ class LinkageProblem:
         lower, upper = (np.array([b.real, b.imag, c.real, c.imag]) for b, c in corners)
         return lower, upper
 
-    def linkage(self, designs) -> FourBar:
+    def linkage(self, designs: ArrayLike) -> FourBar:
         """Linkages of designs [m], (4,) or (linkages, 4)."""
         x_b, y_b, x_c, y_c = np.moveaxis(np.asarray(designs, dtype=float), -1, 0)
         return FourBar(self.arm, (x_b + 1j * y_b)[()], (x_c + 1j * y_c)[()])
@@ -126,14 +127,14 @@ class LinkageProblem:
         nominal = linkage.try_motion(np.zeros(1)).transmission_ratio[..., 0]
         return Scores(self._objectives(motion, nominal), self._constraints(motion, nominal, linkage.lever_length))
 
-    def _objectives(self, motion: Motion, nominal):
+    def _objectives(self, motion: Motion, nominal: np.ndarray) -> np.ndarray:
         """f1: weighed nominal ratio and spread (3.43); f2: squared extremes of the angles about pi/2 (3.44)."""
         limits, weight = self.limits, self.limits.ratio_weight
         spread = np.sqrt(_mean(motion.transmission_ratio**2) - _mean(motion.transmission_ratio) ** 2)
         ratio = weight * nominal / limits.ratio + (1 - weight) * spread / limits.ratio_spread
         return np.stack([ratio, sum(low**2 + high**2 for low, high in _extremes(motion))], axis=-1)
 
-    def _constraints(self, motion: Motion, nominal, lever):
+    def _constraints(self, motion: Motion, nominal: np.ndarray, lever: float | np.ndarray) -> np.ndarray:
         """g <= 0 (3.45-3.49): the angles at both extremes, as a maximum alone says nothing of an angle below pi/2;
         the lever not below its shortest, which 3.49 prints with the other sign."""
         limits = self.limits
@@ -145,12 +146,12 @@ class LinkageProblem:
         return np.where(np.isnan(values), np.maximum(broken, 0)[..., None], values)
 
 
-def _mean(values):
+def _mean(values: np.ndarray) -> np.ndarray:
     """Mean over the travel, trapezoidal: independent of how many positions there are."""
     return (values.sum(axis=-1) - (values[..., 0] + values[..., -1]) / 2) / (values.shape[-1] - 1)
 
 
-def _extremes(motion: Motion):
+def _extremes(motion: Motion) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
     """Smallest and largest gamma and lambda over the travel, less pi/2 [rad]."""
     return tuple((angle.min(axis=-1) - pi / 2, angle.max(axis=-1) - pi / 2) for angle in (motion.gamma, motion.lambda_))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf, nan
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -17,13 +17,18 @@ from drivetrain.constraints import (
     Constraint,
     LengthLimit,
     NominalForce,
+    Numbers,
     OverloadForce,
+    PlanetClearance,
     RegenerativeDamping,
     SpeedLimit,
     damping_coefficient,
 )
+from drivetrain.masses import CopperBars, MassModel
 from drivetrain.planetary import Gearbox, GearboxDesign
+from drivetrain.requirements import Requirements
 from electrical.end_turn import end_turn_length
+from geometry.machine import Machine
 from units import MILLIMETRE
 
 RATIO_SAMPLES = 161  # of the cost curve before the minimum is refined
@@ -32,52 +37,41 @@ BOUND_SLACK = 1e-6  # relative; an optimum this close to a bound counts as lying
 
 
 class MatchError(ValueError):
-    """No transmission ratio satisfies the enforced constraints; the message names them."""
+    """No gearbox and motor satisfy the enforced constraints; the message names them and the key to move."""
 
 
 @dataclass(frozen=True)
-class CrossSection:
-    """An optimised cross-section as the match sees it, SI units.
+class SizedSection:
+    """A cross-section as the match sees it: drawn, wound in principle, and with its torques; SI units.
 
+    machine: as drawn; coils_in_series: N_c of a phase; coil_pitch: y [slots]
+    coil_side_area: A_s [m^2], what the copper of one coil side shares with its insulation
     torque_per_length_nominal, torque_per_length_overload: [Nm/m] at the nominal and at the overload current density.
         The second is a number of its own: from the field solution, or from ``linear_overload`` with its error.
     """
 
-    slots: int
-    coils_in_series: int  # N_c
-    stator_outer_radius: float  # R_so
-    rotor_outer_radius: float  # R_ro
-    back_iron_width: float  # w_bi
-    tooth_width: float  # w_tb
-    shoe_d1: float
-    shoe_d2: float
-    airgap: float  # g
-    half_slot_area: float  # A_s
+    machine: Machine
+    coils_in_series: int
+    coil_pitch: int
+    coil_side_area: float
     torque_per_length_nominal: float
     torque_per_length_overload: float
 
     @property
     def end_turn_length(self) -> float:
-        """l_et [m], with the shoe (3.84-3.90)."""
+        """l_et [m], with the shoe (3.84-3.90), of the coil pitch."""
+        machine = self.machine
         return end_turn_length(
-            slots=self.slots,
-            shoe_top_radius=self.rotor_outer_radius + self.airgap + self.shoe_d1 + self.shoe_d2,
-            slot_bottom_radius=self.stator_outer_radius - self.back_iron_width,
-            tooth_width=self.tooth_width,
+            slots=machine.slots,
+            shoe_top_radius=machine.shoe_top_radius,
+            slot_bottom_radius=machine.slot_bottom_radius,
+            tooth_width=machine.tooth_width,
+            coil_pitch=self.coil_pitch,
         )
 
-
-@dataclass(frozen=True)
-class ActuatorRequirements:
-    """Demands at the wheel in nominal and overload condition (thesis Table 3.7), magnitudes."""
-
-    regenerative_damping: float  # Ns/m
-    force_rms: float  # N
-    velocity_rms: float  # m/s
-    velocity_peak: float  # m/s
-    force_peak: float  # N
-    velocity_at_force_peak: float  # m/s
-    power_peak: float  # W
+    def copper(self, packing: float) -> CopperBars:
+        """The copper of all three phases at a packing factor k_cp."""
+        return CopperBars(packing * self.coil_side_area, 6 * self.coils_in_series, self.end_turn_length)
 
 
 @dataclass(frozen=True)
@@ -113,9 +107,18 @@ class CostWeights:
     inertia: float
     stator_radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 0 <= self.inertia <= 1:
             raise ValueError(f"the inertia weight must lie between 0 and 1; found {self.inertia}")
+
+
+@dataclass(frozen=True)
+class CostModel:
+    """How a design is valued: what its motor weighs, what counts as 1, and the weights (3.98)."""
+
+    masses: MassModel
+    scales: CostScales
+    weights: CostWeights
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,7 @@ class Match:
     notes: violated reported constraints and gearbox remarks, in words
     """
 
-    section: CrossSection
+    section: SizedSection
     transmission_ratio: float  # m/rad
     active_length: float  # m
     cost: Cost
@@ -172,6 +175,11 @@ class Match:
     ratio_bounds: tuple[float, float]  # m/rad
     bound: str | None
     notes: tuple[str, ...]
+
+    @property
+    def total_cost(self) -> float:
+        """F_cost."""
+        return self.cost.total
 
 
 @dataclass(frozen=True)
@@ -196,18 +204,23 @@ class MatchCurves:
 class RadiusMatches:
     """Matches over the stator outer radius (thesis Fig. 3.26).
 
-    radii: [m]; matches: one per radius, None where infeasible; refusals: the reasons, None where feasible
+    radii [m], transmission_ratio [m/rad], active_length [m], cost: arrays over the radius, NaN where infeasible
+    refusals: the reasons, None where feasible
     best: the match of least cost over the continuous radius; at_edge: sentence when that is an end of the range
     """
 
     radii: np.ndarray
-    matches: tuple[Match | None, ...]
+    transmission_ratio: np.ndarray
+    active_length: np.ndarray
+    cost: np.ndarray
     refusals: tuple[str | None, ...]
     best: Match
     at_edge: str | None
 
 
-def linear_overload(torque_per_length_nominal, nominal_current_density, overload_current_density):
+def linear_overload(
+    torque_per_length_nominal: float, nominal_current_density: float, overload_current_density: float
+) -> float:
     """Torque per length at the overload current density if torque grew in proportion, r J_oload / J_nom (3.68).
 
     An assumption, and a costly one: on the 85 mm, 12-slot machine of the thesis it promises 185 Nm/m at 20 A/mm^2 RMS
@@ -219,7 +232,7 @@ def linear_overload(torque_per_length_nominal, nominal_current_density, overload
     return torque_per_length_nominal * overload_current_density / nominal_current_density
 
 
-def force_constraints(section, requirements: ActuatorRequirements) -> tuple[Constraint, Constraint]:
+def force_constraints(section: SizedSection, requirements: Requirements) -> tuple[Constraint, Constraint]:
     """Nominal and overload force of Table 3.7 for this cross-section (3.95, 3.96)."""
     return (
         NominalForce(requirements.force_rms, section.torque_per_length_nominal),
@@ -227,7 +240,9 @@ def force_constraints(section, requirements: ActuatorRequirements) -> tuple[Cons
     )
 
 
-def damping_constraint(section, requirements: ActuatorRequirements, loading: CopperLoading) -> RegenerativeDamping:
+def damping_constraint(
+    section: SizedSection, requirements: Requirements, loading: CopperLoading
+) -> RegenerativeDamping:
     """Regenerative damping of Table 3.7 for this cross-section (3.91, 3.97)."""
     alpha = damping_coefficient(
         torque_per_length=section.torque_per_length_nominal,
@@ -235,60 +250,84 @@ def damping_constraint(section, requirements: ActuatorRequirements, loading: Cop
         coils_in_series=section.coils_in_series,
         resistivity=loading.resistivity,
         packing=loading.packing,
-        half_slot_area=section.half_slot_area,
+        coil_side_area=section.coil_side_area,
     )
-    return RegenerativeDamping(requirements.regenerative_damping, alpha, section.end_turn_length)
+    return RegenerativeDamping(requirements.maximum_damping, alpha, section.end_turn_length)
 
 
-def bound_constraints(requirements: ActuatorRequirements, limits: MatchLimits) -> tuple[Constraint, Constraint]:
+def bound_constraints(requirements: Requirements, limits: MatchLimits) -> tuple[Constraint, Constraint]:
     """Rotor speed and active length (3.62, 3.64)."""
     return SpeedLimit(requirements.velocity_peak, limits.rotor_speed), LengthLimit(limits.active_length)
 
 
-def damping_reported(section, requirements, limits: MatchLimits, loading: CopperLoading) -> Constraints:
+def planet_clearance(gearbox: GearboxDesign) -> PlanetClearance:
+    """The smallest transmission ratio at which the planets of every stage clear each other."""
+    return PlanetClearance(gearbox.stage_count, gearbox.planets, gearbox.linkage_ratio)
+
+
+class DampingReading:
+    """Which of the thesis's constraints shape the design; the concrete readings are below."""
+
+    def constraints(
+        self, section: SizedSection, requirements: Requirements, limits: MatchLimits, loading: CopperLoading
+    ) -> Constraints:
+        """What is enforced and what is only reported."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class DampingReported(DampingReading):
     """Forces and bounds enforced, damping only reported: the reading that reproduces the thesis's optimum.
 
     Enforced, the printed damping constraint forbids the printed optimum (27.4 instead of 40 kNs/m there).
     """
-    enforced = force_constraints(section, requirements) + bound_constraints(requirements, limits)
-    return Constraints(enforced, (damping_constraint(section, requirements, loading),))
+
+    def constraints(
+        self, section: SizedSection, requirements: Requirements, limits: MatchLimits, loading: CopperLoading
+    ) -> Constraints:
+        """See ``DampingReading``."""
+        enforced = force_constraints(section, requirements) + bound_constraints(requirements, limits)
+        return Constraints(enforced, (damping_constraint(section, requirements, loading),))
 
 
-def damping_enforced(section, requirements, limits: MatchLimits, loading: CopperLoading) -> Constraints:
+@dataclass(frozen=True)
+class DampingEnforced(DampingReading):
     """Forces, bounds and damping all enforced: the thesis's equations as they stand."""
-    reported = damping_reported(section, requirements, limits, loading)
-    return Constraints(reported.enforced + reported.reported)
+
+    def constraints(
+        self, section: SizedSection, requirements: Requirements, limits: MatchLimits, loading: CopperLoading
+    ) -> Constraints:
+        """See ``DampingReading``."""
+        reported = DampingReported().constraints(section, requirements, limits, loading)
+        return Constraints(reported.enforced + reported.reported)
 
 
-def evaluate_cost(
-    section: CrossSection, ratio, length, gearbox: Gearbox, density, scales: CostScales, weights: CostWeights
-) -> Cost:
-    """Masses and cost of one design (3.98-3.102).
+def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: Gearbox, model: CostModel) -> Cost:
+    """Masses and cost of one design (3.98-3.100).
 
     F = w_R R_so/R_lim + w_m m_eq/m_eq,max + (1 - w_m) m_tot/m_max          (3.98)
-    m_em = rho pi R_so^2 l                                                  (3.101)
-    m_eq,em = 1/2 rho pi R_ro^4 l / tau_t^2                                 (3.102)
+    m_eq,em = J_em / tau_t^2                                                (3.102)
 
-    Equation 3.102 prints R_ro^2, which is not a mass. The motor is a solid steel cylinder, its rotor too.
-    ratio: tau_t [m/rad]; length: l_em [m]; density: [kg/m^3]
+    ratio: tau_t [m/rad]; length: l_em [m]; model: motor mass m_em and rotor inertia J_em are those of its masses
     """
-    motor_mass = density * pi * section.stator_outer_radius**2 * length
-    motor_equivalent = density * pi * section.rotor_outer_radius**4 * length / ratio**2 / 2
+    scales, weights = model.scales, model.weights
+    motor_mass = model.masses.mass(section, length)
+    motor_equivalent = model.masses.rotor_inertia(section, length) / ratio**2
     equivalent = motor_equivalent + gearbox.equivalent_mass
     return Cost(
         motor_mass=motor_mass,
         gearbox_mass=gearbox.mass,
         motor_equivalent_mass=motor_equivalent,
         gearbox_equivalent_mass=gearbox.equivalent_mass,
-        radius_term=weights.stator_radius * section.stator_outer_radius / scales.stator_radius,
+        radius_term=weights.stator_radius * section.machine.stator_outer_radius / scales.stator_radius,
         inertia_term=weights.inertia * equivalent / scales.equivalent_mass,
         mass_term=(1 - weights.inertia) * (motor_mass + gearbox.mass) / scales.mass,
     )
 
 
-def active_length(enforced: tuple[Constraint, ...], ratio):
+def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
     """Largest of the enforced minimum lengths [m] at these ratios [m/rad]."""
-    return np.max([constraint.minimum_length(ratio) for constraint in enforced], axis=0)
+    return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
 
 
 def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
@@ -296,36 +335,43 @@ def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tu
 
     Raises MatchError when they leave none, naming the constraint that asks for too much length.
     """
-    low = max(constraint.minimum_ratio() for constraint in enforced)
-    high = gearbox.largest_transmission_ratio * (1 - PLANET_MARGIN)
-    low = low or high * PLANET_MARGIN
+    low, high = _gear_bounds(enforced, gearbox)
     longest = min(constraint.maximum_length() for constraint in enforced)
     _check_start(enforced, low, high, longest)
-    if active_length(enforced, high) <= longest:
+    if low == high or active_length(enforced, high) <= longest:
         return low, high
     return low, brentq(lambda ratio: active_length(enforced, ratio) - longest, low, high, xtol=1e-15)
 
 
+def _gear_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
+    """Smallest and largest transmission ratio that speed and gears leave [m/rad]; both tau_l for a direct drive."""
+    least = _sets_the_smallest_ratio(enforced).minimum_ratio()
+    if gearbox.stage_count == 0:
+        return max(least * (1 - BOUND_SLACK), gearbox.linkage_ratio), gearbox.linkage_ratio
+    high = gearbox.largest_transmission_ratio * (1 - PLANET_MARGIN)
+    return least or high * PLANET_MARGIN, high
+
+
 def match(
-    section: CrossSection,
+    section: SizedSection,
     *,
     enforced: tuple[Constraint, ...],
     reported: tuple[Constraint, ...] = (),
     gearbox: GearboxDesign,
-    scales: CostScales,
-    weights: CostWeights,
+    model: CostModel,
 ) -> Match:
     """Transmission ratio and active length of least cost for one cross-section.
 
     enforced: constraints that shape the length curve and the bounds; at least one must ask for a length
     reported: constraints that are only checked at the optimum; a violated one becomes a sentence in ``notes``
+    gearbox: at the linkage that drives it; model: what is made small
 
     Scans the allowed ratios, then refines round the best sample; the ends of the range take part.
     Raises MatchError when the enforced constraints leave no ratio.
     Source: thesis, "Optimization approach" of the match, Fig. 3.25.
     """
     bounds = ratio_bounds(enforced, gearbox)
-    design = _Design(section, enforced, gearbox, scales, weights)
+    design = _Design(section, enforced, gearbox, model)
     ratio = _minimum(design.cost_at, *bounds, RATIO_SAMPLES)
     length = float(active_length(enforced, ratio))
     box = design.gearbox_at(ratio)
@@ -343,14 +389,13 @@ def match(
 
 
 def match_curves(
-    section: CrossSection,
-    ratio,
+    section: SizedSection,
+    ratio: np.ndarray,
     *,
     enforced: tuple[Constraint, ...],
     reported: tuple[Constraint, ...] = (),
     gearbox: GearboxDesign,
-    scales: CostScales,
-    weights: CostWeights,
+    model: CostModel,
 ) -> MatchCurves:
     """Length curves of all constraints and cost terms over an array of transmission ratios [m/rad] (Fig. 3.25).
 
@@ -358,14 +403,14 @@ def match_curves(
     a length curve (speed, length) are left out of ``minimum_length``.
     """
     ratio = np.asarray(ratio, dtype=float)
-    design = _Design(section, enforced, gearbox, scales, weights)
+    design = _Design(section, enforced, gearbox, model)
     costs = [design.evaluate(value) for value in ratio]
-    lengths = {c.name: c.minimum_length(ratio) for c in enforced + reported if np.any(c.minimum_length(ratio) > 0)}
+    lengths = {c.name: np.asarray(c.minimum_length(ratio)) for c in enforced + reported}
     low, high = ratio_bounds(enforced, gearbox)
     return MatchCurves(
         ratio=ratio,
-        minimum_length=lengths,
-        active_length=active_length(enforced, ratio),
+        minimum_length={name: length for name, length in lengths.items() if np.any(length > 0)},
+        active_length=np.asarray(active_length(enforced, ratio)),
         feasible=(ratio >= low) & (ratio <= high),
         radius_term=np.array([cost.radius_term for cost in costs]),
         inertia_term=np.array([cost.inertia_term for cost in costs]),
@@ -374,116 +419,137 @@ def match_curves(
 
 
 def match_over_radius(
-    section_at: Callable[[float], CrossSection],
-    radii,
+    section_at: Callable[[float], SizedSection],
+    radii: np.ndarray,
     *,
-    constraints_of: Callable[[CrossSection], Constraints],
+    constraints_of: Callable[[SizedSection], Constraints],
     gearbox: GearboxDesign,
-    scales: CostScales,
-    weights: CostWeights,
+    model: CostModel,
 ) -> RadiusMatches:
     """Matches over an array of stator outer radii [m], and the best over the continuous radius between them.
 
     section_at: stator outer radius [m] -> cross-section, for example from the polynomial fits
     radii: two or more, rising
-    constraints_of: cross-section -> constraints, for example ``damping_reported`` with its other arguments bound
+    constraints_of: cross-section -> constraints, for example of a ``DampingReading``
     Raises MatchError when no radius has a match.
     Source: thesis, "Optimization output" of the match, Fig. 3.26.
     """
     radii = _increasing(radii)
 
-    def at(radius):
+    def at(radius: float) -> Match:
         section = section_at(radius)
         chosen = constraints_of(section)
-        return match(section, **vars(chosen), gearbox=gearbox, scales=scales, weights=weights)
+        return match(section, enforced=chosen.enforced, reported=chosen.reported, gearbox=gearbox, model=model)
 
     results = [_attempt(at, radius) for radius in radii]
-    matches = tuple(result if isinstance(result, Match) else None for result in results)
     refusals = tuple(result if isinstance(result, str) else None for result in results)
-    if not any(matches):
-        raise MatchError(f"no stator radius has a match; at {radii[0] / MILLIMETRE:g} mm: {refusals[0]}")
-    best = at(_best_radius(at, radii, matches))
-    return RadiusMatches(radii, matches, refusals, best, _edge_sentence(best, radii))
+    ratio, length, cost = np.array([_numbers(result) for result in results]).T
+    if None not in refusals:
+        raise MatchError(f"no stator radius has a match; at {radii[-1] / MILLIMETRE:g} mm: {refusals[-1]}")
+    best = at(_best_radius(at, radii, cost))
+    return RadiusMatches(radii, ratio, length, cost, refusals, best, _edge_sentence(best, radii))
 
 
 @dataclass(frozen=True)
 class _Design:
     """Everything but the transmission ratio."""
 
-    section: CrossSection
+    section: SizedSection
     enforced: tuple[Constraint, ...]
     gearbox: GearboxDesign
-    scales: CostScales
-    weights: CostWeights
+    model: CostModel
 
-    def gearbox_at(self, ratio) -> Gearbox:
-        return self.gearbox.size(envelope_radius=self.section.stator_outer_radius, transmission_ratio=ratio)
+    def gearbox_at(self, ratio: float) -> Gearbox:
+        radius = self.section.machine.stator_outer_radius
+        return self.gearbox.size(envelope_radius=radius, transmission_ratio=ratio)
 
-    def evaluate(self, ratio) -> Cost:
+    def evaluate(self, ratio: float) -> Cost:
         length = float(active_length(self.enforced, ratio))
-        density = self.gearbox.laws.density
-        return evaluate_cost(self.section, ratio, length, self.gearbox_at(ratio), density, self.scales, self.weights)
+        return evaluate_cost(self.section, ratio, length, self.gearbox_at(ratio), self.model)
 
-    def cost_at(self, ratio) -> float:
+    def cost_at(self, ratio: float) -> float:
         return self.evaluate(ratio).total
 
 
-def _minimum(cost, low, high, samples):
+def _minimum(cost: Callable[[float], float], low: float, high: float, samples: int) -> float:
     """Position of the least cost between low and high: best sample, refined between its neighbours, ends included."""
     grid = np.linspace(low, high, samples)
     best = int(np.argmin([cost(value) for value in grid]))
     return _refine(cost, grid, best)
 
 
-def _refine(cost, grid, best):
+def _refine(cost: Callable[[float], float], grid: np.ndarray, best: int) -> float:
     """Least cost between the neighbours of the best sample."""
     low, high = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, len(grid) - 1)])
     inner = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high})
     return min((float(inner.x), float(grid[best])), key=cost)
 
 
-def _check_start(enforced, low, high, longest):
+def _check_start(enforced: tuple[Constraint, ...], low: float, high: float, longest: float) -> None:
+    """Raise MatchError where not even the smallest allowed ratio has a machine."""
+    lowest = _sets_the_smallest_ratio(enforced)
     if low > high:
         raise MatchError(
-            f"the rotor speed asks for at least {low / MILLIMETRE:.4g} mm/rad, the planets vanish at "
-            f"{high / MILLIMETRE:.4g} mm/rad: use fewer gear stages or allow a faster rotor"
+            f"the {lowest.name} asks for at least {low / MILLIMETRE:.4g} mm/rad, the planets vanish at "
+            f"{high / MILLIMETRE:.4g} mm/rad (stage ratio 2, none in a direct drive): use fewer gear stages "
+            "(match.gearbox_stages) or allow a faster rotor (match.speed_max_rad_per_s)"
         )
     if not active_length(enforced, high) > 0:
-        raise MatchError("no enforced constraint asks for an active length; enforce a force or the damping")
+        raise MatchError(
+            "no enforced constraint asks for an active length; require a force, or a damping with match.enforce_damping"
+        )
     hardest = max(enforced, key=lambda constraint: constraint.minimum_length(low))
     if hardest.minimum_length(low) > longest:
         raise MatchError(
             f"{hardest.name} needs {hardest.minimum_length(low) / MILLIMETRE:.1f} mm of active length at the smallest "
-            f"allowed ratio of {low / MILLIMETRE:.3f} mm/rad, the limit is {longest / MILLIMETRE:.1f} mm: relax one "
-            "of the two or take a larger stator"
+            f"allowed ratio of {low / MILLIMETRE:.3f} mm/rad, set by the {lowest.name}; the limit is "
+            f"{longest / MILLIMETRE:.1f} mm: relax one of the two ({_lowers(lowest)}, match.length_max_mm) or take a "
+            "larger stator (sweep.stator_diameters_mm)"
         )
 
 
-def _bound_sentence(ratio, bounds, enforced):
+def _sets_the_smallest_ratio(enforced: tuple[Constraint, ...]) -> Constraint:
+    return max(enforced, key=lambda constraint: constraint.minimum_ratio())
+
+
+def _lowers(lowest: Constraint) -> str:
+    """What makes the smallest allowed ratio smaller: the key of the study and its direction."""
+    return "more match.gearbox_stages" if isinstance(lowest, PlanetClearance) else "match.speed_max_rad_per_s"
+
+
+def _bound_sentence(ratio: float, bounds: tuple[float, float], enforced: tuple[Constraint, ...]) -> str | None:
     low, high = bounds
+    if low == high:
+        return None
     if ratio <= low * (1 + BOUND_SLACK):
-        return f"the optimum lies on the smallest allowed transmission ratio, {low / MILLIMETRE:.3f} mm/rad"
+        lowest = _sets_the_smallest_ratio(enforced)
+        return (
+            f"the optimum lies on the smallest allowed transmission ratio, {low / MILLIMETRE:.3f} mm/rad, set by the "
+            f"{lowest.name} ({_lowers(lowest)})"
+        )
     if ratio >= high * (1 - BOUND_SLACK):
-        length = active_length(enforced, high) / MILLIMETRE
+        length = float(active_length(enforced, high))
+        longest = min(constraint.maximum_length() for constraint in enforced)
+        key = "match.length_max_mm" if length >= longest * (1 - BOUND_SLACK) else "fewer match.gearbox_stages"
         return (
             f"the optimum lies on the largest allowed transmission ratio, {high / MILLIMETRE:.3f} mm/rad "
-            f"({length:.1f} mm of active length)"
+            f"({length / MILLIMETRE:.1f} mm of active length; {key})"
         )
     return None
 
 
-def _violations(reported, ratio, length):
+def _violations(reported: tuple[Constraint, ...], ratio: float, length: float) -> tuple[str, ...]:
     return tuple(filter(None, (constraint.violation(ratio, length) for constraint in reported)))
 
 
-def _increasing(radii):
+def _increasing(radii: np.ndarray) -> np.ndarray:
     radii = np.asarray(radii, dtype=float)
     if radii.ndim != 1 or len(radii) < 2 or not np.all(np.diff(radii) > 0):
         raise ValueError(f"give at least two stator radii in rising order, in metres; found {radii}")
     return radii
 
 
-def _attempt(at, radius):
+def _attempt(at: Callable[[float], Match], radius: float) -> Match | str:
     """The match at this radius, or the sentence that says why there is none."""
     try:
         return at(radius)
@@ -491,21 +557,30 @@ def _attempt(at, radius):
         return str(refusal)
 
 
-def _best_radius(at, radii, matches):
-    def cost(radius):
+def _numbers(result: Match | str) -> tuple[float, float, float]:
+    """Transmission ratio, active length and cost; NaN where there is no match."""
+    if isinstance(result, str):
+        return nan, nan, nan
+    return result.transmission_ratio, result.active_length, result.cost.total
+
+
+def _best_radius(at: Callable[[float], Match], radii: np.ndarray, costs: np.ndarray) -> float:
+    def cost(radius: float) -> float:
         result = _attempt(at, radius)
         return inf if isinstance(result, str) else result.cost.total
 
-    costs = [inf if result is None else result.cost.total for result in matches]
-    return _refine(cost, radii, int(np.argmin(costs)))
+    with np.errstate(invalid="ignore"):  # the parabola of the search through a radius without a match
+        return _refine(cost, radii, int(np.nanargmin(costs)))
 
 
-def _edge_sentence(best, radii):
-    radius = best.section.stator_outer_radius
+def _edge_sentence(best: Match, radii: np.ndarray) -> str | None:
+    radius = best.section.machine.stator_outer_radius
     edges = (radii.min(), radii.max())
     if min(abs(radius - edge) / radius for edge in edges) > BOUND_SLACK:
         return None
+    which = "smaller" if abs(radius - edges[0]) < abs(radius - edges[1]) else "larger"
+    low, high, diameter = (2 * length / MILLIMETRE for length in (*edges, radius))
     return (
-        f"the least cost lies at {radius / MILLIMETRE:.2f} mm, an end of the investigated range "
-        f"{edges[0] / MILLIMETRE:g} to {edges[1] / MILLIMETRE:g} mm; the true minimum is outside"
+        f"the least cost lies at a stator diameter of {diameter:.4g} mm, an end of the investigated range {low:g} to "
+        f"{high:g} mm; the true minimum is outside: add {which} diameters to sweep.stator_diameters_mm"
     )

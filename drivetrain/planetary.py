@@ -1,13 +1,15 @@
 """Planetary gearbox from its ratio and envelope: diameters, face width against pitting, mass, inertia.
 
-Three planets per stage, ring fixed, sun on the fast side, carrier on the slow side; stage 1 is the slow one, driven by
-the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118, corrected where noted.
+Equal planets in each stage (three in the thesis), ring fixed, sun on the fast side, carrier on the slow side; stage 1
+is the slow one, driven by the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118, corrected where noted.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
+
+from drivetrain.constraints import largest_stage_ratio
 
 STEEL_DENSITY = 7800.0  # kg/m^3, thesis below eq. 3.101
 PLANETS = 3  # per stage, thesis below eq. 3.115
@@ -93,16 +95,17 @@ NITRIDED_STEEL = GearLaws(
 
 @dataclass(frozen=True)
 class StageShape:
-    """Pitch diameters of one stage from its ratio i = 1 + d_ring/d_sun and ring pitch diameter [m]."""
+    """Pitch diameters of one stage from its ratio i = 1 + d_ring/d_sun, ring pitch diameter [m], number of planets."""
 
     ratio: float
     ring_diameter: float
+    planets: int = PLANETS
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.ratio > 2:
             raise GearboxError(
                 f"a stage with a fixed ring needs a ratio above 2 for its planets to have a diameter; found "
-                f"{self.ratio:.4g}: use fewer stages or a smaller transmission ratio"
+                f"{self.ratio:.4g}: use fewer stages (match.gearbox_stages) or a smaller transmission ratio"
             )
 
     @property
@@ -122,8 +125,8 @@ class StageShape:
 
     @property
     def planets_clear_each_other(self) -> bool:
-        """Pitch circles of neighbouring planets do not overlap: d_carrier sin(pi/3) > d_planet, i < 14.93."""
-        return self.carrier_diameter * sin(pi / PLANETS) > self.planet_diameter
+        """Pitch circles of neighbouring planets do not overlap: d_carrier sin(pi/n) > d_planet; i < 14.93 for three."""
+        return self.carrier_diameter * sin(pi / self.planets) > self.planet_diameter
 
 
 @dataclass(frozen=True)
@@ -137,27 +140,27 @@ class PlanetaryStage:
 
     @property
     def mass(self) -> float:
-        """Sun, three planets, solid carrier and ring [kg].
+        """Sun, planets, solid carrier and ring [kg].
 
-        m = pi/4 rho b [d_sun^2 + 3 d_planet^2 + d_carrier^2 + D^2 - d_ring^2]          (3.109)
+        m = pi/4 rho b [d_sun^2 + n d_planet^2 + d_carrier^2 + D^2 - d_ring^2]          (3.109)
         """
         shape = self.shape
         rim = self.envelope_diameter**2 - shape.ring_diameter**2
-        squares = shape.sun_diameter**2 + PLANETS * shape.planet_diameter**2 + shape.carrier_diameter**2 + rim
+        squares = shape.sun_diameter**2 + shape.planets * shape.planet_diameter**2 + shape.carrier_diameter**2 + rim
         return pi / 4 * self.density * self.face_width * squares
 
     @property
     def inertia_at_carrier(self) -> float:
         """Inertia of all moving parts seen at the carrier [kg m^2].
 
-        J = pi/256 rho b d_ring^4 i^2 / (i - 1)^4 (5 i^2 - 18 i + 26)
+        J = pi/512 rho b d_ring^4 i^2 / (i - 1)^4 [16 + i^2 + 3 n (i - 2)^2]
 
-        Sun, solid carrier, and planets that spin and orbit. Equation 3.111, pi/128 (i^2 - 3 i + 7), is the same
-        without the orbits: a factor 2.19 at i = 8.7.
+        Sun, solid carrier, and n planets that spin and orbit; for three the bracket is 2 (5 i^2 - 18 i + 26). Equation
+        3.111, pi/128 (i^2 - 3 i + 7), is the same without the orbits: a factor 2.19 at i = 8.7.
         """
         i = self.shape.ratio
         size = self.density * self.face_width * self.shape.ring_diameter**4
-        return pi / 256 * size * i**2 / (i - 1) ** 4 * (5 * i**2 - 18 * i + 26)
+        return pi / 512 * size * i**2 / (i - 1) ** 4 * (16 + i**2 + 3 * self.shape.planets * (i - 2) ** 2)
 
 
 @dataclass(frozen=True)
@@ -188,8 +191,8 @@ class Gearbox:
     def notes(self) -> tuple[str, ...]:
         """What cannot be built although the scaling laws size it, in words."""
         return tuple(
-            f"stage {number}: {PLANETS} planets overlap at a ratio of {stage.shape.ratio:.2f} "
-            "(they clear each other below 14.93); use more stages"
+            f"stage {number}: {stage.shape.planets} planets overlap at a ratio of {stage.shape.ratio:.2f} "
+            f"(they clear each other below {largest_stage_ratio(stage.shape.planets):.2f}); use more stages"
             for number, stage in enumerate(self.stages, start=1)
             if not stage.shape.planets_clear_each_other
         )
@@ -199,11 +202,11 @@ class Gearbox:
 class GearboxDesign:
     """What a gearbox is sized from.
 
-    stage_count: N
+    stage_count: N, 0 for a direct drive
     linkage_ratio: tau_l [m/rad]; one number for a linkage whose ratio varies over the wheel travel. The thesis's match
         follows from the nominal value (170 mm/rad); the largest (175 mm/rad) widens the teeth by 4 %
     force_rms, velocity_rms: fatigue load at the wheel [N, m/s]
-    laws: material and design numbers
+    laws: material and design numbers; planets: of a stage
     """
 
     stage_count: int
@@ -211,10 +214,11 @@ class GearboxDesign:
     force_rms: float
     velocity_rms: float
     laws: GearLaws = NITRIDED_STEEL
+    planets: int = PLANETS
 
     @property
     def largest_transmission_ratio(self) -> float:
-        """tau_t at which the stage ratio falls to 2 and the planets vanish [m/rad]."""
+        """tau_t at which the stage ratio falls to 2 and the planets vanish [m/rad]; tau_l without stages."""
         return self.linkage_ratio / 2**self.stage_count
 
     def stage_ratio(self, transmission_ratio: float) -> float:
@@ -226,13 +230,15 @@ class GearboxDesign:
 
         Raises GearboxError when the stage ratio is not above 2.
         """
+        if self.stage_count == 0:
+            return Gearbox((), self.linkage_ratio)
         ring = self.laws.ring_fraction * 2 * envelope_radius  # 3.103
-        shape = StageShape(self.stage_ratio(transmission_ratio), ring)
+        shape = StageShape(self.stage_ratio(transmission_ratio), ring, self.planets)
         widths = (face_width(shape, *self._carrier_load(shape.ratio, j), self.laws) for j in range(self.stage_count))
         stages = tuple(PlanetaryStage(shape, width, 2 * envelope_radius, self.laws.density) for width in widths)
         return Gearbox(stages, self.linkage_ratio)
 
-    def _carrier_load(self, ratio, stages_before):
+    def _carrier_load(self, ratio: float, stages_before: int) -> tuple[float, float]:
         """Torque [Nm] and speed [rad/s] of the carrier behind so many stages.
 
         T_c = F tau_l / i^(j-1), omega_c = v i^(j-1) / tau_l: eqs 3.113-3.114 print i^j, one stage too far for the
@@ -245,9 +251,9 @@ class GearboxDesign:
 def face_width(shape: StageShape, carrier_torque: float, carrier_speed: float, laws: GearLaws) -> float:
     """Face width at which the contact stress between sun and planets reaches its limit [m].
 
-    b = (T_c / 3) / [ (sigma_H / Z)^2 (i - 2) / (2 (i - 1)^2) d_ring^2 ]
+    b = (T_c / n) / [ (sigma_H / Z)^2 (i - 2) / (2 (i - 1)^2) d_ring^2 ]
 
-    From sigma_H^2 = Z^2 F_t / (b d_sun) (u + 1)/u with F_t = 2 T_sun / (3 d_sun), T_sun = T_c / i and
+    From sigma_H^2 = Z^2 F_t / (b d_sun) (u + 1)/u with F_t = 2 T_sun / (n d_sun), T_sun = T_c / i and
     (u + 1)/u = i/(i - 2). Equation 3.115 prints sigma_H/Z without its square and i^-2 for (i - 2).
 
     carrier_torque: T_c [Nm]; carrier_speed: [rad/s]
@@ -255,4 +261,4 @@ def face_width(shape: StageShape, carrier_torque: float, carrier_speed: float, l
     i = shape.ratio
     velocity = i * carrier_speed * shape.sun_diameter / 2
     stress_ratio = laws.contact_strength / laws.pitting_factor(velocity)
-    return carrier_torque / PLANETS / (stress_ratio**2 * (i - 2) / (2 * (i - 1) ** 2) * shape.ring_diameter**2)
+    return carrier_torque / shape.planets / (stress_ratio**2 * (i - 2) / (2 * (i - 1) ** 2) * shape.ring_diameter**2)

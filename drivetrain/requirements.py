@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from electrical.shaft_demand import ShaftDemand
+
 
 @dataclass(frozen=True)
 class Requirements:
@@ -48,7 +50,33 @@ class Linkage:
 
 
 @dataclass(frozen=True)
+class Transmission:
+    """Overall transmission from wheel travel to the rotor, linkage and gears together, tau_t [m/rad].
+
+    nominal: in the nominal wheel position; largest: along the travel, where a force asks for the largest torque
+    """
+
+    nominal: float
+    largest: float
+
+
+@dataclass(frozen=True)
 class InstallationSpace:
     """Room for the actuator; radius_max: its largest outer radius [m], None where nothing limits it."""
 
     radius_max: float | None
+
+
+def shaft_demand(required: Requirements, transmission: Transmission) -> ShaftDemand:
+    """What the demands at the wheel are at the rotor: omega = v / tau_t, T = F tau_t, d = c tau_t^2 (3.4, 3.5, 3.120).
+
+    Speeds and the damping count in the nominal position, as in the match; forces where the ratio is largest, so that
+    they hold over the whole travel.
+    """
+    return ShaftDemand(
+        base_speed=required.velocity_at_force_peak / transmission.nominal,
+        power=required.power_peak,
+        torque_peak=required.force_peak * transmission.largest,
+        torque_rms=required.force_rms * transmission.largest,
+        damping=required.maximum_damping * transmission.nominal**2,
+    )

@@ -11,8 +11,9 @@ parameter it changes nothing, bit for bit. An effect never calls a solver.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -24,7 +25,8 @@ Columns = Mapping[str, np.ndarray]  # column name -> values in SI (n,)
 class Effect:
     """Common to all kinds.
 
-    title: a few words for a table;  looks_like: one sentence, what it does to the data;  remedy: measurements that show it
+    title: a few words for a table;  looks_like: one sentence, what it does to the data
+    remedy: measurements that show it
     designs: types of design it can act on; empty means any
     contains: effects that are special cases of this one, never combined with it
     model_error: declared relative error of the effect's own law

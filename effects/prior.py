@@ -1,4 +1,4 @@
-"""What is believed about the size of a parameter before anything is measured, as a map from a standard normal number."""
+"""What is believed about the size of a parameter before anything is measured, as a map from a standard normal."""
 
 from __future__ import annotations
 

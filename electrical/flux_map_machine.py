@@ -7,17 +7,19 @@ Rotor frame, amplitude-invariant: currents, voltages and flux linkages are peak 
     v_d = R i_d - omega_e psi_q,    v_q = R i_q + omega_e psi_d
 
 Steady state and mean over the rotor angle: no ripple, no iron loss. ``SynchronousMachine`` is the same machine with
-constant parameters; what a current and a voltage limit leave of this one is in ``flux_map_limits``.
+constant parameters; what a current and a voltage limit leave of either is in ``electrical.dq``.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import xarray as xr
 from scipy.interpolate import RectBivariateSpline
 
+from electrical.dq import LIMIT_SLACK, Values, torque_of, voltage_of
 from electrical.synchronous_machine import SynchronousMachine
 
 _FEWEST = 4  # points along an axis that a cubic spline needs
@@ -25,6 +27,7 @@ _CHECKED_PER_CELL = 4  # where the Jacobian is looked at, points along each side
 _OUTSIDE = 1e-9  # relative to the span of the map; a current this far beyond its edge counts as on it
 _INVERSE_TOLERANCE = 1e-13  # of the flux linkage, relative to the largest in the map
 _MOST_ITERATIONS = 60
+_ON_EDGE = 1e-6  # relative to the width of the map
 
 
 class FluxMapMachineError(ValueError):
@@ -33,12 +36,12 @@ class FluxMapMachineError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class FluxMapMachine:
-    """Machine described by its flux linkages over a rectangular grid of currents.
+    """Machine described by its flux linkages over a rectangular grid of currents, a ``DqMachine``.
 
     pole_pairs: p
     i_d (n,), i_q (m,): peak phase currents, increasing, four or more each [A]
     psi_d, psi_q (n, m): peak flux linkages of one phase [Wb]
-    resistance: one phase R [ohm], may be zero
+    resistance: one phase R [ohm], may be zero; an array of several windings is a family
 
     Raises FluxMapMachineError when the spline through the points is not strictly monotone, that is when the symmetric
     part of its incremental inductances is not positive definite somewhere: only then is the inverse unique everywhere.
@@ -50,14 +53,14 @@ class FluxMapMachine:
     i_q: np.ndarray
     psi_d: np.ndarray
     psi_q: np.ndarray
-    resistance: float
+    resistance: Values
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _check_axis("i_d", self.i_d)
         _check_axis("i_q", self.i_q)
         for name in ("psi_d", "psi_q"):
             _check_table(name, getattr(self, name), (len(self.i_d), len(self.i_q)))
-        if self.pole_pairs < 1 or self.resistance < 0:
+        if self.pole_pairs < 1 or np.any(np.asarray(self.resistance) < 0):
             raise FluxMapMachineError(
                 "a machine has a pole pair or more and no negative resistance; "
                 f"found {self.pole_pairs}, {self.resistance}"
@@ -65,7 +68,9 @@ class FluxMapMachine:
         self._check_monotone()
 
     @classmethod
-    def from_per_turn(cls, data, *, turns: int, active_length: float, resistance: float) -> FluxMapMachine:
+    def from_per_turn(
+        cls, data: xr.Dataset, *, turns: float, active_length: float, resistance: Values
+    ) -> FluxMapMachine:
         """The machine with a winding: i = NI / N_t, psi = N_t l psi_1, mean over the rotor angle.
 
         data: map per turn and metre with the variables psi_d, psi_q over angle, id, iq (an ``xarray.Dataset`` of
@@ -85,34 +90,32 @@ class FluxMapMachine:
 
     # ---- current to flux linkage --------------------------------------------------------------------------------
 
-    def __call__(self, i_d, i_q):
+    def __call__(self, i_d: Values, i_q: Values) -> tuple[Values, Values, Values]:
         """(psi_d, psi_q, torque) [Wb, Wb, Nm] at peak phase currents [A]; arrays broadcast."""
-        psi_d, psi_q = self.flux_linkage(i_d, i_q)
-        return psi_d, psi_q, 1.5 * self.pole_pairs * (psi_d * i_q - psi_q * i_d)
+        psi = self.flux_linkage(i_d, i_q)
+        return *psi, torque_of(self.pole_pairs, psi, i_d, i_q)
 
-    def flux_linkage(self, i_d, i_q):
+    def flux_linkage(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """(psi_d, psi_q) [Wb] at peak phase currents [A]."""
         i_d, i_q = self._inside(i_d, i_q)
         return self._psi_d.ev(i_d, i_q), self._psi_q.ev(i_d, i_q)
 
-    def torque(self, i_d, i_q):
+    def torque(self, i_d: Values, i_q: Values) -> Values:
         """T = 1.5 p (psi_d i_q - psi_q i_d) [Nm]."""
         return self(i_d, i_q)[2]
 
-    def voltage(self, i_d, i_q, speed):
+    def voltage(self, i_d: Values, i_q: Values, speed: Values) -> tuple[Values, Values]:
         """(v_d, v_q) in the steady state [V peak phase] at mechanical speed [rad/s]."""
-        psi_d, psi_q = self.flux_linkage(i_d, i_q)
-        omega_e = self.pole_pairs * speed
-        return self.resistance * i_d - omega_e * psi_q, self.resistance * i_q + omega_e * psi_d
+        return voltage_of(self.resistance, self.flux_linkage(i_d, i_q), i_d, i_q, self.pole_pairs * speed)
 
-    def incremental_inductances(self, i_d, i_q) -> np.ndarray:
+    def incremental_inductances(self, i_d: Values, i_q: Values) -> np.ndarray:
         """d(psi_d, psi_q) / d(i_d, i_q) (2, 2, ...) [H].
 
         Reciprocity (L_dq = L_qd) holds for the map itself and for the two splines as far as they follow it.
         """
         return self._jacobian(*self._inside(i_d, i_q))
 
-    def apparent_inductances(self, i_d, i_q):
+    def apparent_inductances(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """((psi_d(i_d, i_q) - psi_d(0, i_q)) / i_d, psi_q / i_q) [H]; currents of zero are refused.
 
         On the axes these are the usual apparent inductances; elsewhere cross-saturation of the magnet flux is left in
@@ -125,7 +128,7 @@ class FluxMapMachine:
 
     # ---- flux linkage to current --------------------------------------------------------------------------------
 
-    def currents(self, psi_d, psi_q):
+    def currents(self, psi_d: Values, psi_q: Values) -> tuple[Values, Values]:
         """(i_d, i_q) [A] at flux linkages [Wb]: Newton's method with the spline's derivatives, to 1e-13 of the flux.
 
         Raises FluxMapMachineError when a flux linkage belongs to no current of the map.
@@ -138,7 +141,7 @@ class FluxMapMachine:
             )
         return i_d, i_q
 
-    def continued_currents(self, psi_d, psi_q):
+    def continued_currents(self, psi_d: Values, psi_q: Values) -> tuple[Values, Values, np.ndarray]:
         """(i_d, i_q, inside) for any flux linkage [Wb]; ``inside`` tells which belong to the map.
 
         Beyond its edge the map is continued along straight lines with its smallest incremental inductance, which keeps
@@ -164,6 +167,31 @@ class FluxMapMachine:
         """Largest peak current of which the whole motoring quarter (i_d <= 0 <= i_q) lies in the map [A]."""
         return float(min(-self.i_d[0], self.i_q[-1]))
 
+    def direct_range(self, current: Values) -> tuple[Values, Values]:
+        """Range of i_d [A] inside a current [A] and inside the map.
+
+        Raises FluxMapMachineError where the motoring quarter of the current leaves the map.
+        """
+        if np.max(current) > self.reach * (1 + LIMIT_SLACK):
+            raise FluxMapMachineError(
+                f"the current limit of {np.max(current):.4g} A leaves the map, which reaches {self.reach:.4g} A: "
+                "solve a larger map"
+            )
+        return np.maximum(-np.asarray(current, dtype=float), self.i_d[0])[()], np.minimum(current, self.i_d[-1])
+
+    def with_resistance(self, resistance: Values) -> FluxMapMachine:
+        """The same machine with another resistance of one phase [ohm]; an array makes it a family."""
+        return replace(self, resistance=resistance)
+
+    def check_best(self, i_d: Values, current: Values) -> None:
+        """Raises FluxMapMachineError where a best i_d [A] lies on the edge of the map at positive i_d."""
+        edge = self.i_d[-1]
+        near = edge - np.asarray(i_d) < _ON_EDGE * (edge - self.i_d[0])
+        if np.any(near & (np.asarray(current) > edge)):
+            raise FluxMapMachineError(
+                f"the best current lies on the edge of the map at i_d = {edge:.4g} A: solve a larger map"
+            )
+
     # ---- splines ------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -174,7 +202,7 @@ class FluxMapMachine:
     def _psi_q(self) -> RectBivariateSpline:
         return RectBivariateSpline(self.i_d, self.i_q, self.psi_q)
 
-    def _jacobian(self, i_d, i_q) -> np.ndarray:
+    def _jacobian(self, i_d: Values, i_q: Values) -> np.ndarray:
         rows = [[psi.ev(i_d, i_q, dx=1), psi.ev(i_d, i_q, dy=1)] for psi in (self._psi_d, self._psi_q)]
         return np.array(rows)
 
@@ -190,7 +218,7 @@ class FluxMapMachine:
     def _slack(self, i: np.ndarray) -> np.ndarray:
         return _OUTSIDE * (self._box[1] - self._box[0]).reshape(2, *[1] * (i.ndim - 1))
 
-    def _inside(self, i_d, i_q) -> np.ndarray:
+    def _inside(self, i_d: Values, i_q: Values) -> np.ndarray:
         i = np.stack(np.broadcast_arrays(np.asarray(i_d, dtype=float), np.asarray(i_q, dtype=float)))
         clipped = self._clip(i)
         if (np.abs(i - clipped) > self._slack(i)).any():  # NaN passes and stays NaN
@@ -243,7 +271,9 @@ class FluxMapMachine:
             "solve a finer map"
         )
 
-    def _step(self, i, miss, psi, size):
+    def _step(
+        self, i: np.ndarray, miss: np.ndarray, psi: np.ndarray, size: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         step = _solve_2x2(self._continued_jacobian(i), miss)
         length = np.ones_like(size)
         for _ in range(10):

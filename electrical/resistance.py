@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from electrical.dq import Values
 from materials.conductor import COPPER
 
 COPPER_RESISTIVITY_20 = COPPER.reference_resistivity  # ohm m at 20 degC, thesis below eq. 3.82
@@ -21,12 +22,19 @@ def copper_resistivity(temperature_celsius: float = 20.0) -> float:
             f"copper temperature must lie between {low:g} and {high:g} degC for the linear law; "
             f"found {temperature_celsius:g} degC"
         )
-    return COPPER.resistivity(temperature_celsius)
+    return float(COPPER.resistivity(temperature_celsius))
 
 
 def phase_resistance(
-    *, turns, strands, wire_area, active_length, end_turn_length, coils_in_series, resistivity
-):
+    *,
+    turns: Values,
+    strands: Values,
+    wire_area: float,
+    active_length: Values,
+    end_turn_length: float,
+    coils_in_series: int,
+    resistivity: float,
+) -> Values:
     """Resistance of one phase with its coils in series [ohm].
 
     R_ph = 2 (l_em + l_et) rho N_c N_t / (N_h A_w)      (3.82, first form)
@@ -44,8 +52,15 @@ def phase_resistance(
 
 
 def phase_resistance_of_filled_slot(
-    *, turns, packing, half_slot_area, active_length, end_turn_length, coils_in_series, resistivity
-):
+    *,
+    turns: Values,
+    packing: float,
+    half_slot_area: float,
+    active_length: Values,
+    end_turn_length: float,
+    coils_in_series: int,
+    resistivity: float,
+) -> Values:
     """Resistance of one phase whose coils fill the slot to the packing factor exactly [ohm].
 
     R_ph = 2 (l_em + l_et) rho N_c N_t^2 / (k_cp A_s)   (3.82, second form)

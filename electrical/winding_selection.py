@@ -1,29 +1,24 @@
 """Turns and wires in hand: every pair that fits the slot, what each would do, and which one to wind.
 
 A given ampere-turn count in a given cross-section makes the same field whatever the turns; more turns only trade
-current against voltage. So one field solution, per turn and per metre, values every winding of the machine.
+current against voltage. So one machine in dq, of one turn and one metre, values every winding: saturation is in every
+number where that machine is a flux map.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, pi, sqrt
 
 import numpy as np
 
+from electrical.dq import DqMachine, DriveLimits, corner_speed, maximum_power, mtpa_currents
 from electrical.resistance import phase_resistance
-from electrical.synchronous_machine import (
-    DriveLimits,
-    SynchronousMachine,
-    base_speed,
-    maximum_power,
-    mtpa_currents,
-    power_at_base_speed,
-)
+from electrical.synchronous_machine import SynchronousMachine
 from units import RPM
 
-FLUX_DISAGREEMENT = 0.05  # overload flux may exceed the no-load flux by this much before the inputs are refused
-AMPERE_TURN_REACH = 1.25  # the flux is not extrapolated further beyond the ampere-turns of its field solution
+_WEAKENING = 0.25  # negative d-axis current over the q-axis current, at which the loaded inductance L_d is read
+_SAME_CURRENT = 1e-9  # relative; a current this close above its limit meets it
 
 
 class WindingError(ValueError):
@@ -47,55 +42,24 @@ class Wire:
 class PerTurnMachine:
     """A machine of known cross-section and length before its winding is chosen.
 
-    pole_pairs: p
+    dq: of one turn and one metre: currents are peak ampere-turns of one coil [A], flux linkages of one phase with one
+        turn in every coil [Wb/m]; its resistance does not count
     coils_in_series: coils of one phase, N_c
-    half_slot_area: A_s, the section one coil side may fill [m^2]
+    coil_side_area: A_s, the section one coil side may fill [m^2]
     active_length, end_turn_length: [m]
-    flux_linkage: no-load peak flux linkage of one phase, all its coils in series [Wb per turn and metre]
-    inductance_d, inductance_q: phase inductances [H per turn^2 and metre]. The base speed is reached at full current:
-        give the apparent values there (they fall with saturation)
-    overload_torque: torque on the q axis at ``overload_ampere_turns`` [Nm per metre]
-    overload_ampere_turns: peak ampere-turns of one coil to which that torque belongs [A], sqrt(2) J k_cp A_s
     """
 
-    pole_pairs: int
+    dq: DqMachine
     coils_in_series: int
-    half_slot_area: float
+    coil_side_area: float
     active_length: float
     end_turn_length: float
-    flux_linkage: float
-    inductance_d: float
-    inductance_q: float
-    overload_torque: float
-    overload_ampere_turns: float
 
-    def __post_init__(self):
-        for name, value in vars(self).items():
+    def __post_init__(self) -> None:
+        for name in ("coils_in_series", "coil_side_area", "active_length", "end_turn_length"):
+            value = getattr(self, name)
             if not (isfinite(value) and value > 0):
                 raise WindingError(f"{name} must be a positive number; found {value}")
-        if self.overload_flux_linkage > (1 + FLUX_DISAGREEMENT) * self.flux_linkage:
-            raise WindingError(
-                f"the overload torque needs a flux linkage of {self.overload_flux_linkage:.4g} Wb per turn and metre, "
-                f"more than the no-load value {self.flux_linkage:.4g}; saturation only lowers it: check peak against "
-                "RMS ampere-turns and whether the flux linkage counts all coils in series"
-            )
-
-    @property
-    def overload_flux_linkage(self) -> float:
-        """psi_d that makes the overload torque, T / (1.5 p NI) [Wb per turn and metre]."""
-        return self.overload_torque / (1.5 * self.pole_pairs * self.overload_ampere_turns)
-
-    def flux_linkage_at(self, ampere_turns):
-        """Direct-axis flux linkage at peak ampere-turns on the q axis [Wb per turn and metre].
-
-        psi(NI) = psi_0 - (psi_0 - psi_oload) (NI / NI_oload)^2
-
-        psi_d cannot know the sign of i_q, so its lowest-order change is quadratic; the two coefficients are the
-        no-load flux and the overload torque. Within 1.5 % of the field solution of the 85 mm, 12-slot machine from
-        no current to 20 A/mm^2 RMS.
-        """
-        drop = self.flux_linkage - self.overload_flux_linkage
-        return self.flux_linkage - drop * (ampere_turns / self.overload_ampere_turns) ** 2
 
 
 @dataclass(frozen=True)
@@ -120,7 +84,7 @@ class WindingLimits:
     maximum_speed: float
     phase_current_rms: float = inf
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 0 < self.packing_limit < pi / 4:
             raise WindingError(
                 f"the packing limit must lie between 0 and pi/4 (round wires in a square grid); "
@@ -153,19 +117,19 @@ class Winding:
     turns: int  # N_t of one coil
     strands: int  # N_h, wires in hand
     fullest: bool  # N_h is the largest that fits with this N_t
-    packing: float  # copper over half-slot area
+    packing: float  # copper over the area of the coil side
     current_rms: float  # A, phase
     current_peak: float  # A, phase
     phase_resistance: float  # ohm
-    inductance_d: float  # H, phase
-    inductance_q: float  # H, phase
+    inductance_d: float  # H, phase, apparent with the overload current on the q axis and a quarter of it against d
+    inductance_q: float  # H, phase, apparent at the overload current on the q axis
     torque_constant: float  # Nm per peak ampere at the overload current on the q axis
     no_load_torque_constant: float  # Nm per peak ampere at vanishing current
-    peak_torque: float  # Nm, MTPA at the overload current
+    peak_torque: float  # Nm, MTPA at the overload current, mean over one electrical period
     base_speed: float  # rad/s, mechanical; 0 where the resistance alone uses up the voltage
     power_at_base_speed: float  # W
-    maximum_power: float  # W, ideal field weakening up to the maximum speed
-    speed_at_maximum_power: float  # rad/s, mechanical
+    maximum_power: float | None = None  # W, ideal field weakening up to the maximum speed; None: not asked for
+    speed_at_maximum_power: float | None = None  # rad/s, mechanical
 
     @property
     def phase_to_phase_resistance(self) -> float:
@@ -177,8 +141,8 @@ class Winding:
         """Two phases in series, mean over the rotor angle, L_d + L_q [H]."""
         return self.inductance_d + self.inductance_q
 
-    def machine(self, pole_pairs: int) -> SynchronousMachine:
-        """The machine with this winding, its flux that of the overload current."""
+    def constant_parameters(self, pole_pairs: int) -> SynchronousMachine:
+        """The machine with this winding as constant parameters, its flux that of the overload current."""
         psi_m = self.torque_constant / (1.5 * pole_pairs)
         return SynchronousMachine(pole_pairs, psi_m, self.inductance_d, self.inductance_q, self.phase_resistance)
 
@@ -202,7 +166,7 @@ class WindingChoice:
     table: tuple[Winding, ...]  # every pair that fits
 
 
-def required_base_speed(velocity, transmission_ratio) -> float:
+def required_base_speed(velocity: float, transmission_ratio: float) -> float:
     """Lowest base speed that gives this actuator velocity at full torque, v / tau_t [rad/s] (3.120).
 
     velocity: actuator velocity at the peak force [m/s]; transmission_ratio: tau_t [m/rad]
@@ -211,7 +175,9 @@ def required_base_speed(velocity, transmission_ratio) -> float:
     return velocity / transmission_ratio
 
 
-def winding_requirement(*, peak_force, velocity_at_peak_force, peak_power, transmission_ratio) -> WindingRequirement:
+def winding_requirement(
+    *, peak_force: float, velocity_at_peak_force: float, peak_power: float, transmission_ratio: float
+) -> WindingRequirement:
     """Requirement at the machine shaft from the actuator's [N, m/s, W] and tau_t [m/rad]; eqs 3.4 and 3.120."""
     return WindingRequirement(
         base_speed=required_base_speed(velocity_at_peak_force, transmission_ratio),
@@ -220,16 +186,16 @@ def winding_requirement(*, peak_force, velocity_at_peak_force, peak_power, trans
     )
 
 
-def feasible_pairs(half_slot_area, wire: Wire, limits: WindingLimits) -> tuple[tuple[int, int], ...]:
+def feasible_pairs(coil_side_area: float, wire: Wire, limits: WindingLimits) -> tuple[tuple[int, int], ...]:
     """Every (N_t, N_h) with N_t N_h A_w / A_s <= the largest packing (3.119), by turns, then by wires.
 
     Raises WindingError when not even one wire fits.
     """
-    wires = int(limits.largest_packing * half_slot_area / wire.area * (1 + 1e-12))
+    wires = int(limits.largest_packing * coil_side_area / wire.area * (1 + 1e-12))
     if wires < 1:
         raise WindingError(
             f"one wire of {wire.area:.4g} m^2 does not fit: packing {limits.largest_packing:.4g} of "
-            f"{half_slot_area:.4g} m^2; take a thinner wire"
+            f"{coil_side_area:.4g} m^2; take a thinner wire (winding_selection.wire_diameter_mm)"
         )
     return tuple((turns, strands) for turns in range(1, wires + 1) for strands in range(1, wires // turns + 1))
 
@@ -237,22 +203,31 @@ def feasible_pairs(half_slot_area, wire: Wire, limits: WindingLimits) -> tuple[t
 def evaluate_windings(
     machine: PerTurnMachine, wire: Wire, limits: WindingLimits, pairs: tuple[tuple[int, int], ...]
 ) -> tuple[Winding, ...]:
-    """Values each (N_t, N_h) pair at the overload current density.
+    """Values each (N_t, N_h) pair at the overload current density, without its maximum power.
 
-    I_peak = sqrt(2) J A_w N_h (3.77); psi = N_t l psi(N_t I_peak); L = N_t^2 l L_1; R from eq. 3.82; then base speed
-    and powers of the constant-parameter machine at V_DC / sqrt(3).
-    Raises WindingError when a pair has far more ampere-turns than the field solution it is valued with.
+    I_peak = sqrt(2) J A_w N_h (3.77); the machine of one turn and one metre sees N_t I_peak, V / (N_t l) and
+    R / (N_t^2 l), with R from eq. 3.82 and V = V_DC / sqrt(3); torque times l.
+    Raises a ValueError when a pair has more ampere-turns than the machine is described for.
     """
     turns, strands = np.array(pairs, dtype=float).T
-    current = sqrt(2) * limits.overload_current_density * wire.area * strands
-    _check_reach(machine, turns * current)
-    family = _family(machine, wire, turns, strands, turns * current)
-    drive = DriveLimits.from_dc_bus(current[:, None], limits.dc_voltage)
-    columns = _columns(machine, wire, family, drive, limits, turns, strands)
+    columns = _columns(machine, _scaled(machine, wire, limits, turns, strands), wire, limits, turns, strands)
     fullest = {pair_turns: max(n for t, n in pairs if t == pair_turns) for pair_turns in dict(pairs)}
     return tuple(
         Winding(turns=t, strands=n, fullest=fullest[t] == n, **{name: float(c[k]) for name, c in columns.items()})
         for k, (t, n) in enumerate(pairs)
+    )
+
+
+def with_maximum_power(
+    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, windings: tuple[Winding, ...]
+) -> tuple[Winding, ...]:
+    """The same windings with their maximum power up to the maximum speed."""
+    turns, strands = (np.array([[getattr(one, name)] for one in windings], float) for name in ("turns", "strands"))
+    scaled = _scaled(machine, wire, limits, turns, strands)
+    best = maximum_power(scaled.family, scaled.drive, limits.maximum_speed)
+    return tuple(
+        replace(one, maximum_power=float(power) * machine.active_length, speed_at_maximum_power=float(speed))
+        for one, power, speed in zip(windings, best.power, best.speed, strict=True)
     )
 
 
@@ -268,26 +243,34 @@ def select_winding(
     Raises WindingError when no pair fits the slot or none stays within the current limit.
     Source: thesis, "Electric machine windings definition", eqs 3.119-3.120, where the choice was by trial.
     """
-    table = evaluate_windings(machine, wire, limits, feasible_pairs(machine.half_slot_area, wire, limits))
+    table = evaluate_windings(machine, wire, limits, feasible_pairs(machine.coil_side_area, wire, limits))
     fullest = tuple(winding for winding in table if winding.fullest)
-    affordable = _affordable(fullest, limits)
     unrestricted = _lowest_current(fullest, requirement)
-    chosen = _lowest_current(affordable, requirement) or max(affordable, key=lambda winding: winding.base_speed)
+    chosen = choose_among(fullest, limits, requirement)
     reason = _reason(chosen, unrestricted, limits, requirement)
     return WindingChoice(chosen, reason, unrestricted, fullest, table)
 
 
-def _check_reach(machine, ampere_turns):
-    largest = float(np.max(ampere_turns))
-    if largest > AMPERE_TURN_REACH * machine.overload_ampere_turns:
-        raise WindingError(
-            f"the windings reach {largest:.4g} ampere-turns, the overload torque is known at "
-            f"{machine.overload_ampere_turns:.4g} only; solve the field at the overload current of these windings"
-        )
+def choose_among(
+    windings: tuple[Winding, ...], limits: WindingLimits, requirement: WindingRequirement
+) -> Winding:
+    """Rules 2 and 3 of ``select_winding``. Raises WindingError when no winding stays within the current limit."""
+    affordable = _affordable(windings, limits)
+    return _lowest_current(affordable, requirement) or max(affordable, key=lambda winding: winding.base_speed)
 
 
-def _family(machine, wire, turns, strands, ampere_turns):
-    """All pairs as one machine with array fields of shape (pairs, 1)."""
+@dataclass(frozen=True, eq=False)
+class _Scaled:
+    """Windings in the coordinates of one turn and one metre: a family of machines with its limits, and R [ohm]."""
+
+    family: DqMachine
+    drive: DriveLimits
+    resistance: np.ndarray
+
+
+def _scaled(
+    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, turns: np.ndarray, strands: np.ndarray
+) -> _Scaled:
     resistance = phase_resistance(
         turns=turns,
         strands=strands,
@@ -297,55 +280,61 @@ def _family(machine, wire, turns, strands, ampere_turns):
         coils_in_series=machine.coils_in_series,
         resistivity=wire.resistivity,
     )
-    return SynchronousMachine(
-        pole_pairs=machine.pole_pairs,
-        psi_m=(turns * machine.active_length * machine.flux_linkage_at(ampere_turns))[:, None],
-        inductance_d=(turns**2 * machine.active_length * machine.inductance_d)[:, None],
-        inductance_q=(turns**2 * machine.active_length * machine.inductance_q)[:, None],
-        resistance=resistance[:, None],
-    )
+    current = sqrt(2) * limits.overload_current_density * wire.area * strands
+    drive = DriveLimits.from_dc_bus(turns * current, limits.dc_voltage / (turns * machine.active_length))
+    family = machine.dq.with_resistance(resistance / (turns**2 * machine.active_length))
+    return _Scaled(family, drive, resistance)
 
 
-def _columns(machine, wire, family, drive, limits, turns, strands):
+def _columns(
+    machine: PerTurnMachine, scaled: _Scaled, wire: Wire, limits: WindingLimits, turns: np.ndarray, strands: np.ndarray
+) -> dict[str, np.ndarray]:
     """The fields of ``Winding`` that are numbers, each an array over the pairs."""
-    best = maximum_power(family, drive, limits.maximum_speed)
-    current = drive.current_peak[:, 0]
+    family, length, ampere_turns = scaled.family, machine.active_length, scaled.drive.current_peak
+    best = mtpa_currents(family, ampere_turns)
+    torque, base = length * family.torque(*best), corner_speed(family, scaled.drive, *best)
+    psi_d, psi_q = family.flux_linkage(np.zeros_like(ampere_turns), ampere_turns)
+    weakened = family.flux_linkage(-_WEAKENING * ampere_turns, ampere_turns)[0]
+    no_load = family.flux_linkage(0.0, 0.0)[0]
+    constant, inductance = 1.5 * family.pole_pairs * turns * length, turns**2 * length / ampere_turns
+    current = ampere_turns / turns
     return {
-        "packing": turns * strands * wire.area / machine.half_slot_area,
+        "packing": turns * strands * wire.area / machine.coil_side_area,
         "current_rms": current / sqrt(2),
         "current_peak": current,
-        "phase_resistance": family.resistance[:, 0],
-        "inductance_d": family.inductance_d[:, 0],
-        "inductance_q": family.inductance_q[:, 0],
-        "torque_constant": family.torque_constant[:, 0],
-        "no_load_torque_constant": 1.5 * machine.pole_pairs * turns * machine.active_length * machine.flux_linkage,
-        "peak_torque": family.torque(*mtpa_currents(family, drive.current_peak))[:, 0],
-        "base_speed": base_speed(family, drive)[:, 0],
-        "power_at_base_speed": power_at_base_speed(family, drive)[:, 0],
-        "maximum_power": best.power,
-        "speed_at_maximum_power": best.speed,
+        "phase_resistance": scaled.resistance,
+        "inductance_d": (psi_d - weakened) / _WEAKENING * inductance,
+        "inductance_q": psi_q * inductance,
+        "torque_constant": constant * psi_d,
+        "no_load_torque_constant": constant * no_load,
+        "peak_torque": torque,
+        "base_speed": base,
+        "power_at_base_speed": torque * base,
     }
 
 
-def _affordable(windings, limits):
+def _affordable(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[Winding, ...]:
     """Windings within the current limit, a hair of rounding apart."""
-    affordable = tuple(w for w in windings if w.current_rms <= limits.phase_current_rms * (1 + 1e-9))
+    affordable = tuple(w for w in windings if w.current_rms <= limits.phase_current_rms * (1 + _SAME_CURRENT))
     if not affordable:
         smallest = min(winding.current_rms for winding in windings)
         raise WindingError(
             f"every winding needs more than {limits.phase_current_rms:.4g} A RMS; the smallest is {smallest:.4g} A "
-            "with the slot as full as it gets: raise the current limit or take a thinner wire"
+            "with the slot as full as it gets: raise the current limit (winding_selection.phase_current_max_rms_A) or "
+            "take a thinner wire (winding_selection.wire_diameter_mm)"
         )
     return affordable
 
 
-def _lowest_current(windings, requirement):
+def _lowest_current(windings: tuple[Winding, ...], requirement: WindingRequirement) -> Winding | None:
     """Lowest current among those that meet the requirement; of equals the one with the larger base speed."""
     meeting = [winding for winding in windings if winding.satisfies(requirement)]
     return min(meeting, key=lambda winding: (winding.current_rms, -winding.base_speed), default=None)
 
 
-def _reason(chosen, unrestricted, limits, requirement):
+def _reason(
+    chosen: Winding, unrestricted: Winding | None, limits: WindingLimits, requirement: WindingRequirement
+) -> str:
     if chosen.satisfies(requirement):
         text = _reason_met(chosen, limits, requirement)
     else:
@@ -353,7 +342,7 @@ def _reason(chosen, unrestricted, limits, requirement):
     return " ".join(filter(None, (text, _torque_remark(chosen, requirement), _packing_remark(chosen, limits))))
 
 
-def _reason_met(chosen, limits, requirement):
+def _reason_met(chosen: Winding, limits: WindingLimits, requirement: WindingRequirement) -> str:
     within = "" if limits.phase_current_rms == inf else f" and within the limit of {limits.phase_current_rms:.1f} A RMS"
     return (
         f"{_name(chosen)}: lowest current of all full slots that meet the requirement, {chosen.current_rms:.1f} A RMS "
@@ -363,7 +352,9 @@ def _reason_met(chosen, limits, requirement):
     )
 
 
-def _reason_relaxed(chosen, unrestricted, limits, requirement):
+def _reason_relaxed(
+    chosen: Winding, unrestricted: Winding | None, limits: WindingLimits, requirement: WindingRequirement
+) -> str:
     limit = "" if limits.phase_current_rms == inf else f" within {limits.phase_current_rms:.1f} A RMS of phase current"
     return (
         f"{_name(chosen)}: no full slot meets the requirement{limit}, so the largest base speed there is taken, at "
@@ -372,7 +363,7 @@ def _reason_relaxed(chosen, unrestricted, limits, requirement):
     )
 
 
-def _relaxed(chosen, requirement):
+def _relaxed(chosen: Winding, requirement: WindingRequirement) -> str:
     parts = (
         _relaxation("base speed", chosen.base_speed / RPM, requirement.base_speed / RPM, "rpm"),
         _relaxation("power at base speed", chosen.power_at_base_speed, requirement.power, "W"),
@@ -380,13 +371,13 @@ def _relaxed(chosen, requirement):
     return " and ".join(filter(None, parts))
 
 
-def _relaxation(what, reached, required, unit):
+def _relaxation(what: str, reached: float, required: float, unit: str) -> str:
     if reached >= required:
         return ""
     return f"{what} from {required:.0f} to {reached:.0f} {unit} ({reached / required:.0%} of the requirement)"
 
 
-def _without_limit(unrestricted):
+def _without_limit(unrestricted: Winding | None) -> str:
     if unrestricted is None:
         return "No winding of this machine meets the requirement at any current: its length or voltage has to grow."
     return (
@@ -395,7 +386,7 @@ def _without_limit(unrestricted):
     )
 
 
-def _torque_remark(chosen, requirement):
+def _torque_remark(chosen: Winding, requirement: WindingRequirement) -> str:
     if chosen.peak_torque >= requirement.torque:
         return ""
     missing = requirement.torque - chosen.peak_torque
@@ -405,7 +396,7 @@ def _torque_remark(chosen, requirement):
     )
 
 
-def _packing_remark(chosen, limits):
+def _packing_remark(chosen: Winding, limits: WindingLimits) -> str:
     if chosen.packing <= limits.packing_limit:
         return ""
     return (
@@ -414,7 +405,7 @@ def _packing_remark(chosen, limits):
     )
 
 
-def _name(winding):
+def _name(winding: Winding) -> str:
     wires = "wire" if winding.strands == 1 else "wires"
     turns = "turn" if winding.turns == 1 else "turns"
     return f"{winding.turns} {turns} of {winding.strands} {wires} in hand"

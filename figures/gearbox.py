@@ -160,10 +160,11 @@ def _draw_bars(axis, rating, wanted):
 
 
 @styled
-def axial_section(layout, *, title: str) -> Figure:
+def axial_section(layout, *, title: str, end: str = "lever side") -> Figure:
     """Half section of the actuator along its axis, mirrored, with its outer dimensions.
 
     layout: parts with kind, start, length, inner_radius, outer_radius [m]; length, diameter (``gearbox.layout.Layout``)
+    end: what the side is called that faces what is moved
     """
     figure = new_figure(4.8)
     axis = figure.subplots()
@@ -175,7 +176,7 @@ def axial_section(layout, *, title: str) -> Figure:
     _dimension(axis, (0, half * 1.1), (length, half * 1.1), f"{length:.1f}")
     _dimension(axis, (length * 1.04, -half), (length * 1.04, half), f"Ø {2 * half:.1f}")
     axis.set(xlim=(-3, length * 1.12), ylim=(-1.15 * half, 1.3 * half), aspect="equal")
-    axis.set(xlabel="axial position from the lever side / mm", ylabel="radius / mm")
+    axis.set(xlabel=f"axial position from the {end} / mm", ylabel="radius / mm")
     axis.set_title(title, loc="left")
     kinds = dict.fromkeys(part.kind for part in layout.parts)
     handles = [Patch(facecolor=_PART_COLOURS[kind], edgecolor=BLACK, linewidth=0.5, label=kind) for kind in kinds]

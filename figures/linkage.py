@@ -1,15 +1,20 @@
 """The linkage: Pareto front, ratio and angles over the wheel travel, side view.
 
-The functions take the results of ``drivetrain.four_bar`` and ``drivetrain.linkage_front`` by their attributes and
-import nothing of them.
+Of what they are given the functions read attributes only.
 """
 
 from __future__ import annotations
 
+from typing import Any, Mapping, Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from drivetrain.four_bar import FourBar, Motion
+from drivetrain.linkage_front import ParetoFront, Standing
+from drivetrain.linkage_problem import Box
 from figures.style import (
     BLACK,
     BLUE,
@@ -29,10 +34,10 @@ from units import DEGREE, MILLIMETRE
 
 
 @styled
-def pareto_front(front, chosen: int, *, others=()) -> Figure:
+def pareto_front(front: ParetoFront, chosen: int, *, others: Sequence[tuple[str, Standing]] = ()) -> Figure:
     """The front with its choice, other linkages beside it, and where on the front B and C lie.
 
-    front: objectives (points, 2), designs (points, 4) [m], problem.limits.ratio [m/rad] (``LinkageFront``)
+    front: objectives (points, 2), designs (points, 4) [m], problem.bounds [m]
     others: (name, standing) of linkages to compare, standing as of ``drivetrain.linkage_front.standing``
     """
     figure = new_figure(4.6)
@@ -44,7 +49,7 @@ def pareto_front(front, chosen: int, *, others=()) -> Figure:
     return figure
 
 
-def _draw_front(axis, front, chosen, others):
+def _draw_front(axis: Axes, front: ParetoFront, chosen: int, others: Sequence[tuple[str, Standing]]) -> None:
     first, second = front.objectives.T
     axis.plot(first, second, color=BLUE, marker=".", markersize=4, label="Pareto front")
     for number, (name, standing) in enumerate(others):
@@ -55,7 +60,7 @@ def _draw_front(axis, front, chosen, others):
     axis.legend(frameon=False)
 
 
-def _draw_standing(axis, name, standing, colour):
+def _draw_standing(axis: Axes, name: str, standing: Standing, colour: str) -> None:
     """A linkage with arrows to the front at the same second and at the same first objective."""
     x, y = standing.objectives
     verdict = "dominated" if standing.dominated else "not dominated"
@@ -65,7 +70,7 @@ def _draw_standing(axis, name, standing, colour):
             axis.annotate("", end, (x, y), arrowprops={"arrowstyle": "->", "color": colour})
 
 
-def _draw_hardpoints(axis, front, chosen):
+def _draw_hardpoints(axis: Axes, front: ParetoFront, chosen: int) -> None:
     lower, upper = front.problem.bounds
     names = ("x of B", "y of B", "x of C", "y of C")
     looks = ((BLUE, "-"), (GREEN, "-"), (ORANGE, "-"), (PURPLE, "--"))  # x and y of C often lie on each other
@@ -80,7 +85,7 @@ def _draw_hardpoints(axis, front, chosen):
 
 
 @styled
-def linkage_motion(motions: dict, *, angle_window: float) -> Figure:
+def linkage_motion(motions: Mapping[str, Motion], *, angle_window: float) -> Figure:
     """Transmission ratio and transmission angles over the wheel travel.
 
     motions: ``Motion`` by name, single linkages; the first is drawn solid. angle_window: allowed distance from 90
@@ -109,7 +114,9 @@ def linkage_motion(motions: dict, *, angle_window: float) -> Figure:
 
 
 @styled
-def linkage_side_view(linkage, motion, *, boxes=(), positions: int = 5) -> Figure:
+def linkage_side_view(
+    linkage: FourBar, motion: Motion, *, boxes: Sequence[Box] = (), positions: int = 5
+) -> Figure:
     """The linkage drawn at positions of its wheel travel, with the paths of its joints.
 
     linkage: arm.wheel_axle, arm.hardpoint_a, hardpoint_c (``FourBar``); motion: the same linkage over the travel;
@@ -136,11 +143,11 @@ def linkage_side_view(linkage, motion, *, boxes=(), positions: int = 5) -> Figur
     return figure
 
 
-def _nominal(motion):
+def _nominal(motion: Motion) -> int:
     return int(np.argmin(np.abs(motion.travel)))
 
 
-def _draw_box(axis, box):
+def _draw_box(axis: Axes, box: Box) -> None:
     low, size = box.low / MILLIMETRE, (box.high - box.low) / MILLIMETRE
     axis.add_patch(
         Rectangle((low.real, low.imag), size.real, size.imag, fill=False, edgecolor=GREY, linestyle="--", linewidth=0.8)
@@ -148,8 +155,8 @@ def _draw_box(axis, box):
     axis.annotate(f"box of {box.name}, nominal", (low.real, low.imag - 6), color=GREY, fontsize=8, va="top")
 
 
-def _draw_links(axis, linkage, a, b, wheel, *, strong):
-    look = {"linewidth": 2.6 if strong else 0.9, "alpha": 1.0 if strong else 0.45, "marker": "o"}
+def _draw_links(axis: Axes, linkage: FourBar, a: complex, b: complex, wheel: complex, *, strong: bool) -> None:
+    look: dict[str, Any] = {"linewidth": 2.6 if strong else 0.9, "alpha": 1.0 if strong else 0.45, "marker": "o"}
     look |= {"markersize": 5 if strong else 2.5}
     rows = ((0, a, BLUE, None), (a, wheel, BLUE, "swing arm"), (a, b, GREEN, "coupler AB"),
             (b, linkage.hardpoint_c, VERMILION, "lever BC"))  # fmt: skip
@@ -158,7 +165,7 @@ def _draw_links(axis, linkage, a, b, wheel, *, strong):
         axis.plot(x / MILLIMETRE, y / MILLIMETRE, color=colour, label=name if strong else None, **look)
 
 
-def _name_points(axis, linkage, b):
+def _name_points(axis: Axes, linkage: FourBar, b: complex) -> None:
     points = {"O": 0j, "A": linkage.arm.hardpoint_a, "B": b, "C": linkage.hardpoint_c, "W": linkage.arm.wheel_axle}
     for name, point in points.items():
         place = (np.real(point) / MILLIMETRE, np.imag(point) / MILLIMETRE)

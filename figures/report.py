@@ -10,23 +10,14 @@ from pathlib import Path
 from typing import ClassVar
 
 import pandas as pd
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from figures.style import png_bytes
+from units import split_unit, written
 
 TEMPLATE = "report.html.j2"
 SIGNIFICANT_DIGITS = 4  # of numbers in tables
-
-# Ends of column names, longest first, and how the unit is written.
-_UNITS = {
-    "_mm_per_rad": "(mm/rad)", "_Nm_per_m": "(Nm/m)", "_Nm_per_A": "(Nm/A)", "_mNm_per_A": "(mNm/A)",
-    "_A_per_mm2": "(A/mm²)", "_rad_per_s": "(rad/s)", "_m_per_s2": "(m/s²)", "_m_per_s": "(m/s)",
-    "_kg_m2": "(kg m²)", "_rad2": "rad²", "_percent": "%", "_ms": "ms", "_kNs_per_m": "(kNs/m)",
-    "_Ns_per_m": "(Ns/m)", "_Wb_per_m": "(Wb/m)", "_H_per_m": "(H/m)", "_degC": "°C", "_deg": "°",
-    "_mm2": "mm²", "_mm": "mm", "_kg": "kg", "_Nm": "Nm", "_kN": "kN", "_N": "N", "_kW": "kW", "_W": "W",
-    "_rpm": "rpm", "_mOhm": "mΩ", "_Ohm": "Ω", "_ohm": "Ω", "_uH": "µH", "_mH": "mH", "_H": "H", "_V": "V",
-    "_A": "A", "_T": "T", "_s": "s", "_rad": "rad", "_m": "m",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -151,20 +142,23 @@ def render_report(
     return template_environment().get_template(TEMPLATE).render(sections=tuple(sections), **page)
 
 
-def template_environment():
+def template_environment() -> Environment:
     """Where the page templates are found; everything put into them is escaped."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     folder = FileSystemLoader(Path(__file__).parent)
     return Environment(loader=folder, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
 
 def heading(column: str) -> str:
     """A column name as a heading: ``back_iron_width_mm`` becomes ``back iron width / mm``, stroke and unit unbroken."""
-    for ending, unit in _UNITS.items():
-        if column.endswith(ending) and len(column) > len(ending):
-            return f"{column.removesuffix(ending).replace('_', ' ')} /\N{NO-BREAK SPACE}{unit}"
-    return column.replace("_", " ")
+    quantity, unit = split_unit(column)
+    if not unit:
+        return column.replace("_", " ")
+    text = written(unit)
+    return f"{quantity.replace('_', ' ')} /\N{NO-BREAK SPACE}{f'({text})' if _is_compound(text) else text}"
+
+
+def _is_compound(unit: str) -> bool:
+    return "/" in unit or " " in unit
 
 
 def _holds_text(column: pd.Series) -> bool:

@@ -11,6 +11,7 @@ from base64 import b64encode
 from pathlib import Path
 
 import numpy as np
+from markupsafe import Markup
 from matplotlib import colormaps
 
 from figures.field_map import FLUX_LINES, colour_limit, outlines
@@ -66,6 +67,4 @@ def _colours() -> str:
 
 def _inside_script(text: str) -> str:
     """JSON that cannot end the script element it stands in; safe to leave unescaped."""
-    from markupsafe import Markup
-
     return Markup(text.replace("<", "\\u003c"))

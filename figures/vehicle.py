@@ -1,17 +1,21 @@
 """The vehicle on its road: histories, working points, obstacles, requirements (thesis Figs 3.9-3.12, 3.28).
 
-The functions take the results of ``vehicle`` by their attributes and import nothing of it.
+Of what they are given the functions read attributes only.
 """
 
 from __future__ import annotations
 
-from typing import Mapping, Sequence
+from typing import Any, Mapping, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures.style import BLACK, GREY, LIGHT_GREY, MARKERS, SERIES, letter, new_figure, show_grid, styled
 from units import MILLIMETRE
+from vehicle.actuator import ForceSpeedLimit
+from vehicle.ride import RideHistory
+from vehicle.traces import Trace
 
 _KILONEWTON = 1e3
 _MOST_POINTS = 6000  # of a history that are drawn
@@ -19,7 +23,9 @@ _FLAT = 1e-9  # m, a road lower than this is not drawn
 
 
 @styled
-def time_histories(histories: Mapping[str, object], *, span: tuple[float, float] | None = None) -> Figure:
+def time_histories(
+    histories: Mapping[str, Trace | RideHistory], *, span: tuple[float, float] | None = None
+) -> Figure:
     """Road, stroke, actuator force and velocity, and load of the actuated tyre over time.
 
     histories: ``RideHistory`` by label, of one scenario; span: first and last time shown [s], all of it when None
@@ -33,10 +39,10 @@ def time_histories(histories: Mapping[str, object], *, span: tuple[float, float]
     )
     any_history = next(iter(histories.values()))
     span = span or (0.0, any_history.time[-1])
-    panels = panels[1:] if np.abs(any_history.road).max() < _FLAT else panels
-    figure = new_figure(1.7 * len(panels))
-    axes = figure.subplots(len(panels), 1, sharex=True)
-    for axis, (label, values) in zip(axes, panels, strict=True):
+    shown_panels = panels[1:] if np.abs(any_history.road).max() < _FLAT else panels
+    figure = new_figure(1.7 * len(shown_panels))
+    axes = figure.subplots(len(shown_panels), 1, sharex=True)
+    for axis, (label, values) in zip(axes, shown_panels, strict=True):
         axis.set(ylabel=label)
         if label.startswith("road"):
             _draw_road(axis, any_history, span)
@@ -52,7 +58,7 @@ def time_histories(histories: Mapping[str, object], *, span: tuple[float, float]
     return figure
 
 
-def _draw_road(axis, history, span) -> None:
+def _draw_road(axis: Axes, history: Trace | RideHistory, span: tuple[float, float]) -> None:
     names = ("under the wheel",) if len(history.road) == 1 else ("under the front wheel", "under the rear wheel")
     shown = _shown(history.time, span)
     for heights, name, look in zip(history.road, names, ("-", "--")[: len(names)], strict=True):
@@ -71,7 +77,10 @@ def _thinned(time: np.ndarray) -> slice:
 
 @styled
 def force_velocity_cloud(
-    histories: Mapping[str, object], *, limit=None, required: Sequence[tuple[str, float, float]] = ()
+    histories: Mapping[str, Trace | RideHistory],
+    *,
+    limit: ForceSpeedLimit | None = None,
+    required: Sequence[tuple[str, float, float]] = (),
 ) -> Figure:
     """Working points of the actuator in the force-velocity plane.
 
@@ -83,13 +92,13 @@ def force_velocity_cloud(
     for number, (name, history) in enumerate(histories.items()):
         thin = _thinned(history.time)
         width = 2.4 if number == 0 else 0.9  # the first is seen beside those that cover it
-        look = {"color": SERIES[number], "linewidth": width, "marker": ".", "markersize": 2 + width}
+        look: dict[str, Any] = {"color": SERIES[number], "linewidth": width, "marker": ".", "markersize": 2 + width}
         axis.plot(history.velocity[thin], history.actuator_force[thin] / _KILONEWTON, label=name, **look)
     if limit is not None:
         _draw_limit(axis, limit, max(np.abs(history.velocity).max() for history in histories.values()))
     for number, (name, force, velocity) in enumerate(required):
-        look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markersize": 10, "linestyle": ""}
-        axis.plot(velocity, force / _KILONEWTON, marker=MARKERS[number], label=name, zorder=5, **look)
+        hollow: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markersize": 10}
+        axis.plot(velocity, force / _KILONEWTON, marker=MARKERS[number], label=name, zorder=5, linestyle="", **hollow)
     axis.axhline(0, color=LIGHT_GREY, linewidth=0.8)
     axis.axvline(0, color=LIGHT_GREY, linewidth=0.8)
     axis.set(xlabel="actuator velocity / (m/s), rebound positive", ylabel="actuator force / kN")
@@ -98,7 +107,7 @@ def force_velocity_cloud(
     return figure
 
 
-def _draw_limit(axis, limit, fastest: float) -> None:
+def _draw_limit(axis: Axes, limit: ForceSpeedLimit, fastest: float) -> None:
     speed = np.linspace(0, max(fastest, 1e-3), 400)
     force = limit.at(speed) / _KILONEWTON
     for number, (sign_v, sign_f) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):

@@ -15,7 +15,7 @@ from figures.style import BLACK, BLUE, LIGHT_GREY, VERMILION, letter, new_figure
 AXES = {
     "mass_kg": "mass / kg",
     "equivalent_mass_kg": "equivalent inertia / kg",
-    "damping_reserve": "damping reserve (1 = required)",
+    "damping_kNs_per_m": "damping / (kNs/m)",
     "road_loss_W": "loss on the road / W",
 }
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy import pi
 
+from gearbox.batch import Batch
 from gearbox.planetary_set import PlanetarySet
 
 
@@ -16,34 +18,44 @@ class Body:
 
     name: str
     count: int
-    mass: float
-    inertia: float
-    speed: float
-    orbit: float = 0.0
+    mass: Batch
+    inertia: Batch
+    speed: Batch
+    orbit: Batch = 0.0
 
     @property
-    def inertia_at_carrier(self):
+    def inertia_at_carrier(self) -> Batch:
         """From the kinetic energy: count (J w^2 + m r^2) per squared carrier speed [kg m^2]."""
         return self.count * (self.inertia * self.speed**2 + self.mass * self.orbit**2)
 
 
-def ring_body(name, outer, inner, width, density, *, speed, count=1, orbit=0.0) -> Body:
+def ring_body(
+    name: str,
+    outer: Batch,
+    inner: Batch,
+    width: Batch,
+    density: Batch,
+    *,
+    speed: Batch,
+    count: int = 1,
+    orbit: Batch = 0.0,
+) -> Body:
     """Hollow cylinder of these radii and width [m]."""
     mass = density * width * pi * (outer**2 - inner**2)
     return Body(name, count, mass, mass * (outer**2 + inner**2) / 2, speed, orbit)
 
 
-def total_mass(bodies) -> float:
+def total_mass(bodies: Iterable[Body]) -> Batch:
     """[kg]"""
     return sum(body.count * body.mass for body in bodies)
 
 
-def inertia_at_carrier(bodies) -> float:
+def inertia_at_carrier(bodies: Iterable[Body]) -> Batch:
     """[kg m^2]"""
     return sum(body.inertia_at_carrier for body in bodies)
 
 
-def solid_bodies(gears: PlanetarySet, face_width, envelope_diameter: float, density: float) -> tuple[Body, ...]:
+def solid_bodies(gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float) -> tuple[Body, ...]:
     """Solid discs of the reference circles and a solid carrier disc through the planet centres: the scaling-law stage.
 
     Without profile shift the inertia is pi/256 rho b d_ring^4 i^2/(i - 1)^4 (5 i^2 - 18 i + 26) (thesis eq. 3.111
@@ -59,7 +71,7 @@ def solid_bodies(gears: PlanetarySet, face_width, envelope_diameter: float, dens
     )  # fmt: skip
 
 
-def planet_speed(gears: PlanetarySet):
+def planet_speed(gears: PlanetarySet) -> Batch:
     """Speed of the planets over that of the carrier, 1 - |z_ring| / z_planet: they roll inside the fixed ring."""
     return 1 + gears.ring.teeth / gears.planet.teeth
 
@@ -80,15 +92,17 @@ class Construction:
     axial_gap: float
     flange_margin: float = 0.25
 
-    def flange_thickness(self, face_width):
+    def flange_thickness(self, face_width: Batch) -> Batch:
         """Of one carrier flange [m]."""
         return np.maximum(self.flange_fraction * face_width, self.least_flange)
 
-    def stage_length(self, face_width):
+    def stage_length(self, face_width: Batch) -> Batch:
         """Axial room of a stage: teeth, gaps and both flanges [m]."""
         return face_width + 2 * (self.axial_gap + self.flange_thickness(face_width))
 
-    def bodies(self, gears: PlanetarySet, face_width, envelope_diameter: float, density: float) -> tuple[Body, ...]:
+    def bodies(
+        self, gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float
+    ) -> tuple[Body, ...]:
         """Sun, bored planets, pins with needles, carrier flanges and ring; teeth solid up to the reference circle."""
         pin = self.bore_fraction * gears.planet.root_radius
         room, orbit = self.stage_length(face_width), gears.centre_distance

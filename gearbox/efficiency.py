@@ -9,12 +9,13 @@ from __future__ import annotations
 import numpy as np
 from numpy import pi
 
+from gearbox.batch import Batch
 from gearbox.errors import GearError
 from gearbox.involute import Mesh
 from gearbox.planetary_set import PlanetarySet
 
 
-def loss_factor(mesh: Mesh):
+def loss_factor(mesh: Mesh) -> Batch:
     """H_V = pi (u + 1)/(2 z_1 u) [e_1^2 + e_2^2 + s(1 - e_1) + s(1 - e_2)], s(x) = x |x|; u < 0: internal.
 
     Mean sliding over rolling speed along the path of contact of spur gears, half the load on each of two pairs, all
@@ -27,14 +28,14 @@ def loss_factor(mesh: Mesh):
     return pi * (u + 1) / (mesh.pinion.teeth * u) * path
 
 
-def basic_efficiency(gears: PlanetarySet, friction: float):
+def basic_efficiency(gears: PlanetarySet, friction: float) -> Batch:
     """eta_0 with the carrier held: (1 - mu H_V,sun) (1 - mu H_V,ring)."""
     if not 0 <= friction < 0.5:
         raise GearError(f"the coefficient of friction must lie between 0 and 0.5; found {friction:g}")
     return (1 - friction * loss_factor(gears.sun_mesh)) * (1 - friction * loss_factor(gears.ring_mesh))
 
 
-def stage_efficiency(gears: PlanetarySet, friction: float):
+def stage_efficiency(gears: PlanetarySet, friction: float) -> tuple[Batch, Batch]:
     """(carrier drives sun, sun drives carrier), ring fixed (VDI 2157; Mueller, Umlaufgetriebe).
 
     i_0 = z_ring/z_sun < 0; sun drives: (1 - i_0 eta_0)/(1 - i_0); carrier drives: (1 - i_0)/(1 - i_0/eta_0).

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from gearbox.batch import Batch
 from gearbox.material import LifeLine
 
 _BISECTIONS = 40  # the safety factor to 1e-9
 _SAFETY_RANGE = (1e-3, 1e3)
 
 
-def miner_sum(line: LifeLine, stress_ratio, cycles):
+def miner_sum(line: LifeLine, stress_ratio: Batch, cycles: Batch) -> Batch:
     """Damage sum_i n_i / N_i over the first axis, 1 at failure (Palmgren and Miner).
 
     stress_ratio: stress over endurance limit, (classes, ...); cycles: endured in each class, (classes, ...).
@@ -21,7 +22,7 @@ def miner_sum(line: LifeLine, stress_ratio, cycles):
     return damage.sum(axis=0)
 
 
-def spectrum_safety(line: LifeLine, stress_ratio, cycles):
+def spectrum_safety(line: LifeLine, stress_ratio: Batch, cycles: Batch) -> Batch:
     """The factor on all stresses at which Miner's sum reaches 1 (ISO 6336-6), shape of a class."""
     low, high = (np.full(np.shape(stress_ratio)[1:], np.log(end)) for end in _SAFETY_RANGE)
     for _ in range(_BISECTIONS):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearbox.errors import GearError
-from gearbox.train import GearTrain
+from gearbox.train import Gears, GearTrain
 from units import MILLIMETRE
 
 
@@ -45,27 +45,25 @@ class Part:
 
 @dataclass(frozen=True)
 class Layout:
-    """Parts from the lever to the sensor; the axis starts at the outer face of the lever side."""
+    """Parts from the lever to the sensor; the axis starts at the outer face of the lever side. length, diameter [m]"""
 
     parts: tuple[Part, ...]
     length: float
     diameter: float
 
 
-def actuator_layout(train: GearTrain, machine: MachineEnvelope, housing: Housing) -> Layout:
-    """The parts in line. Raises GearError when gearbox and machine do not fit the same casing."""
+def actuator_layout(train: Gears, machine: MachineEnvelope, housing: Housing) -> Layout:
+    """The parts in line. Raises GearError when the rotor does not fit its stator."""
     inner = max(machine.stator_outer_radius, train.envelope_diameter / 2)
     if machine.rotor_outer_radius >= machine.stator_outer_radius:
         raise GearError(
             f"the rotor radius {machine.rotor_outer_radius / MILLIMETRE:g} mm must be below the stator radius "
             f"{machine.stator_outer_radius / MILLIMETRE:g} mm"
         )
-    parts, at = [], housing.lever_side
-    for number, stage in enumerate(train.stages, start=1):
-        parts += _stage_parts(train, stage, number, at)
-        at += train.construction.stage_length(stage.face_width)
+    at = housing.lever_side + train.length
     start = at + housing.bearing_seat
-    parts += _machine_parts(machine, start)
+    gears = _gear_parts(train, housing.lever_side) if isinstance(train, GearTrain) else []
+    parts = gears + _machine_parts(machine, start)
     at = start + machine.active_length + 2 * machine.end_winding_length + housing.bearing_seat
     length = at + housing.sensor_cover
     shaft = Part("rotor shaft", "shaft", start - housing.bearing_seat, at - start + housing.bearing_seat, 0.0,
@@ -75,7 +73,14 @@ def actuator_layout(train: GearTrain, machine: MachineEnvelope, housing: Housing
     return Layout((casing, lever, shaft, *parts), length, 2 * (inner + housing.wall))
 
 
-def _stage_parts(train, stage, number, start):
+def _gear_parts(train: GearTrain, first: float) -> list[Part]:
+    """The stages in line from this place [m]."""
+    places = [first + sum(train.stage_lengths[:k]) for k in range(len(train.stages))]
+    return [part for number, place in enumerate(places) for part in _stage_parts(train, number, place)]
+
+
+def _stage_parts(train: GearTrain, number: int, start: float) -> list[Part]:
+    stage = train.stages[number]
     build, gears, width = train.construction, stage.gears, stage.face_width
     thick, orbit = build.flange_thickness(width), gears.centre_distance
     pin = build.bore_fraction * gears.planet.root_radius
@@ -88,10 +93,10 @@ def _stage_parts(train, stage, number, start):
         ("carrier", "carrier", start, thick, gears.sun.tip_radius, rim),
         ("carrier", "carrier", teeth + width + build.axial_gap, thick, gears.sun.tip_radius, rim),
     )
-    return [Part(f"{name} {number}", *rest) for name, *rest in rows]
+    return [Part(f"{name} {number + 1}", *rest) for name, *rest in rows]
 
 
-def _machine_parts(machine, start):
+def _machine_parts(machine: MachineEnvelope, start: float) -> list[Part]:
     stack, end = start + machine.end_winding_length, machine.end_winding_length
     slots = (machine.rotor_outer_radius, machine.stator_outer_radius)
     return [

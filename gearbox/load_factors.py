@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearbox.involute import Mesh
+from gearbox.batch import Batch
+from gearbox.involute import Gear, Mesh
 from units import MILLIMETRE
 
 MICROMETRE = 1e-6  # m
@@ -37,24 +38,26 @@ class LoadFactors:
     """K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha and the product K_A K_gamma, arrays like the load."""
 
     external: float
-    dynamic: np.ndarray
-    face_contact: np.ndarray
-    face_root: np.ndarray
-    transverse_contact: np.ndarray
-    transverse_root: np.ndarray
+    dynamic: Batch
+    face_contact: Batch
+    face_root: Batch
+    transverse_contact: Batch
+    transverse_root: Batch
 
     @property
-    def contact(self):
+    def contact(self) -> Batch:
         """Factor on the tooth force for the flank."""
         return self.external * self.dynamic * self.face_contact * self.transverse_contact
 
     @property
-    def root(self):
+    def root(self) -> Batch:
         """Factor on the tooth force for the root."""
         return self.external * self.dynamic * self.face_root * self.transverse_root
 
 
-def load_factors(mesh: Mesh, face_width, force, speed, density: float, quality: Quality) -> LoadFactors:
+def load_factors(
+    mesh: Mesh, face_width: Batch, force: Batch, speed: Batch, density: float, quality: Quality
+) -> LoadFactors:
     """Load factors of a mesh.
 
     face_width [m]; force: nominal tangential force at the reference circle [N]; speed: of the pinion relative to the
@@ -73,7 +76,7 @@ def load_factors(mesh: Mesh, face_width, force, speed, density: float, quality: 
     return LoadFactors(external, dynamic, face, face_root, *transverse)
 
 
-def tooth_stiffness(mesh: Mesh, line_load):
+def tooth_stiffness(mesh: Mesh, line_load: Batch) -> tuple[Batch, Batch]:
     """(c', c_gamma): stiffness of a pair and mean stiffness of the mesh per width [Pa] (ISO 6336-1, method B).
 
     c' = 0.8 c'_th C_B with 1/c'_th = q' from the tooth numbers and shifts; the teeth of a ring count as infinitely
@@ -93,25 +96,25 @@ def tooth_stiffness(mesh: Mesh, line_load):
     return single, single * (0.75 * mesh.contact_ratio + 0.25)
 
 
-def pitch_deviation(module, diameter, grade: int):
+def pitch_deviation(module: Batch, diameter: Batch, grade: int) -> Batch:
     """f_pt [m] of ISO 1328-1:1995: (0.3 (m + 0.4 sqrt d) + 4) 2^((Q - 5)/2) um, module and diameter [m]."""
     m, d = module / MILLIMETRE, diameter / MILLIMETRE
     return (0.3 * (m + 0.4 * np.sqrt(d)) + 4) * 2 ** ((grade - 5) / 2) * MICROMETRE
 
 
-def profile_deviation(module, diameter, grade: int):
+def profile_deviation(module: Batch, diameter: Batch, grade: int) -> Batch:
     """f_falpha [m] of ISO 1328-1:1995: (2.5 sqrt m + 0.17 sqrt d + 0.5) 2^((Q - 5)/2) um."""
     m, d = module / MILLIMETRE, diameter / MILLIMETRE
     return (2.5 * np.sqrt(m) + 0.17 * np.sqrt(d) + 0.5) * 2 ** ((grade - 5) / 2) * MICROMETRE
 
 
-def helix_deviation(diameter, face_width, grade: int):
+def helix_deviation(diameter: Batch, face_width: Batch, grade: int) -> Batch:
     """F_beta [m] of ISO 1328-1:1995: (0.1 sqrt d + 0.63 sqrt b + 4.2) 2^((Q - 5)/2) um."""
     d, b = diameter / MILLIMETRE, face_width / MILLIMETRE
     return (0.1 * np.sqrt(d) + 0.63 * np.sqrt(b) + 4.2) * 2 ** ((grade - 5) / 2) * MICROMETRE
 
 
-def _effective_errors(mesh, grade):
+def _effective_errors(mesh: Mesh, grade: int) -> tuple[Batch, Batch]:
     """Base pitch and profile errors of the larger gear after running-in of case-hardened teeth, 0.075 f up to 3 um."""
     diameter = 2 * np.maximum(mesh.pinion.reference_radius, mesh.wheel.reference_radius)
     base_pitch = pitch_deviation(mesh.pinion.module, diameter, grade) * np.cos(mesh.pinion.rack.pressure_angle)
@@ -119,7 +122,16 @@ def _effective_errors(mesh, grade):
     return tuple(error - np.minimum(0.075 * error, 3 * MICROMETRE) for error in (base_pitch, form))
 
 
-def _dynamic(mesh, line_load, single, mean, pitch_error, form_error, speed, density):
+def _dynamic(
+    mesh: Mesh,
+    line_load: Batch,
+    single: Batch,
+    mean: Batch,
+    pitch_error: Batch,
+    form_error: Batch,
+    speed: Batch,
+    density: Batch,
+) -> Batch:
     """K_V by the relative speed N = speed z_1 / sqrt(c_gamma / m_red) (ISO 6336-1, 6.5, method B, eps_gamma <= 2).
 
     below resonance  N <= 0.85          1 + N (0.32 B_p + 0.34 B_f + 0.23 B_k)
@@ -138,21 +150,21 @@ def _dynamic(mesh, line_load, single, mean, pitch_error, form_error, speed, dens
     return np.where(relative <= 0.85, below, beyond)
 
 
-def _reduced_mass(mesh, density):
+def _reduced_mass(mesh: Mesh, density: Batch) -> Batch:
     """Mass per width of the two gears reduced to the line of action [kg/m]; a ring counts as fixed.
 
     Solid external wheels of diameter d_m = (d_a + d_f)/2: m = J / (b r_b^2), J/b = pi/2 rho r_m^4. Planetary stages
     load a sun at three meshes at once, which lowers its share; left out, on the safe side for N.
     """
 
-    def own(gear):
+    def own(gear: Gear) -> Batch:
         middle = (gear.tip_radius + gear.root_radius) / 2
         return np.where(gear.side > 0, np.pi / 2 * density * middle**4 / gear.base_radius**2, np.inf)
 
     return 1 / (1 / own(mesh.pinion) + 1 / own(mesh.wheel))
 
 
-def _face(mesh, face_width, line_load, mean, grade):
+def _face(mesh: Mesh, face_width: Batch, line_load: Batch, mean: Batch, grade: int) -> Batch:
     """K_Hbeta = 1 + F_by c_gb / (2 F_m/b), sqrt(2 F_by c_gb / (F_m/b)) above 2 (ISO 6336-1, 7, method C).
 
     F_bx = f_ma = F_beta of the wheel's grade; running-in y_b = 0.15 F_bx up to 6 um; c_gb = 0.85 c_ga.
@@ -164,7 +176,7 @@ def _face(mesh, face_width, line_load, mean, grade):
     return np.where(load <= 2, 1 + load / 2, np.sqrt(2 * load))
 
 
-def _transverse(mesh, line_load, mean, pitch_error):
+def _transverse(mesh: Mesh, line_load: Batch, mean: Batch, pitch_error: Batch) -> tuple[Batch, Batch]:
     """(K_Halpha, K_Falpha) = eps/2 (0.9 + 0.4 c_ga f_pb / (F_tH/b)), held in 1 ... eps/(eps Z_eps^2), 1 ... 1/Y_eps.
 
     ISO 6336-1, 8, method B, eps_gamma <= 2.

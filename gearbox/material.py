@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearbox.batch import Batch
+
 MPA = 1e6  # Pa
 
 
@@ -23,12 +25,12 @@ class LifeLine:
     last: float
     last_strength: float
 
-    def factor(self, cycles):
+    def factor(self, cycles: Batch) -> Batch:
         """Strength over endurance limit at these load cycles."""
         logs = np.log([self.first, self.knee, self.last]), np.log([self.strength, 1.0, self.last_strength])
         return np.exp(np.interp(np.log(np.maximum(cycles, 1e-30)), *logs))
 
-    def cycles(self, stress_ratio):
+    def cycles(self, stress_ratio: Batch) -> Batch:
         """Life under a constant stress over endurance limit [cycles]; 0 above the static strength, inf below the line.
 
         The damage of the stress is the cycles endured over this.

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy import pi, sin
 
+from gearbox.batch import Batch
 from gearbox.errors import GearError
 from gearbox.involute import ISO_53_A, BasicRack, Gear, Mesh, centre_distance, shift_sum
 from units import MILLIMETRE
@@ -22,7 +24,7 @@ class PlanetarySet:
     sun: Gear
     planet: Gear
     ring: Gear
-    centre_distance: float
+    centre_distance: Batch
     planets: int = 3
 
     @property
@@ -36,24 +38,29 @@ class PlanetarySet:
         return Mesh(self.planet, self.ring, self.centre_distance)
 
     @property
-    def ratio(self):
+    def ratio(self) -> Batch:
         """i = 1 + |z_ring| / z_sun, sun speed over carrier speed."""
         return 1 - self.ring.teeth / self.sun.teeth
 
     @property
-    def teeth(self):
+    def teeth(self) -> tuple[Batch, Batch, Batch]:
         """(z_sun, z_planet, z_ring), the ring negative."""
         return self.sun.teeth, self.planet.teeth, self.ring.teeth
 
     @property
-    def planet_gap(self):
+    def planet_gap(self) -> Batch:
         """Distance between the tip circles of neighbouring planets [m]: 2 a sin(pi/N) - d_a."""
         return 2 * self.centre_distance * sin(pi / self.planets) - 2 * self.planet.tip_radius
+
+    @property
+    def plain(self) -> PlanetarySet:
+        """A single set with plain numbers in the place of numpy's, as results are written with."""
+        return _single(self).at(0)
 
     def at(self, index: int) -> PlanetarySet:
         """One set of a batch, its numbers plain."""
 
-        def one(gear):
+        def one(gear: Gear) -> Gear:
             numbers = {name: getattr(gear, name) for name in ("teeth", "shift", "module", "tip_radius")}
             shape = np.shape(self.centre_distance)
             return replace(gear, **{name: np.broadcast_to(x, shape)[index].item() for name, x in numbers.items()})
@@ -63,18 +70,29 @@ class PlanetarySet:
         )
 
 
-def equally_spaced(sun_teeth, ring_teeth, planets: int):
+def _single(gears: PlanetarySet) -> PlanetarySet:
+    """A set as a batch of one."""
+    return replace(gears, centre_distance=np.atleast_1d(gears.centre_distance))
+
+
+def equally_spaced(sun_teeth: Batch, ring_teeth: Batch, planets: int) -> Batch:
     """Whether equally spaced planets can be put in: z_sun + |z_ring| divisible by their number."""
     return (np.asarray(sun_teeth) + np.abs(ring_teeth)) % planets == 0
 
 
-def share_a_factor(first, second):
+def share_a_factor(first: Batch, second: Batch) -> Batch:
     """Whether two tooth numbers have a common factor, so that the same teeth meet more often than they need to."""
     return np.gcd(np.abs(np.asarray(first, dtype=int)), np.abs(np.asarray(second, dtype=int))) > 1
 
 
 def planetary_set(
-    teeth, shifts, module, *, planets: int = 3, rack: BasicRack = ISO_53_A, ring_shift=None
+    teeth: Iterable[Batch],
+    shifts: Iterable[Batch],
+    module: Batch,
+    *,
+    planets: int = 3,
+    rack: BasicRack = ISO_53_A,
+    ring_shift: Batch | None = None,
 ) -> PlanetarySet:
     """The set of tooth numbers (z_sun, z_planet, z_ring < 0) and shifts (x_sun, x_planet) without backlash.
 
@@ -100,12 +118,12 @@ def planetary_set(
     return found
 
 
-def _full_tip(gear):
+def _full_tip(gear: Gear) -> Batch:
     """Tip radius without shortening, r + side m (x + h_a) [m]."""
     return gear.reference_radius + gear.side * gear.module * (gear.shift + gear.rack.addendum)
 
 
-def _shortened(sun, planet, ring, distance):
+def _shortened(sun: Gear, planet: Gear, ring: Gear, distance: Batch) -> tuple[Gear, Gear, Gear]:
     """The gears with tips that leave clearance to the roots, and involute flank to the mating tips."""
     clearance = (sun.rack.dedendum - sun.rack.addendum) * sun.module
     outer, inner = (Mesh(*pair, distance).line_of_action for pair in ((sun, planet), (planet, ring)))
@@ -115,10 +133,9 @@ def _shortened(sun, planet, ring, distance):
         planet_tip = np.minimum(planet_tip, ring.root_radius - distance - clearance)
         fillet = np.hypot(ring.base_radius, inner + planet.form_curvature)
         ring_tip = np.maximum(np.maximum(ring.tip_radius, distance + planet.root_radius + clearance), fillet)
-    tips = zip((sun, planet, ring), (sun_tip, planet_tip, ring_tip), strict=True)
-    return (replace(gear, tip_radius=tip) for gear, tip in tips)
+    return replace(sun, tip_radius=sun_tip), replace(planet, tip_radius=planet_tip), replace(ring, tip_radius=ring_tip)
 
 
-def _least(gear, radius, curvature):
+def _least(gear: Gear, radius: Batch, curvature: Batch) -> Batch:
     """Tip radius of an external gear that is no larger than this radius, nor beyond this flank curvature [m]."""
     return np.minimum(np.minimum(gear.tip_radius, radius), np.hypot(gear.base_radius, np.maximum(curvature, 0)))

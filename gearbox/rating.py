@@ -7,10 +7,12 @@ work hardening, rim and grinding notch are 1; load sharing of the planets is one
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from gearbox.batch import Batch
 from gearbox.errors import GearError
 from gearbox.fatigue import miner_sum, spectrum_safety
 from gearbox.flank import (
@@ -22,9 +24,10 @@ from gearbox.flank import (
 )
 from gearbox.involute import Mesh
 from gearbox.load_factors import LoadFactors, Quality, load_factors
-from gearbox.material import GearMaterial
+from gearbox.material import GearMaterial, LifeLine
 from gearbox.planetary_set import PlanetarySet
 from gearbox.root import (
+    RootSection,
     outer_single_contact_radii,
     permissible_root_stress,
     root_section,
@@ -60,7 +63,7 @@ class StageLoad:
     peak_torque: float
     peak_speed: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.peak_torque > 0 and self.peak_speed >= 0):
             raise GearError(
                 "a stage needs a peak torque above 0 and a peak speed not below 0; found "
@@ -80,13 +83,13 @@ class StageRating:
     flank, root: fatigue under the spectrum; static_flank, static_root: the peak torque, once
     """
 
-    flank: dict
-    root: dict
-    static_flank: dict
-    static_root: dict
+    flank: dict[str, Batch]
+    root: dict[str, Batch]
+    static_flank: dict[str, Batch]
+    static_root: dict[str, Batch]
 
     @property
-    def least(self) -> dict:
+    def least(self) -> dict[str, float]:
         """Smallest safety factor of each kind."""
         return {kind.name: min(np.min(value) for value in getattr(self, kind.name).values()) for kind in fields(self)}
 
@@ -115,11 +118,11 @@ class PittingBudget:
 class _Stresses:
     """Pinion and wheel of a mesh: contact and root stress over the strength at the knee (fatigue) or once (static)."""
 
-    contact: tuple
-    root: tuple
+    contact: tuple[Batch, ...]
+    root: tuple[Batch, ...]
 
 
-def rate_stage(gears: PlanetarySet, face_width, load: StageLoad, rules: Rules) -> StageRating:
+def rate_stage(gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules) -> StageRating:
     """Safety factors of a stage; gears and face_width [m] may be a batch."""
     static_flank, static_root = static_ratings(gears, face_width, load, rules)
     flank, root = endurance_ratios(gears, face_width, load.spectrum, rules)
@@ -145,14 +148,17 @@ def pitting_budget(gears: PlanetarySet, face_width: float, load: StageLoad, rule
     return PittingBudget(at_rms / (loads * film), loads, film, safety / at_rms)
 
 
-def static_ratings(gears: PlanetarySet, face_width, load: StageLoad, rules: Rules):
+def static_ratings(
+    gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules
+) -> tuple[dict[str, Batch], dict[str, Batch]]:
     """(flank, root) safety factors against the peak torque by gear, (batch).
 
     The film plays no part in the static strength of the flank: Z_L Z_V Z_R = 1 (ISO 6336-2).
     """
     material = rules.material
     contact_limit = material.contact_limit * material.flank_life.strength
-    found = {"flank": {}, "root": {}}
+    flank: dict[str, Batch] = {}
+    root: dict[str, Batch] = {}
     for mesh, names in _meshes(gears):
         force = sun_force(gears, load.peak_torque)
         factors = load_factors(
@@ -163,15 +169,17 @@ def static_ratings(gears: PlanetarySet, face_width, load: StageLoad, rules: Rule
             lambda section: static_root_strength(section, material) * rules.alternating_static,
         )  # fmt: skip
         for k, name in enumerate(names):
-            _keep_least(found["flank"], name, 1 / stresses.contact[k])
-            _keep_least(found["root"], name, 1 / stresses.root[k])
-    return found["flank"], found["root"]
+            _keep_least(flank, name, 1 / stresses.contact[k])
+            _keep_least(root, name, 1 / stresses.root[k])
+    return flank, root
 
 
-def survives(gears: PlanetarySet, face_width, load: StageLoad, rules: Rules, safety) -> np.ndarray:
+def survives(
+    gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules, safety: tuple[float, float]
+) -> np.ndarray:
     """Whether fatigue safety factors (flank, root) are reached, by Miner's sum below 1, (batch)."""
     flank, root = endurance_ratios(gears, face_width, load.spectrum, rules)
-    cycles, passed = load_cycles(gears, load.spectrum), True
+    cycles, passed = load_cycles(gears, load.spectrum), np.array(True)
     for ratios, line, wanted in (
         (flank, rules.material.flank_life, safety[0]),
         (root, rules.material.root_life, safety[1]),
@@ -182,7 +190,7 @@ def survives(gears: PlanetarySet, face_width, load: StageLoad, rules: Rules, saf
     return passed
 
 
-def load_cycles(gears: PlanetarySet, spectrum: LoadSpectrum) -> dict:
+def load_cycles(gears: PlanetarySet, spectrum: LoadSpectrum) -> dict[str, Batch]:
     """Load cycles of a tooth of each gear in each class over the life, (classes, ...), with eq. 3.123."""
     turns = {"sun": gears.ratio - 1, "planet": -gears.ring.teeth / gears.planet.teeth}
     turns["ring"] = np.ones_like(gears.ratio)
@@ -194,15 +202,18 @@ def load_cycles(gears: PlanetarySet, spectrum: LoadSpectrum) -> dict:
     }
 
 
-def sun_force(gears: PlanetarySet, carrier_torque):
+def sun_force(gears: PlanetarySet, carrier_torque: Batch) -> Batch:
     """Tangential force at the reference circles [N]: T_c / (i N r_sun), the same in both meshes of a planet."""
     return carrier_torque / (gears.ratio * gears.planets * gears.sun.reference_radius)
 
 
-def endurance_ratios(gears: PlanetarySet, face_width, spectrum: LoadSpectrum, rules: Rules) -> tuple[dict, dict]:
+def endurance_ratios(
+    gears: PlanetarySet, face_width: Batch, spectrum: LoadSpectrum, rules: Rules
+) -> tuple[dict[str, list[Batch]], dict[str, list[Batch]]]:
     """(flank, root): stress over endurance limit by gear, a list for its meshes, each (classes, batch)."""
     torque, speed = (_over_classes(values, gears) for values in (spectrum.torque, spectrum.speed))
-    flank, root = {name: [] for name in GEARS}, {name: [] for name in GEARS}
+    flank: dict[str, list[Batch]] = {name: [] for name in GEARS}
+    root: dict[str, list[Batch]] = {name: [] for name in GEARS}
     material, oil = rules.material, rules.oil
     for mesh, names in _meshes(gears):
         force, pinion_speed = sun_force(gears, torque), _pinion_speed(gears, mesh, speed)
@@ -218,7 +229,15 @@ def endurance_ratios(gears: PlanetarySet, face_width, spectrum: LoadSpectrum, ru
     return flank, root
 
 
-def _mesh_ratios(mesh: Mesh, force, face_width, factors: LoadFactors, material, contact_limit, root_limit) -> _Stresses:
+def _mesh_ratios(
+    mesh: Mesh,
+    force: Batch,
+    face_width: Batch,
+    factors: LoadFactors,
+    material: GearMaterial,
+    contact_limit: Batch,
+    root_limit: Callable[[RootSection], Batch],
+) -> _Stresses:
     """Stresses of pinion and wheel over a contact limit [Pa] and over ``root_limit(section)`` [Pa]."""
     nominal = contact_stress(mesh, force, face_width, material.elasticity_factor) * np.sqrt(factors.contact)
     contact = tuple(nominal * factor / contact_limit for factor in single_contact_factors(mesh))
@@ -227,30 +246,30 @@ def _mesh_ratios(mesh: Mesh, force, face_width, factors: LoadFactors, material, 
     return _Stresses(contact, tuple(root))
 
 
-def _sections(mesh):
+def _sections(mesh: Mesh) -> list[RootSection]:
     return [
         root_section(gear, radius)
         for gear, radius in zip((mesh.pinion, mesh.wheel), outer_single_contact_radii(mesh), strict=True)
     ]
 
 
-def _meshes(gears):
+def _meshes(gears: PlanetarySet) -> tuple[tuple[Mesh, tuple[str, str]], tuple[Mesh, tuple[str, str]]]:
     return (gears.sun_mesh, ("sun", "planet")), (gears.ring_mesh, ("planet", "ring"))
 
 
-def _pinion_speed(gears, mesh, carrier_speed):
+def _pinion_speed(gears: PlanetarySet, mesh: Mesh, carrier_speed: Batch) -> Batch:
     """Speed of sun or planet relative to the carrier [rad/s]: z_ring / z_pinion times that of the carrier."""
     return carrier_speed * np.abs(gears.ring.teeth) / mesh.pinion.teeth
 
 
-def _worst(line, ratios, cycles):
+def _worst(line: LifeLine, ratios: list[Batch], cycles: Batch) -> Batch:
     return np.min([spectrum_safety(line, ratio, cycles) for ratio in ratios], axis=0)
 
 
-def _keep_least(found, name, value):
+def _keep_least(found: dict[str, Batch], name: str, value: Batch) -> None:
     found[name] = np.minimum(found[name], value) if name in found else value
 
 
-def _over_classes(values, gears):
-    """Values of the classes, (classes,), as (classes, 1, ...) above the axes of a batch."""
+def _over_classes(values: np.ndarray, gears: PlanetarySet) -> np.ndarray:
+    """Batch of the classes, (classes,), as (classes, 1, ...) above the axes of a batch."""
     return np.reshape(values, (-1, *[1] * np.ndim(gears.centre_distance)))

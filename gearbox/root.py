@@ -14,6 +14,7 @@ from math import pi
 import numpy as np
 from numpy import arccos, cos, sin, sqrt, tan
 
+from gearbox.batch import Batch
 from gearbox.involute import Gear, Mesh, involute
 from gearbox.material import GearMaterial
 
@@ -26,32 +27,32 @@ _TEST_GEAR_NOTCH = 2.5  # q_sT, ISO 6336-3
 class RootSection:
     """Critical section under a load point: chord s_Fn, fillet radius rho_F, lever arm h_Fe [m], load angle [rad]."""
 
-    chord: float
-    fillet: float
-    lever: float
-    load_angle: float
-    module: float
+    chord: Batch
+    fillet: Batch
+    lever: Batch
+    load_angle: Batch
+    module: Batch
     pressure_angle: float
 
     @property
-    def form_factor(self):
+    def form_factor(self) -> Batch:
         """Y_F = 6 (h_Fe/m) cos(alpha_Fe) / ((s_Fn/m)^2 cos(alpha))."""
         m = self.module
         return 6 * self.lever / m * cos(self.load_angle) / ((self.chord / m) ** 2 * cos(self.pressure_angle))
 
     @property
-    def notch(self):
+    def notch(self) -> Batch:
         """q_s = s_Fn / (2 rho_F)."""
         return self.chord / (2 * self.fillet)
 
     @property
-    def stress_correction(self):
+    def stress_correction(self) -> Batch:
         """Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_Fe."""
         slender = self.chord / self.lever
         return (1.2 + 0.13 * slender) * self.notch ** (1 / (1.21 + 2.3 / slender))
 
 
-def root_section(gear: Gear, load_radius) -> RootSection:
+def root_section(gear: Gear, load_radius: Batch) -> RootSection:
     """Critical section of a gear loaded at a radius [m] (ISO 6336-3, 6.2, with signed tooth number)."""
     m, z, x, rack = gear.module, gear.teeth, gear.shift, gear.rack
     alpha, outside = rack.pressure_angle, gear.side > 0
@@ -74,7 +75,7 @@ def root_section(gear: Gear, load_radius) -> RootSection:
     return RootSection(chord * m, fillet * m, lever * m, load_angle, m, alpha)
 
 
-def outer_single_contact_radii(mesh: Mesh):
+def outer_single_contact_radii(mesh: Mesh) -> tuple[Batch, Batch]:
     """Radii [m] at which pinion and wheel carry the whole load farthest out, a base pitch after contact starts."""
     alone = np.minimum(mesh.pinion_curvature_at_start + mesh.base_pitch, mesh.pinion_curvature_at_tip)
     pinion = np.hypot(mesh.pinion.base_radius, alone)
@@ -82,12 +83,12 @@ def outer_single_contact_radii(mesh: Mesh):
     return pinion, np.hypot(mesh.wheel.base_radius, mesh.wheel_curvature(other))
 
 
-def root_stress(section: RootSection, force, face_width):
+def root_stress(section: RootSection, force: Batch, face_width: Batch) -> Batch:
     """sigma_F0 = F_t / (b m) Y_F Y_S [Pa]; multiply by ``LoadFactors.root``."""
     return force / (face_width * section.module) * section.form_factor * section.stress_correction
 
 
-def permissible_root_stress(section: RootSection, material: GearMaterial, roughness):
+def permissible_root_stress(section: RootSection, material: GearMaterial, roughness: Batch) -> Batch:
     """sigma_FG at the knee of the S-N line, one direction of load, safety 1 [Pa]: sigma_Flim Y_ST Y_drelT Y_RrelT.
 
     roughness R_z [m]. Y_X = 1 up to 5 mm of module. Alternating load lowers it by Y_M (``fatigue``).
@@ -96,7 +97,7 @@ def permissible_root_stress(section: RootSection, material: GearMaterial, roughn
     return basic * _support(section.notch, material) * root_roughness_factor(roughness)
 
 
-def static_root_strength(section: RootSection, material: GearMaterial):
+def static_root_strength(section: RootSection, material: GearMaterial) -> Batch:
     """Root stress that breaks or bends the tooth once [Pa]: sigma_Flim Y_ST Y_NT,static (0.44 Y_S + 0.12).
 
     The last is the relative notch factor of case-hardened steel for the static strength (ISO 6336-3, 11).
@@ -105,14 +106,14 @@ def static_root_strength(section: RootSection, material: GearMaterial):
     return basic * (0.44 * section.stress_correction + 0.12)
 
 
-def _support(notch, material):
+def _support(notch: Batch, material: GearMaterial) -> Batch:
     """Y_drelT = (1 + sqrt(rho' chi)) / (1 + sqrt(rho' chi_T)), chi = (1 + 2 q_s) / 5 per mm."""
     layer = material.slip_layer * 1e3  # mm
     own, test = (1 + sqrt(layer * (1 + 2 * q) / 5) for q in (notch, _TEST_GEAR_NOTCH))
     return own / test
 
 
-def root_roughness_factor(roughness):
+def root_roughness_factor(roughness: Batch) -> Batch:
     """Y_RrelT = 1.674 - 0.529 (R_z + 1)^0.1, 1.12 below 1 um: case-hardened steel; roughness [m]."""
     micrometres = roughness * 1e6
     return np.where(micrometres < 1, 1.12, 1.674 - 0.529 * (micrometres + 1) ** 0.1)[()]

@@ -9,14 +9,16 @@ fatigue rating.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, replace
-from math import ceil, floor
+from math import ceil, floor, log
 
 import numpy as np
 
+from gearbox.batch import Batch
 from gearbox.bodies import Construction, inertia_at_carrier, total_mass
 from gearbox.errors import GearError, TooWeakError
-from gearbox.involute import ISO_53_A, BasicRack
+from gearbox.involute import ISO_53_A, BasicRack, Gear
 from gearbox.planetary_set import PlanetarySet, equally_spaced, planetary_set, share_a_factor
 from gearbox.rating import Rules, StageLoad, rate_stage, static_ratings, survives
 from gearbox.train import GearTrain, Stage
@@ -28,7 +30,11 @@ SERIES_1 = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.
 SERIES_2 = (0.55, 0.65, 0.75, 0.85, 0.95, 1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4.5, 5.5)
 PREFERRED_MODULES = tuple(sorted(module * MILLIMETRE for module in SERIES_1 + SERIES_2))
 
+Checks = dict[str, np.ndarray]  # by the name of a constraint: whether each of a batch satisfies it
+Entry = tuple[int, tuple[float, ...], float]  # index of a set in its batch, widths of the stages [m], cost
+
 _BATCH = 400  # sets whose fatigue is rated at once
+_THREE_PLANETS = 14.9  # stage ratio at which three planets touch
 _PLANET_OFFSETS = range(-1, 5)  # planet teeth below half the difference of ring and sun; shifts close the rest
 
 
@@ -63,7 +69,7 @@ class WidthLimits:
     sun_diameters: float = 1.6
     step: float = 0.5 * MILLIMETRE
 
-    def range(self, gears: PlanetarySet):
+    def range(self, gears: PlanetarySet) -> tuple[np.ndarray, np.ndarray]:
         """Smallest and largest number of steps, (batch)."""
         most = np.minimum(self.most_modules * gears.sun.module, self.sun_diameters * 2 * gears.sun.reference_radius)
         least = np.ceil(self.modules * gears.sun.module / self.step - 1e-9)
@@ -116,23 +122,33 @@ class GearRequest:
     width: WidthLimits = WidthLimits()
     rack: BasicRack = ISO_53_A
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.stage_count >= 1 and self.ratio ** (1 / self.stage_count) > 2):
-            raise GearError(
-                f"a stage with a fixed ring needs a ratio above 2; {self.stage_count} stages for a ratio of "
-                f"{self.ratio:.4g} have {self.ratio ** (1 / max(self.stage_count, 1)):.3g} each: use fewer stages"
-            )
+            raise GearError(_no_planets(self.ratio, self.stage_count))
 
     @property
     def stage_ratios(self) -> tuple[float, float]:
         """Smallest and largest ratio of a stage within the tolerance."""
         ends = (self.ratio * (1 - self.ratio_tolerance), self.ratio * (1 + self.ratio_tolerance))
-        return tuple(end ** (1 / self.stage_count) for end in ends)
+        low, high = (end ** (1 / self.stage_count) for end in ends)
+        return low, high
 
-    def train(self, gears: PlanetarySet, widths) -> GearTrain:
+    def train(self, gears: PlanetarySet, widths: Iterable[float]) -> GearTrain:
         """The gearbox of one set of teeth and the face widths [m] of its stages."""
         stages = tuple(Stage(gears, float(width)) for width in widths)
         return GearTrain(stages, self.envelope_diameter, self.construction, self.rules.material.density, self.friction)
+
+
+def _no_planets(ratio: float, stages: int) -> str:
+    """Sentence on stages whose ratio leaves no room for planets."""
+    fewer = max((count for count in range(1, stages) if ratio ** (1 / count) > 2), default=0)
+    advice = "a faster rotor needs a larger ratio (match.speed_max_rad_per_s)"
+    return (
+        f"a stage with a fixed ring needs a ratio above 2; {stages} stages for a ratio of {ratio:.4g} have "
+        f"{ratio ** (1 / max(stages, 1)):.3g} each: "
+        + (f"use fewer stages, match.gearbox_stages = {fewer}" if fewer else f"{advice}, or drive directly, "
+           "match.gearbox_stages = 0")
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -182,7 +198,7 @@ def strongest(request: GearRequest, keep: int = 10) -> tuple[Found, str | None]:
     weakness: None, or the sentence on what is too weak and what to change; the wanted factors then do not hold.
     Raises TooWeakError when not even the smallest share is reached, GearError when no teeth fit at all.
     """
-    refusals = []
+    refusals: list[TooWeakError] = []
     for share in SHARES:
         safety = Safety(**{kind: share * value for kind, value in asdict(request.safety).items()})
         try:
@@ -205,9 +221,10 @@ def tooth_numbers(request: GearRequest, module: float) -> list[tuple[int, int, i
     return found
 
 
-def _sets_that_fit(request):
+def _sets_that_fit(request: GearRequest) -> tuple[PlanetarySet, int]:
     """All sets that pass the geometry, as a batch, and how many were formed; one module at a time, for the memory."""
-    kept, checks = [], []
+    kept: list[PlanetarySet] = []
+    checks: list[Checks] = []
     for module in request.modules:
         rows = tooth_numbers(request, module)
         if rows:
@@ -218,7 +235,7 @@ def _sets_that_fit(request):
     return _join(kept), sum(next(iter(one.values())).size for one in checks)
 
 
-def _form(request, rows, module):
+def _form(request: GearRequest, rows: np.ndarray, module: float) -> PlanetarySet:
     """Sets of a module from rows of tooth numbers, with every pair of shifts of the grid."""
     limits = request.teeth
     steps = [
@@ -231,23 +248,36 @@ def _form(request, rows, module):
     return planetary_set(teeth, np.tile(shifts, (len(rows), 1)).T, modules, planets=request.planets, rack=request.rack)
 
 
-def _require_any(checks, count, request):
+def _require_any(checks: list[Checks], count: int, request: GearRequest) -> None:
     """Raise GearError with the constraint that stands in the way when no set passed all the checks."""
     if not checks:
-        low, high = request.stage_ratios
-        raise GearError(
-            f"no tooth numbers with {request.planets} equally spaced planets give a stage ratio of {low:.3f} to "
-            f"{high:.3f} inside {request.envelope_diameter / MILLIMETRE:g} mm with at least "
-            f"{request.teeth.least_sun_teeth} teeth on the sun: relax the ratio tolerance, the envelope or the "
-            "smallest module"
-        )
+        raise GearError(_no_teeth(request))
     if count:
         return
     together = {name: np.concatenate([one[name] for one in checks]) for name in checks[0]}
     raise GearError(_in_the_way(together, request))
 
 
-def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict:
+def _no_teeth(request: GearRequest) -> str:
+    """Sentence on a stage ratio that no whole teeth give."""
+    low, high = request.stage_ratios
+    diameter, least = request.envelope_diameter, request.teeth.least_sun_teeth
+    largest = 1 + floor(diameter / min(request.modules)) / least
+    return (
+        f"no tooth numbers with {request.planets} equally spaced planets give a stage ratio of {low:.3f} to "
+        f"{high:.3f} inside {diameter / MILLIMETRE:g} mm with at least {least} teeth on the sun, where {largest:.4g} "
+        "is the largest: "
+        + (f"use more stages, match.gearbox_stages = {_stages_for(request.ratio, largest)}" if low > largest
+           else "widen gearbox.ratio_tolerance or change gearbox.planets")
+    )  # fmt: skip
+
+
+def _stages_for(ratio: float, largest: float) -> int:
+    """Fewest stages whose ratio is below the largest, with room for three planets (a ratio below 14.9)."""
+    return ceil(log(ratio) / log(min(largest, _THREE_PLANETS)))
+
+
+def geometry_checks(gears: PlanetarySet, request: GearRequest) -> Checks:
     """Which sets satisfy each geometric constraint, by its name, (batch) of bool."""
     limits, m = request.teeth, gears.sun.module
     meshes = (gears.sun_mesh, gears.ring_mesh)
@@ -269,30 +299,43 @@ def geometry_checks(gears: PlanetarySet, request: GearRequest) -> dict:
         }  # fmt: skip
 
 
-def _in_the_way(checks, request):
+def _in_the_way(checks: Checks, request: GearRequest) -> str:
     """Sentence on the constraint without which most sets would fit, or that fewest satisfy."""
     alone = {name: int(_others(checks, name).sum()) for name in checks}
-    name = max(alone, key=alone.get)
+    name = max(alone, key=alone.__getitem__)
     if not alone[name]:
         name = min(checks, key=lambda key: checks[key].sum())
     return (
         f"none of {checks[name].size} sets of teeth and profile shifts for a ratio of {request.ratio:.4g} in "
         f"{request.stage_count} stages fits; the constraint in the way is the {name}, which {int(checks[name].sum())} "
-        "of them satisfy: relax it, or the ratio, the number of planets or the envelope"
+        f"of them satisfy: {_WAYS_OUT[name]}"
     )
 
 
-def _others(checks, name):
-    return np.logical_and.reduce([passed for other, passed in checks.items() if other != name])
+_OTHER_TEETH = "widen gearbox.ratio_tolerance or change match.gearbox_stages, for other teeth to choose from"
+_WAYS_OUT = {
+    "undercut of sun or planet": _OTHER_TEETH,
+    "profile shift of the ring": _OTHER_TEETH,
+    "contact ratio": _OTHER_TEETH,
+    "interference with the fillets": _OTHER_TEETH,
+    "tip thickness": _OTHER_TEETH,
+    "gap between the planets": "use fewer planets (gearbox.planets) or more stages (match.gearbox_stages)",
+    "rim of the ring in the envelope": "use a larger stator, which the gears have to stay inside "
+    "(match.chosen_stator_diameter_mm)",
+}
 
 
-def _shares(gears):
+def _others(checks: Checks, name: str) -> np.ndarray:
+    return np.asarray(np.logical_and.reduce([passed for other, passed in checks.items() if other != name]))
+
+
+def _shares(gears: PlanetarySet) -> np.ndarray:
     """Whether sun and planet or planet and ring have a common factor, (batch)."""
     sun, planet, ring = gears.teeth
     return share_a_factor(sun, planet) | share_a_factor(planet, ring)
 
 
-def _cheapest(gears, request, keep):
+def _cheapest(gears: PlanetarySet, request: GearRequest, keep: int) -> list[Entry]:
     """[(index, widths of the stages [m], cost)] of the best sets, different in teeth, in the order of rising cost."""
     loads = _stage_loads(request)
     static = [_static_steps(gears, load, request) for load in loads]
@@ -300,7 +343,8 @@ def _cheapest(gears, request, keep):
     if not usable.any():
         raise TooWeakError(_too_weak(gears, request, loads[0]))
     bound = np.where(usable, _cost(gears, static, request), np.inf)
-    order, best, names = np.argsort(bound, kind="stable"), [], _teeth_names(gears)
+    order, names = np.argsort(bound, kind="stable"), _teeth_names(gears)
+    best: list[Entry] = []
     for start in range(0, int(usable.sum()), _BATCH):
         batch = order[start : start + _BATCH]
         batch = batch[np.isfinite(bound[batch])]
@@ -312,7 +356,7 @@ def _cheapest(gears, request, keep):
     return best
 
 
-def _stage_loads(request):
+def _stage_loads(request: GearRequest) -> list[StageLoad]:
     """Load of every stage; behind stage 1 with the smallest stage ratio allowed, on the safe side for the torque."""
     found = [request.load]
     for _ in range(request.stage_count - 1):
@@ -320,7 +364,9 @@ def _stage_loads(request):
     return found
 
 
-def _least_steps(passes, least, most):
+def _least_steps(
+    passes: Callable[[np.ndarray], np.ndarray], least: np.ndarray, most: np.ndarray
+) -> np.ndarray:
     """Smallest steps, (batch), in least ... most for which ``passes(steps)`` holds, most + 1 where none does.
 
     ``passes`` is taken to hold from some step on: wider teeth are stronger.
@@ -335,29 +381,30 @@ def _least_steps(passes, least, most):
     return high
 
 
-def _static_steps(gears, load, request):
+def _static_steps(gears: PlanetarySet, load: StageLoad, request: GearRequest) -> np.ndarray:
     """Width steps from which the peak torque is survived, (batch)."""
     wanted, step = request.safety, request.width.step
 
-    def passes(steps):
+    def passes(steps: np.ndarray) -> np.ndarray:
         flank, root = static_ratings(gears, steps * step, load, request.rules)
         good = [flank[name] >= wanted.static_flank for name in flank]
-        return np.logical_and.reduce(good + [root[name] >= wanted.static_root for name in root])
+        return np.asarray(np.logical_and.reduce(good + [root[name] >= wanted.static_root for name in root]))
 
     return _least_steps(passes, *request.width.range(gears))
 
 
-def _rated(gears, batch, static, request):
+def _rated(
+    gears: PlanetarySet, batch: np.ndarray, static: list[np.ndarray], request: GearRequest
+) -> list[Entry]:
     """[(index, widths [m], cost)] of the sets of a batch whose stages also survive the spectrum."""
     part, wanted, step = _select(gears, batch), request.safety, request.width.step
     most = request.width.range(part)[1]
-    needed = [
-        _least_steps(
-            lambda steps, one=load: survives(part, steps * step, one, request.rules, (wanted.flank, wanted.root)),
-            least, most,
-        )
-        for load, least in zip(_stage_loads(request), static, strict=True)
-    ]  # fmt: skip
+
+    def endures(load: StageLoad) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda steps: survives(part, steps * step, load, request.rules, (wanted.flank, wanted.root))
+
+    loads = zip(_stage_loads(request), static, strict=True)
+    needed = [_least_steps(endures(load), least, most) for load, least in loads]
     usable = np.logical_and.reduce([steps <= most for steps in needed])
     cost = _cost(part, needed, request)
     return [
@@ -366,9 +413,11 @@ def _rated(gears, batch, static, request):
     ]
 
 
-def _cost(gears, steps, request):
+def _cost(gears: PlanetarySet, steps: list[np.ndarray], request: GearRequest) -> np.ndarray:
     """Cost of sets whose stages have these width steps, (batch)."""
-    scale, mass, inertia = request.cost, 0.0, 0.0
+    scale = request.cost
+    mass: Batch = 0.0
+    inertia: Batch = 0.0
     for number, count in enumerate(steps):
         bodies = request.construction.bodies(
             gears, count * request.width.step, request.envelope_diameter, request.rules.material.density
@@ -380,23 +429,23 @@ def _cost(gears, steps, request):
     return cost * np.where(_shares(gears), 1 + scale.shared_factor_cost, 1.0)
 
 
-def _teeth_names(gears):
+def _teeth_names(gears: PlanetarySet) -> list[tuple[float, ...]]:
     """(module, z_sun, z_planet, z_ring) of each set, as tuples."""
     return list(zip(gears.sun.module, *gears.teeth, strict=True))
 
 
-def _best_teeth(found, names, keep):
+def _best_teeth(found: list[Entry], names: list[tuple[float, ...]], keep: int) -> list[Entry]:
     """The cheapest of each tooth numbers and module, the ``keep`` cheapest of those."""
-    chosen = {}
+    chosen: dict[tuple[float, ...], Entry] = {}
     for entry in sorted(found, key=lambda one: (one[2], one[0])):
         chosen.setdefault(names[entry[0]], entry)
     return list(chosen.values())[:keep]
 
 
-def _select(gears, index):
+def _select(gears: PlanetarySet, index: np.ndarray) -> PlanetarySet:
     """Part of a batch, still a batch."""
 
-    def part(gear):
+    def part(gear: Gear) -> Gear:
         names = ("teeth", "shift", "module", "tip_radius")
         return replace(gear, **{name: getattr(gear, name)[index] for name in names})
 
@@ -405,10 +454,10 @@ def _select(gears, index):
     )
 
 
-def _join(batches):
+def _join(batches: list[PlanetarySet]) -> PlanetarySet:
     """One batch of several."""
 
-    def joined(name):
+    def joined(name: str) -> Gear:
         parts = [getattr(batch, name) for batch in batches]
         numbers = ("teeth", "shift", "module", "tip_radius")
         return replace(parts[0], **{key: np.concatenate([getattr(part, key) for part in parts]) for key in numbers})
@@ -417,7 +466,7 @@ def _join(batches):
     return PlanetarySet(joined("sun"), joined("planet"), joined("ring"), distance, batches[0].planets)
 
 
-def _too_weak(gears, request, load):
+def _too_weak(gears: PlanetarySet, request: GearRequest, load: StageLoad) -> str:
     """Sentence on the set that comes nearest to its safety factors at its largest width."""
     count, width = len(gears.centre_distance), request.width.range(gears)[1] * request.width.step
     flank, root = (np.min(list(part.values()), axis=0) for part in static_ratings(gears, width, load, request.rules))
@@ -434,6 +483,7 @@ def _too_weak(gears, request, load):
     return (
         f"all {count} sets of teeth that fit are too weak; the strongest, module "
         f"{gears.sun.module[best] / MILLIMETRE:g} mm with {width[best] / MILLIMETRE:g} mm wide teeth, reaches a safety "
-        f"factor {kind} of {reached[kind][best] * wanted:.3f} in stage 1 where {wanted:g} is wanted: relax that "
-        "factor, use a better steel, a larger envelope, a smaller torque or wider teeth"
+        f"factor {kind} of {reached[kind][best] * wanted:.3f} in stage 1 where {wanted:g} is wanted: lower "
+        f"gearbox.safety_{kind}, use a better steel (gearbox.material), a larger stator "
+        "(match.chosen_stator_diameter_mm) or more planets (gearbox.planets)"
     )

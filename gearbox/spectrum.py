@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearbox.batch import Batch
 from gearbox.errors import GearError
 from units import DEGREE
 
@@ -31,7 +32,7 @@ class LoadSpectrum:
     duration: float
     swing: float = np.inf
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         sizes = {np.shape(part) for part in (self.torque, self.share, self.speed)}
         if len(sizes) != 1 or np.ndim(self.torque) != 1 or not np.size(self.torque):
             raise GearError(f"a load spectrum needs as many torques as shares and speeds; found shapes {sorted(sizes)}")
@@ -59,14 +60,16 @@ class LoadSpectrum:
         )
 
 
-def spectrum_from_history(torque, speed, *, class_width: float, duration: float, swing: float) -> LoadSpectrum:
+def spectrum_from_history(
+    torque: np.ndarray, speed: np.ndarray, *, class_width: float, duration: float, swing: float
+) -> LoadSpectrum:
     """Spectrum of an evenly sampled history at the slow shaft (method of the thesis).
 
     torque [Nm], speed [rad/s]: (samples,), any sign; class_width [Nm]; duration: life [s]; swing: [rad], see
     ``largest_swing``. Each class counts with its upper end, so that no torque is rated below what it was; the
     revolutions of the history are kept exactly. Raises GearError.
     """
-    torque, speed = (np.abs(np.asarray(values, dtype=float)) for values in (torque, speed))
+    torque, speed = np.abs(np.asarray(torque, dtype=float)), np.abs(np.asarray(speed, dtype=float))
     if torque.shape != speed.shape or torque.ndim != 1 or not torque.size or not class_width > 0:
         raise GearError(
             f"a torque history needs as many torques as speeds and a positive class width; found {torque.shape} "
@@ -95,7 +98,7 @@ def gaussian_spectrum(
     )
 
 
-def _normal_quantiles(crest):
+def _normal_quantiles(crest: float) -> tuple[np.ndarray, np.ndarray]:
     """Distribution function of |x| of a normal x up to a multiple of its RMS, and x."""
     x = np.linspace(0, crest, 2001)
     density = np.exp(-(x**2) / 2)
@@ -109,7 +112,7 @@ def largest_swing(angle: ArrayLike) -> float:
     return float(np.max(np.abs(np.diff(turning)), initial=0.0))
 
 
-def cycles_per_revolution(contacts: float, alternation: float, swing: float, speed_ratio: float):
+def cycles_per_revolution(contacts: float, alternation: float, swing: float, speed_ratio: float) -> Batch:
     """N_j = a_1 a_2 max(1, 2 pi / (swing ratio)): load cycles of a gear per revolution of that gear (3.123).
 
     contacts a_1: contacts per continuous revolution (3 for sun and ring, 1 for a planet); alternation a_2: 0.5 where a
@@ -119,7 +122,7 @@ def cycles_per_revolution(contacts: float, alternation: float, swing: float, spe
     return contacts * alternation * np.maximum(1.0, 360 * DEGREE / (swing * speed_ratio))
 
 
-def reversals(history) -> np.ndarray:
+def reversals(history: ArrayLike) -> np.ndarray:
     """Turning points of a history, its first and last value included."""
     values = np.asarray(history, dtype=float)
     values = values[np.concatenate([[True], np.diff(values) != 0])]
@@ -129,7 +132,7 @@ def reversals(history) -> np.ndarray:
     return values[np.concatenate([[True], inner, [True]])]
 
 
-def rainflow(history) -> np.ndarray:
+def rainflow(history: ArrayLike) -> np.ndarray:
     """Cycles of a history, (cycles, 3): range, mean, count (1 or 0.5), by the rainflow rule of ASTM E1049-85, 5.4.4."""
     stack, found = [], []
     for point in reversals(history):

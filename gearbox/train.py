@@ -1,4 +1,4 @@
-"""The gearbox: stages one behind the other, from the slow shaft (linkage) to the fast one (rotor)."""
+"""What lies between the slow shaft (linkage, load) and the rotor: stages one behind the other, or nothing at all."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import prod
 
 from gearbox.bodies import Body, Construction, inertia_at_carrier, total_mass
 from gearbox.efficiency import stage_efficiency
+from gearbox.errors import GearError
 from gearbox.planetary_set import PlanetarySet
 from gearbox.rating import Rules, StageLoad, StageRating, rate_stage
 
@@ -19,8 +20,89 @@ class Stage:
     face_width: float
 
 
+class Gears:
+    """A transmission from the slow shaft to the rotor; the concrete ones are below."""
+
+    stages: tuple[Stage, ...]
+    envelope_diameter: float
+
+    @property
+    def ratio(self) -> float:
+        """Fast over slow speed."""
+        raise NotImplementedError
+
+    @property
+    def mass(self) -> float:
+        """[kg]"""
+        raise NotImplementedError
+
+    @property
+    def inertia_at_slow_shaft(self) -> float:
+        """J [kg m^2] of all that turns."""
+        raise NotImplementedError
+
+    @property
+    def inertia_at_fast_shaft(self) -> float:
+        """J over the squared ratio [kg m^2]."""
+        return self.inertia_at_slow_shaft / self.ratio**2
+
+    @property
+    def stage_lengths(self) -> tuple[float, ...]:
+        """Axial room of each stage [m]."""
+        raise NotImplementedError
+
+    @property
+    def length(self) -> float:
+        """Axial room of all stages [m]."""
+        return sum(self.stage_lengths)
+
+    @property
+    def efficiency(self) -> tuple[float, float]:
+        """(slow drives fast, fast drives slow), meshing losses alone."""
+        raise NotImplementedError
+
+    def rate(self, load: StageLoad, rules: Rules) -> tuple[StageRating, ...]:
+        """Safety factors of each stage when this load acts at the slow shaft."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class GearTrain:
+class DirectDrive(Gears):
+    """The rotor on the slow shaft: ratio 1, nothing that weighs, turns, rubs or breaks."""
+
+    stages: tuple[Stage, ...] = ()
+    envelope_diameter: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.stages:
+            raise GearError(f"a direct drive has no stages; found {len(self.stages)}")
+
+    @property
+    def ratio(self) -> float:
+        return 1.0
+
+    @property
+    def mass(self) -> float:
+        return 0.0
+
+    @property
+    def inertia_at_slow_shaft(self) -> float:
+        return 0.0
+
+    @property
+    def stage_lengths(self) -> tuple[float, ...]:
+        return ()
+
+    @property
+    def efficiency(self) -> tuple[float, float]:
+        return 1.0, 1.0
+
+    def rate(self, load: StageLoad, rules: Rules) -> tuple[StageRating, ...]:
+        return ()
+
+
+@dataclass(frozen=True)
+class GearTrain(Gears):
     """Stages in order from the slow shaft, in an envelope diameter [m]; density [kg/m^3], friction coefficient mu."""
 
     stages: tuple[Stage, ...]
@@ -57,20 +139,16 @@ class GearTrain:
         return sum(inertia_at_carrier(bodies) * speed**2 for bodies, speed in pairs)
 
     @property
-    def inertia_at_fast_shaft(self) -> float:
-        """J over the squared ratio [kg m^2]."""
-        return self.inertia_at_slow_shaft / self.ratio**2
-
-    @property
-    def length(self) -> float:
-        """Axial room of all stages [m]."""
-        return sum(self.construction.stage_length(stage.face_width) for stage in self.stages)
+    def stage_lengths(self) -> tuple[float, ...]:
+        """Axial room of each stage [m]."""
+        return tuple(self.construction.stage_length(stage.face_width) for stage in self.stages)
 
     @property
     def efficiency(self) -> tuple[float, float]:
         """(slow drives fast, fast drives slow), meshing losses alone."""
         pairs = [stage_efficiency(stage.gears, self.friction) for stage in self.stages]
-        return tuple(float(prod(column)) for column in zip(*pairs, strict=True))
+        step_up, step_down = zip(*pairs, strict=True)
+        return float(prod(step_up)), float(prod(step_down))
 
     def loads(self, load: StageLoad) -> tuple[StageLoad, ...]:
         """Load of each stage when this one acts at the slow shaft."""

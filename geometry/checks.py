@@ -28,7 +28,8 @@ def _check_numbers(m: Machine) -> None:
             raise GeometryError(f"{name} must be a positive finite number, found {value}: correct {name}")
     if m.magnet_arc_fraction > 1:
         raise GeometryError(
-            f"magnet_arc_fraction must be at most 1 (neighbouring magnets touch), found {m.magnet_arc_fraction}: reduce it"
+            "magnet_arc_fraction must be at most 1 (neighbouring magnets touch), found "
+            f"{m.magnet_arc_fraction}: reduce it"
         )
 
 

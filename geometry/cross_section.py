@@ -1,14 +1,15 @@
 """The meshed cross-section: the smallest sector of the machine, copied out of one stator and one rotor half cell.
 
 Stator and rotor are two separate pieces of one mesh, both drawn at angle zero and not joined on the sliding circle in
-the middle of the air gap: whoever solves on it joins them at the angle he wants, so that turning the rotor moves no node.
+the middle of the air gap: whoever solves on it joins them at the angle he wants, so that turning the rotor moves no
+node.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Iterable
 
 import numpy as np
 from skfem import MeshTri
@@ -17,6 +18,7 @@ from geometry.checks import check_machine
 from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import Machine
+from geometry.mesh_size import check_mesh_size
 from geometry.plane_mesh import PlaneMesh
 from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
@@ -26,7 +28,7 @@ _BESIDE_THE_LINE = 1e-6  # rad, small against any element
 
 @dataclass(frozen=True)
 class Probe:
-    """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m] and weights (n,) summing to 1."""
+    """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m], weights (n,) of sum 1."""
 
     name: str
     points: np.ndarray
@@ -83,7 +85,7 @@ class CrossSection:
 
     @property
     def coil_sides(self) -> tuple[tuple[int, str], ...]:
-        """(slot, side) of every half slot in the sector, counter-clockwise; the first belongs to the slot before tooth 0."""
+        """(slot, side) of every half slot in the sector, counter-clockwise; the first is of the slot before tooth 0."""
         return _coil_sides(self.machine.slots, 2 * self.teeth)
 
     @property
@@ -145,7 +147,8 @@ class CrossSection:
     def back_iron_probes(self) -> tuple[Probe, ...]:
         """Radially through the back iron behind each slot, slot 0 first.
 
-        The segment is an edge line of the mesh, where the tangential field of two elements differs: both sides count half.
+        The segment is an edge line of the mesh, where the tangential field of two elements differs: both sides count
+        half.
         """
         m = self.machine
         points, weights = _segment((m.slot_bottom_radius, 0.0), (m.stator_outer_radius, 0.0))
@@ -165,10 +168,11 @@ def mesh_cross_section(
 ) -> CrossSection:
     """Mesh the smallest sector that field and winding repeat on, or the whole machine.
 
-    Raises GeometryError when the machine cannot be built (see ``geometry/checks.py``).
+    Raises GeometryError when the machine cannot be built (see ``geometry/checks.py``) or its mesh would be too large.
     """
     check_machine(machine)
     sectors = 1 if whole or not sector_symmetric(layout, machine.sectors, machine.is_antiperiodic) else machine.sectors
+    check_mesh_size(machine, density, sectors)
     antiperiodic = sectors > 1 and machine.is_antiperiodic
     counts = 2 * machine.slots // sectors, 2 * machine.poles // sectors
     cells = half_cells(machine, density)
@@ -178,10 +182,11 @@ def mesh_cross_section(
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Stator or rotor of a sector: a half cell, mirrored and turned ``count`` times from half a pitch below angle zero on.
+    """Stator or rotor of a sector: a half cell, mirrored and turned ``count`` times from half a pitch below zero on.
 
     Copy h covers the angles (h - 1) width .. h width; even copies are mirrored. Nodes on shared rays are shared.
-    cell, mesh: the half cell and its triangles; nodes: number in the piece of every half-cell node in every copy (count, n)
+    cell, mesh: the half cell and its triangles
+    nodes: number in the piece of every half-cell node in every copy (count, n)
     """
 
     cell: HalfCell
@@ -346,5 +351,5 @@ def _gauss_points(count: int) -> tuple[np.ndarray, np.ndarray]:
 def _segment(start: tuple[float, float], end: tuple[float, float], points: int = 12) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points (2, n) and weights (n,) of the average over a straight segment."""
     nodes, weights = _gauss_points(points)
-    start, end = np.array(start)[:, None], np.array(end)[:, None]
-    return start + (end - start) * (nodes + 1) / 2, weights / 2
+    first, last = np.array(start)[:, None], np.array(end)[:, None]
+    return first + (last - first) * (nodes + 1) / 2, weights / 2

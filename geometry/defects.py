@@ -11,7 +11,7 @@ from math import cos, sin
 
 import numpy as np
 
-from geometry.cross_section import CrossSection
+from geometry.cross_section import Assembly, CrossSection
 from geometry.gap import GapHalf
 from geometry.machine import GeometryError, Machine
 from geometry.morph import Defect, Morpher
@@ -59,10 +59,10 @@ class StaticEccentricity(Eccentricity):
     g(phi) = g + amplitude cos(phi - direction)
     """
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         return self._moves(section, section.stator_gap, slice(0, first_rotor_node(section)))
 
-    def assemble(self, assembly):
+    def assemble(self, assembly: Assembly) -> Assembly:
         return replace(assembly, stator_centre=_sum(assembly.stator_centre, self.vector))
 
 
@@ -73,10 +73,10 @@ class DynamicEccentricity(Eccentricity):
     g(phi) = g - amplitude cos(phi - direction - theta), the direction counted from the axis of magnet 0
     """
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         return self._moves(section, section.rotor_gap, slice(first_rotor_node(section), None))
 
-    def assemble(self, assembly):
+    def assemble(self, assembly: Assembly) -> Assembly:
         return replace(assembly, rotor_centre=_sum(assembly.rotor_centre, self.vector))
 
 
@@ -92,10 +92,10 @@ class MagnetPosition(Defect):
     number: int
     angle: float  # [rad], about the rotor's centre
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         return _turn_rotor(section, self.number, self.angle, self.angle)
 
-    def assemble(self, assembly):
+    def assemble(self, assembly: Assembly) -> Assembly:
         return replace(assembly, magnet_turns=assembly.magnet_turns + ((self.number, self.angle),))
 
 
@@ -109,7 +109,7 @@ class MagnetArc(Defect):
     number: int
     change: float  # of the whole arc [rad]
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         return _turn_rotor(section, self.number, -self.change / 2, self.change / 2)
 
 
@@ -120,7 +120,7 @@ class SlotOpening(Defect):
     slot: int  # between tooth ``slot`` and the next
     change: float  # of the opening width [m]
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         m = section.machine
         wanted = m.opening_width + self.change
         if wanted >= m.slot_pitch * m.stator_inner_radius - m.tooth_width:
@@ -139,7 +139,7 @@ class ToothWidth(Defect):
     tooth: int
     change: float  # [m]
 
-    def moves(self, morpher, section):
+    def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         _check_number("tooth", self.tooth, section.machine.slots)
         machine = replace(section.machine, tooth_width=section.machine.tooth_width + self.change)
         return morpher.copies_moved(machine, section, (2 * self.tooth, 2 * self.tooth + 1))

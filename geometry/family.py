@@ -57,9 +57,6 @@ class MachineFamily:
 
 @dataclass(frozen=True)
 class MatchedMachine:
-    """The machine that gearbox and motor were matched for, or that the study states where nothing is matched.
-
-    It has its final active length; its winding and its current are chosen by the stages behind it.
-    """
+    """The cross-section that gearbox and motor were matched to; its winding is chosen by the stages behind it."""
 
     machine: Machine

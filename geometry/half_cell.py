@@ -35,18 +35,30 @@ class MeshDensity:
     def edges_around(self, machine: Machine) -> int:
         """Edges on the whole sliding circle: a whole number per half slot pitch and per half pole pitch."""
         unit = lcm(2 * machine.slots, 2 * machine.poles)
-        needed = 2 * pi * machine.mid_gap_radius / (self.longest_gap_edge * machine.airgap)
-        return unit * ceil(max(self.gap_edges, needed) / unit)
+        return unit * ceil(self.edges_wanted(machine) / unit)
+
+    def edges_wanted(self, machine: Machine) -> float:
+        """Least number of edges around the sliding circle, by count and by their length."""
+        return max(self.gap_edges, 2 * pi * machine.mid_gap_radius / (self.longest_gap_edge * machine.airgap))
 
     def gap_edge_length(self, machine: Machine) -> float:
         """Edge length on the sliding circle [m]."""
         return 2 * pi * machine.mid_gap_radius / self.edges_around(machine)
 
+    def in_tooth(self, machine: Machine) -> float:
+        """Edge length in a tooth [m]. A back iron thinner than half a tooth refines it, though not without end."""
+        width = machine.tooth_width
+        return min(width, max(2 * machine.back_iron_width, width / 2)) / self.across_iron
+
+    def in_yoke(self, machine: Machine) -> float:
+        """Edge length in the back iron and at the bottom of the slot [m]; a thin tooth does not refine them."""
+        return min(max(machine.tooth_width, machine.back_iron_width), 2 * machine.back_iron_width) / self.across_iron
+
 
 class HalfCell:
     """Half a pitch of stator or rotor: how it is drawn for a machine, and how it is meshed."""
 
-    def __init__(self, density: MeshDensity, edges: int):
+    def __init__(self, density: MeshDensity, edges: int) -> None:
         self.density, self.edges = density, edges  # edges of the half pitch on the sliding circle
 
     def width(self, machine: Machine) -> float:
@@ -84,26 +96,26 @@ class HalfCell:
 class StatorHalfCell(HalfCell):
     """From the axis of tooth 0 (angle 0) to the centre of slot 0; regions iron, opening, copper, gap."""
 
-    def width(self, machine):
+    def width(self, machine: Machine) -> float:
         return machine.slot_pitch / 2
 
-    def rim_radius(self, machine):
+    def rim_radius(self, machine: Machine) -> float:
         return machine.stator_inner_radius
 
-    def draw(self, machine):
+    def draw(self, machine: Machine) -> Drawing:
         return _draw_stator(machine, self.density, self.edges)
 
 
 class RotorHalfCell(HalfCell):
     """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet, (between,) gap."""
 
-    def width(self, machine):
+    def width(self, machine: Machine) -> float:
         return machine.pole_pitch / 2
 
-    def rim_radius(self, machine):
+    def rim_radius(self, machine: Machine) -> float:
         return machine.rotor_outer_radius
 
-    def draw(self, machine):
+    def draw(self, machine: Machine) -> Drawing:
         return _draw_rotor(machine, self.density, self.edges)
 
 
@@ -115,38 +127,44 @@ def half_cells(machine: Machine, density: MeshDensity) -> tuple[StatorHalfCell, 
 
 def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     fine = density.gap_edge_length(m)
-    in_tooth = min(m.tooth_width, m.back_iron_width * 2) / density.across_iron
+    in_tooth, in_yoke = density.in_tooth(m), density.in_yoke(m)
     in_shoe = min(4 * fine, in_tooth)
     axis, half = m.slot_pitch / 2, m.opening_width / 2
     r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
-    r_open = r_si + m.shoe_d1
-    in_copper = min(2 * in_tooth, (r_sb - r_shoe) / 2)
+    r_open = m.opening_top_radius
+    in_copper = min(2 * in_yoke, (r_sb - r_shoe) / 2)
     d = Drawing()
     d.point("bore", r_si, 0, 2 * fine)  # the edges on the bore are set below
     d.point("tip", r_si, axis - asin(half / r_si), fine)
     d.point("bore_slot", r_si, axis, 2 * fine)
-    d.point("tip_top", r_open, axis - asin(half / r_open), min(3 * fine, m.shoe_d1))
+    d.point("tip_top", r_open, m.opening_top_angle, min(3 * fine, m.shoe_d1))
     d.point("open_slot", r_open, axis, 3 * fine)
     d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
     d.point("shoe_axis", r_shoe, 0, 1.5 * in_tooth)
-    d.point("shoe_slot", r_shoe, axis, in_tooth)
+    d.point("shoe_slot", r_shoe, axis, in_yoke)
     d.point("flank_end", r_sb, asin(m.tooth_width / 2 / r_sb), 0.5 * in_tooth)
-    d.point("bottom", r_sb, axis, in_tooth)
-    d.point("outer_slot", r_so, axis, in_tooth)
-    d.point("outer", r_so, 0, in_tooth)
+    d.point("bottom", r_sb, axis, in_yoke)
+    d.point("outer_slot", r_so, axis, in_yoke)
+    d.point("outer", r_so, 0, in_yoke)
     middle = (r_shoe + r_sb) / 2
     d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), in_tooth)
     d.point("slot_middle", middle, axis, in_copper)
     opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
     d.arc("bore", "tip", edges - opening)
     d.arc("tip", "bore_slot", opening)
-    d.path("tip", "tip_top", "shoe_top", "flank_middle", "flank_end")
+    taper: tuple[str, ...] = ("tip_top",)
+    if m.taper_touches_shoe:
+        d.point("taper", r_open, m.taper_angle, min(3 * fine, in_shoe))
+        d.arc("tip_top", "taper")
+        taper = ("tip_top", "taper")
+    d.line("tip", "tip_top")
+    d.path(taper[-1], "shoe_top", "flank_middle", "flank_end")
     d.arc("tip_top", "open_slot")
     d.arc("flank_end", "bottom")
     d.path("bore_slot", "open_slot", "shoe_slot", "slot_middle", "bottom", "outer_slot")
     d.arc("outer", "outer_slot")
     d.path("bore", "shoe_axis", "outer")
-    tooth_side = ("tip_top", "shoe_top", "flank_middle", "flank_end")
+    tooth_side = (*taper, "shoe_top", "flank_middle", "flank_end")
     d.region("iron", "bore", "tip", *tooth_side, "bottom", "outer_slot", "outer", "shoe_axis")
     d.region("opening", "tip", "bore_slot", "open_slot", "tip_top")
     d.region("copper", "open_slot", "shoe_slot", "slot_middle", "bottom", *reversed(tooth_side))

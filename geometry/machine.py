@@ -5,8 +5,11 @@ All lengths in metres, angles in radians, x axis through the centre of tooth 0, 
 
 from __future__ import annotations
 
+from cmath import phase, rect
 from dataclasses import dataclass
-from math import gcd, pi
+from math import acos, asin, gcd, pi
+
+import numpy as np
 
 
 class GeometryError(ValueError):
@@ -16,7 +19,7 @@ class GeometryError(ValueError):
 class Magnetisation:
     """Direction of the remanence inside one magnet; the concrete patterns are below."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         """Angle of the magnetisation vector of an outward magnet [rad].
 
         position_angle: polar angle of the point [rad], array of any shape
@@ -29,7 +32,7 @@ class Magnetisation:
 class ParallelMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along the magnet's centre line."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return 0.0 * position_angle + centre_angle
 
 
@@ -37,7 +40,7 @@ class ParallelMagnetisation(Magnetisation):
 class RadialMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along its own radius."""
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
         return position_angle + 0.0 * centre_angle
 
 
@@ -45,8 +48,9 @@ class RadialMagnetisation(Magnetisation):
 class Machine:
     """Cross-section of an inner-rotor surface-magnet machine (thesis Fig. 3.16), SI units.
 
-    The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``,
-    straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe from the back iron.
+    The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``
+    (see ``taper_angle``), straight tooth flanks and an arc bottom. ``hanselman_machine`` derives tooth width and shoe
+    from the back iron.
     """
 
     slots: int
@@ -88,9 +92,53 @@ class Machine:
         return min(self.slot_opening, self.slot_pitch * self.stator_inner_radius - self.tooth_width)
 
     @property
+    def opening_top_radius(self) -> float:
+        """Radius at which the parallel-sided opening ends and the taper begins, R_si + d_1 [m]."""
+        return self.stator_inner_radius + self.shoe_d1
+
+    @property
+    def opening_top_angle(self) -> float:
+        """Angle of that end from the tooth axis [rad]."""
+        return self.slot_pitch / 2 - asin(self.opening_width / 2 / self.opening_top_radius)
+
+    @property
+    def taper_angle(self) -> float:
+        """Angle from the tooth axis at which the straight taper leaves the shoe [rad].
+
+        That is the end of the opening, unless the shoe spans so wide an angle (few slots) that a straight line from
+        there would cut through it, or through the bore: then the shoe keeps its depth d_1 up to the line that touches
+        it.
+        """
+        flank = asin(self.tooth_width / 2 / self.shoe_top_radius)
+        touching = flank + acos(self.opening_top_radius / self.shoe_top_radius)
+        return min(touching, self.opening_top_angle)
+
+    @property
+    def taper_touches_shoe(self) -> bool:
+        """Whether a straight taper from the end of the opening would cut through the shoe; see ``taper_angle``."""
+        return self.taper_angle < self.opening_top_angle
+
+    @property
     def shoe_top_radius(self) -> float:
         """Radius at which the taper meets the tooth flank, R_si + d_1 + d_2."""
         return self.stator_inner_radius + self.shoe_d1 + self.shoe_d2
+
+    @property
+    def half_slot_area(self) -> float:
+        """Area that one coil side may fill, from the axis of the slot to the tooth and down to its opening [m^2].
+
+        A = (r_sb^2 (t/2 - f_sb) - r_op^2 (t/2 - f_t) - P_sb x P_1 - P_1 x P_t)/2, Green's theorem around the half slot;
+        t: slot pitch; f_sb, f_t: angles at which the flank ends and the taper begins, at P_sb and P_t; P_1: between.
+        """
+        flank_end, flank_start = self._flank(self.slot_bottom_radius), self._flank(self.shoe_top_radius)
+        taper = rect(self.opening_top_radius, self.taper_angle)
+        arcs = self.slot_bottom_radius**2 * (self.slot_pitch / 2 - phase(flank_end))
+        arcs -= self.opening_top_radius**2 * (self.slot_pitch / 2 - self.taper_angle)
+        return (arcs - _cross(flank_end, flank_start) - _cross(flank_start, taper)) / 2
+
+    def _flank(self, radius: float) -> complex:
+        """Point x + jy of the flank of tooth 0 at this radius [m]."""
+        return rect(radius, asin(self.tooth_width / 2 / radius))
 
     @property
     def rotor_core_radius(self) -> float:
@@ -115,6 +163,10 @@ class Machine:
     def is_antiperiodic(self) -> bool:
         """True when the field changes sign from one sector to the next (odd number of poles per sector)."""
         return (self.poles // self.sectors) % 2 == 1
+
+
+def _cross(p: complex, q: complex) -> float:
+    return (p.conjugate() * q).imag
 
 
 def hanselman_machine(

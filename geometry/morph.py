@@ -1,9 +1,9 @@
 """Another machine on the same triangles: nodes move, connectivity, names and numbering stay.
 
-Nodes on the outline keep their place along their curve; those inside follow by a Laplace equation on the half cell, with
-small triangles stiffer than large ones; the gap layers are laid anew, so the sliding circle stays equally spaced. A
-design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a field
-solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
+Nodes on the outline keep their place along their curve; those inside follow by a Laplace equation on the half cell,
+with small triangles stiffer than large ones; the gap layers are laid anew, so the sliding circle stays equally spaced.
+A design that differs in its dimensions then differs smoothly in all results, which a new mesh would not give, and a
+field solution of the one is a start for the other. Far from the first machine the triangles degrade: mesh anew there.
 
 Manufacturing defects move nodes as well, on the mesh of the whole machine and each by a ``Defect`` of its own
 (``geometry/defects.py``): what they move is added up, so their order does not matter.
@@ -11,13 +11,13 @@ Manufacturing defects move nodes as well, on the mesh of the whole machine and e
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Iterable
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from geometry.checks import check_machine
 from geometry.cross_section import Assembly, CrossSection, Piece
@@ -48,7 +48,7 @@ class Morpher:
     section: as drawn, that is without defects
     """
 
-    def __init__(self, section: CrossSection):
+    def __init__(self, section: CrossSection) -> None:
         if section.assembly != Assembly():
             raise GeometryError("this mesh has been moved by defects already: take the one that it was moved from")
         self.section = section
@@ -107,6 +107,8 @@ class Morpher:
                 "a mesh of magnets that touch (magnet_arc_fraction = 1) cannot be moved onto magnets that do not, "
                 "nor back: mesh the machine anew, with magnet_arc_fraction below 1 where the arc is to change"
             )
+        if machine.taper_touches_shoe != base.taper_touches_shoe:
+            raise GeometryError("the tapers of these two machines have different corners: mesh the machine anew")
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +173,7 @@ class _PieceMorpher:
         return sp.csr_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
 
     @cached_property
-    def _factor(self):
+    def _factor(self) -> SuperLU:
         return splu(self._stiffness[self._inside][:, self._inside].tocsc())
 
     def _follow(self, outline_moves: np.ndarray) -> np.ndarray:

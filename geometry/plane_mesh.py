@@ -117,7 +117,7 @@ def _draw(drawing: Drawing) -> dict[str, int]:
     return regions
 
 
-def _add_region(corners: tuple[str, ...], curves: dict) -> int:
+def _add_region(corners: tuple[str, ...], curves: dict[tuple[str, str], int]) -> int:
     geo = gmsh.model.geo
     loop = [curves[pair] for pair in zip(corners, corners[1:] + corners[:1])]
     return geo.addPlaneSurface([geo.addCurveLoop(loop)])

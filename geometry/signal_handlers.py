@@ -5,13 +5,14 @@ from __future__ import annotations
 import ctypes
 import signal
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 _ROOM = 1024  # bytes, several times the C library's struct sigaction; what is in it is only handed back
 
 
 @contextmanager
-def kept_signal_handlers():
+def kept_signal_handlers() -> Iterator[None]:
     """Every signal does after the body what it did before, whatever the body set in C.
 
     gmsh sets SIGPIPE and the signals of a crash back to their defaults when it starts: writing to a worker process that

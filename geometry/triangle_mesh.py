@@ -10,7 +10,9 @@ class TriangleMesh(MeshTri):
     """scikit-fem's mesh, edges numbered in the same order by one integer each: ten times faster than sorting pairs."""
 
     @staticmethod
-    def build_entities(t, indices, sort=True):
+    def build_entities(
+        t: np.ndarray, indices: list[list[int]] | None, sort: bool = True
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Edges (2, k) of triangles (3, m) in the order of their nodes, and the edges of every triangle (3, m)."""
         if indices is None or not sort:
             return MeshTri.build_entities(t, indices, sort)

@@ -17,9 +17,10 @@ is a convention.
 from __future__ import annotations
 
 from cmath import exp
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import ceil, gcd, pi, sin
-from typing import ClassVar, Mapping
+from typing import ClassVar
 
 from geometry.machine import GeometryError
 
@@ -172,17 +173,17 @@ def sector_symmetric(layout: WindingLayout, sectors: int, antiperiodic: bool) ->
     return True
 
 
-def _axis_steps(slots, pole_pairs, coil_pitch, coil) -> int:
+def _axis_steps(slots: int, pole_pairs: int, coil_pitch: int, coil: int) -> int:
     """Electrical angle of a coil's axis in steps of pi/N_s, 2 N_s steps to the turn."""
     return pole_pairs * (2 * coil - coil_pitch + 1) % (2 * slots)
 
 
-def _belt(slots, steps) -> tuple[int, int]:
+def _belt(slots: int, steps: int) -> tuple[int, int]:
     """Phase and sign of a coil at an electrical angle of ``steps`` pi/N_s: floor((angle + 30)/60) in integers."""
     return SECTOR_BELTS[(6 * steps + slots) // (2 * slots) % 6]
 
 
-def _layout(slots, pole_pairs, layers, coil_pitch) -> WindingLayout:
+def _layout(slots: int, pole_pairs: int, layers: int, coil_pitch: int) -> WindingLayout:
     go_side, back_side = (RIGHT, LEFT) if layers == 2 else (WHOLE, WHOLE)
     coils = []
     for k in range(0, slots, 3 - layers):
@@ -191,19 +192,19 @@ def _layout(slots, pole_pairs, layers, coil_pitch) -> WindingLayout:
     return WindingLayout(slots, pole_pairs, layers, coil_pitch, tuple(coils))
 
 
-def _best_pitch(slots, pole_pairs, layers) -> WindingLayout:
+def _best_pitch(slots: int, pole_pairs: int, layers: int) -> WindingLayout:
     """Layout with the largest fundamental winding factor; max keeps the first, that is the shortest, of equals."""
     pitches = range(1, ceil(slots / (2 * pole_pairs)) + 1, 3 - layers)
     layouts = (_layout(slots, pole_pairs, layers, pitch) for pitch in pitches)
     return max(layouts, key=lambda layout: round(layout.winding_factor(), 9))
 
 
-def _halves(place):
+def _halves(place: tuple[int, str]) -> list[tuple[int, str]]:
     slot, sides = place
     return [(slot, side) for side in sides]
 
 
-def _check_numbers(slots, pole_pairs, layers, coil_pitch) -> None:
+def _check_numbers(slots: int, pole_pairs: int, layers: int, coil_pitch: int | None) -> None:
     if slots < 3 or pole_pairs < 1:
         raise GeometryError(f"a winding needs 3 slots and 1 pole pair or more, found {slots} and {pole_pairs}")
     if layers not in (1, 2):
@@ -212,7 +213,7 @@ def _check_numbers(slots, pole_pairs, layers, coil_pitch) -> None:
         raise GeometryError(f"a coil pitch lies between 1 and {slots - 1} slots here, found {coil_pitch}")
 
 
-def _obstacle(slots, pole_pairs, layers, coil_pitch) -> str:
+def _obstacle(slots: int, pole_pairs: int, layers: int, coil_pitch: int | None) -> str:
     """Why a winding is impossible; empty when it is possible."""
     if layers == 1 and slots % 2:
         return "a single layer needs an even number of slots"
@@ -229,7 +230,7 @@ def _obstacle(slots, pole_pairs, layers, coil_pitch) -> str:
     return ""
 
 
-def _advice(slots, pole_pairs, layers) -> str:
+def _advice(slots: int, pole_pairs: int, layers: int) -> str:
     """The nearest feasible numbers of slots, one on either side."""
     down = [n for n in range(slots - 1, 2, -1) if not _obstacle(n, pole_pairs, layers, None)][:1]
     up = [n for n in range(slots + 1, slots + WIDEST_SEARCH) if not _obstacle(n, pole_pairs, layers, None)][:1]

@@ -20,6 +20,7 @@ from math import pi
 
 import numpy as np
 
+from electrical.dq import Values
 from losses.loci import Loci
 from materials.iron_loss import EXCESS_OF_SINE, IronLossLaw
 
@@ -31,11 +32,11 @@ class FrequencyTerms:
     hysteresis [W s/m], eddy [W s^2/m], excess [W s^1.5/m]: of the whole machine per metre; scalars or arrays
     """
 
-    hysteresis: float
-    eddy: float
-    excess: float
+    hysteresis: Values
+    eddy: Values
+    excess: Values
 
-    def at(self, frequency):
+    def at(self, frequency: Values) -> Values:
         """Loss [W/m] at an electrical frequency [Hz], p omega_m / 2 pi; without a new field solution."""
         frequency = np.abs(frequency)
         return self.hysteresis * frequency + self.eddy * frequency**2 + self.excess * frequency**1.5
@@ -119,7 +120,7 @@ def _rainflow(series: np.ndarray, exponent: float) -> np.ndarray:
     return total
 
 
-def _push(stack, depth, value, columns) -> None:
+def _push(stack: np.ndarray, depth: np.ndarray, value: np.ndarray, columns: np.ndarray) -> None:
     """Put a value on every stack; a value that goes on in the same direction replaces the last one."""
     below, second = stack[np.maximum(depth - 1, 0), columns], stack[np.maximum(depth - 2, 0), columns]
     onward = (depth >= 2) & ((value - below) * (below - second) >= 0)

@@ -22,6 +22,7 @@ import numpy as np
 
 from geometry.cross_section import CrossSection
 from geometry.machine import GeometryError
+from geometry.winding import WindingLayout
 from magnetostatics.elements import Elements
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 
@@ -61,7 +62,7 @@ def finest_repetition(section: CrossSection) -> Repetition:
     return HALF_WAVE
 
 
-def _phases_exchange(layout, slots: int, sign: int) -> bool:
+def _phases_exchange(layout: WindingLayout, slots: int, sign: int) -> bool:
     """Whether the currents a sixth of a period later, i_k -> -i_(k+1), are those ``slots`` before, times sign."""
     for slot in range(layout.slots):
         for side in ("R", "L"):
@@ -78,15 +79,17 @@ class PartOfPeriod:
     solutions: tuple[FieldSolution, ...]
     repetition: Repetition
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         points = [solution.point for solution in self.solutions]
         machine = self.model.section.machine
         span = 2 * pi / machine.pole_pairs / self.repetition.parts
         wanted = points[0].angle + span * np.arange(len(points)) / len(points)
         if not np.allclose([point.angle for point in points], wanted, rtol=0, atol=1e-9 * span):
             raise ValueError(f"the angles must be equally spaced over {span:.6g} rad from the first, its end left out")
-        if len({(point.current_density, point.current_angle, point.packing_factor) for point in points}) > 1:
-            raise ValueError("all solutions of a period must be at the same current")
+        balanced = [point for point in points if isinstance(point, OperatingPoint)]
+        currents = {(point.current_density, point.current_angle, point.packing_factor) for point in balanced}
+        if len(currents) > 1 or len(balanced) < len(points):
+            raise ValueError("all solutions of a period must be at the same current, balanced and sinusoidal")
 
     @property
     def model(self) -> FieldModel:

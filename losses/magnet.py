@@ -17,6 +17,7 @@ from math import pi, sqrt
 
 import numpy as np
 
+from electrical.dq import Values
 from losses.loci import Loci, PartOfPeriod, magnet_potential_loci
 from units import MU_0
 
@@ -37,7 +38,7 @@ class MagnetLoss:
     resistivity: float
     permeability: float
 
-    def at(self, frequency):
+    def at(self, frequency: Values) -> Values:
         """Loss [W/m] at an electrical frequency [Hz]."""
         return self.eddy * np.square(frequency)
 
@@ -57,7 +58,7 @@ def magnet_loss(part: PartOfPeriod, resistivity: float = NDFEB_RESISTIVITY, segm
     section = part.model.section
     machine = section.machine
     arc = machine.magnet_arc_fraction * machine.pole_pitch
-    total, by_order = 0.0, 0.0
+    total, by_order, orders = 0.0, np.zeros(1), np.zeros(1)
     for number, loci in enumerate(magnet_potential_loci(part)):
         elements = part.model.elements.take(loci.elements)
         pieces = _pieces(elements.points, number * machine.pole_pitch, arc, segments)
@@ -84,7 +85,9 @@ def _pieces(points: np.ndarray, centre: float, arc: float, segments: int) -> np.
     return np.clip(((angle / arc + 0.5) * segments).astype(int), 0, segments - 1)
 
 
-def _piece_losses(loci: Loci, weights: np.ndarray, pieces: np.ndarray, segments: int):
+def _piece_losses(
+    loci: Loci, weights: np.ndarray, pieces: np.ndarray, segments: int
+) -> tuple[float, np.ndarray, np.ndarray]:
     """integral <(dA/dt - mean)^2> per f^2, the same by order, and the orders."""
     w, piece = weights.ravel(), pieces.ravel()
     rate = loci.rate().reshape(len(loci.values), -1)

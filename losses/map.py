@@ -13,8 +13,10 @@ from math import atan2, hypot, pi
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from electrical.synchronous_machine import OperatingMap
-from losses.copper import WoundMachine, copper_loss
+from electrical.dq import OperatingMap, Values
+from electrical.wound_machine import WoundMachine
+from geometry.cross_section import CrossSection
+from losses.copper import copper_loss
 from losses.iron import FrequencyTerms, iron_loss
 from losses.loci import Repetition, rotor_loci, solve_part, stator_loci
 from losses.magnet import NDFEB_RESISTIVITY, magnet_loss
@@ -36,12 +38,14 @@ class FieldLosses:
     rotor: FrequencyTerms
     magnet: FrequencyTerms
 
-    def at(self, frequency) -> tuple:
+    def at(self, frequency: Values) -> tuple[Values, Values, Values]:
         """(stator, rotor, magnet) [W/m] at an electrical frequency [Hz]."""
         return self.stator.at(frequency), self.rotor.at(frequency), self.magnet.at(frequency)
 
 
-def current_point(section, direct: float, quadrature: float, packing: float, angle: float = 0.0) -> OperatingPoint:
+def current_point(
+    section: CrossSection, direct: float, quadrature: float, packing: float, angle: float = 0.0
+) -> OperatingPoint:
     """Operating point of ampere-turns on the d and q axes [A peak per coil]; packing: copper share of the slot."""
     area = section.half_slot_area * section.half_slots_per_coil_side
     return OperatingPoint(angle, hypot(direct, quadrature) / (packing * area), atan2(-direct, quadrature), packing)
@@ -82,7 +86,7 @@ class FieldLossTable:
     quadrature: np.ndarray
     terms: np.ndarray
 
-    def at(self, direct, quadrature) -> FieldLosses:
+    def at(self, direct: Values, quadrature: Values) -> FieldLosses:
         """Cubic splines through the grid; arrays that broadcast, NaN in, NaN out; the sign of the q axis is dropped.
 
         Within 2.5 % of a solution of its own in stator and magnets on the reference machine (12 points at random; a
@@ -121,14 +125,8 @@ def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
     return FieldLossTable(largest * np.array(DIRECT), largest * np.array(QUADRATURE), shaped)
 
 
-def field_loss_table(model: FieldModel, law: IronLossLaw, largest: float, packing: float, **settings) -> FieldLossTable:
-    """Solve the whole grid in this process; settings: those of ``field_losses``."""
-    points = (current_point(model.section, d, q, packing) for d, q in grid(largest))
-    return table_of(largest, [field_losses(model, point, law, **settings) for point in points])
-
-
 @dataclass(frozen=True, eq=False)
-class LossMap:
+class PowerLosses:
     """Losses [W] over torque [Nm] and speed [rad/s, mechanical], all of one shape; NaN where out of reach."""
 
     torque: np.ndarray
@@ -153,15 +151,15 @@ class LossMap:
         return np.where(mechanical > 0, motor, np.where(electrical < 0, generator, np.nan))
 
 
-def loss_map(operating: OperatingMap, wound: WoundMachine, table: FieldLossTable, resistance: float) -> LossMap:
+def power_losses(operating: OperatingMap, wound: WoundMachine, table: FieldLossTable) -> PowerLosses:
     """Losses at the currents of an operating map, field weakening included.
 
     operating: torque, speed and peak phase currents i_d, i_q, for example of ``electrical`` ``operating_map``
-    resistance: of one phase [Ohm] at the temperature of the copper, ``wound.phase_resistance(...)``
+    wound: its copper has the resistivity of its temperature
     The magnets keep the temperature that the table was solved at.
     """
     frequency = wound.machine.pole_pairs * operating.speed / (2 * pi)
     fields = table.at(wound.turns * operating.i_d, wound.turns * operating.i_q)
     stator, rotor, magnet = (wound.active_length * loss for loss in fields.at(frequency))
-    copper = copper_loss(resistance, operating.i_d, operating.i_q)
-    return LossMap(operating.torque, operating.speed, copper, stator, rotor, magnet)
+    copper = copper_loss(wound.phase_resistance, operating.i_d, operating.i_q)
+    return PowerLosses(operating.torque, operating.speed, copper, stator, rotor, magnet)

@@ -26,7 +26,14 @@ class Entries:
     adder: sp.csr_matrix
 
     @classmethod
-    def of(cls, pairs, dofs: np.ndarray, column: np.ndarray, dof_sign: np.ndarray, size: int) -> Entries:
+    def of(
+        cls,
+        pairs: tuple[np.ndarray, np.ndarray],
+        dofs: np.ndarray,
+        column: np.ndarray,
+        dof_sign: np.ndarray,
+        size: int,
+    ) -> Entries:
         """Addresses for elements with degrees of freedom (F, E), given the map of every degree of freedom.
 
         pairs: local (row, column) of the K entries
@@ -63,12 +70,16 @@ class FixedPattern:
 
     iron_entries: Entries
     linear_entries: Entries
+    keys: np.ndarray
+    iron: np.ndarray
+    linear: np.ndarray
     size: int
 
-    def __post_init__(self):
-        keys, linear, iron = _merge(self.linear_entries.keys, self.iron_entries.keys)
-        for name, value in {"keys": keys, "linear": linear, "iron": iron}.items():
-            object.__setattr__(self, name, value)
+    @classmethod
+    def of(cls, iron: Entries, linear: Entries, size: int) -> FixedPattern:
+        """The pattern of the entries of the iron and of everything linear."""
+        keys, linear_position, iron_position = _merge(linear.keys, iron.keys)
+        return cls(iron, linear, keys, iron_position, linear_position, size)
 
 
 class JoinedPattern:
@@ -79,7 +90,7 @@ class JoinedPattern:
     bands: addresses of the rotor side of the gap, by number of edges
     """
 
-    def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]):
+    def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
         band_keys = reduce(lambda first, second: _merge(first, second)[0], (band.keys for band in bands.values()))
         keys, fixed_position, _ = _merge(fixed.keys, band_keys)
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
@@ -101,7 +112,7 @@ class JoinedSystem:
     band: local entries of the rotor side of the gap (K, E)
     """
 
-    def __init__(self, pattern: JoinedPattern, edges: int, linear: np.ndarray, band: np.ndarray):
+    def __init__(self, pattern: JoinedPattern, edges: int, linear: np.ndarray, band: np.ndarray) -> None:
         self.pattern = pattern
         self._linear = np.zeros(len(pattern.rows))
         self._linear[pattern.linear_position] = linear

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
+
 import cvxopt
 import cvxopt.cholmod
 import numpy as np
@@ -10,7 +12,7 @@ from threadpoolctl import ThreadpoolController
 _BLAS = ThreadpoolController()  # made after the imports above, or it would not know their libraries
 
 
-def one_thread():
+def one_thread() -> AbstractContextManager[object]:
     """Context in which BLAS uses one thread: two make a solve of this size two to three times slower."""
     return _BLAS.limit(limits=1, user_api="blas")
 
@@ -21,7 +23,7 @@ class SymmetricSystem:
     rows, columns: indices of the lower triangle (rows >= columns), sorted by column, then by row
     """
 
-    def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int):
+    def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int) -> None:
         ones = cvxopt.matrix(1.0, (len(rows), 1))
         self._matrix = cvxopt.spmatrix(ones, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
         self._factor = cvxopt.cholmod.symbolic(self._matrix)

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.cross_section import CrossSection
 from geometry.machine import GeometryError
-from magnetostatics.model import FieldModel
+from magnetostatics.model import FieldModel, OperatingPoint
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class CoilCurrents:
         return np.array(self.coil_ampere_turns) @ model.coil_loads
 
 
-def coil_currents(point, section: CrossSection) -> CoilCurrents:
+def coil_currents(point: OperatingPoint | PhaseCurrents, section: CrossSection) -> CoilCurrents:
     """The same currents as in ``point`` (``OperatingPoint`` or ``PhaseCurrents``), coil by coil."""
     phases = point.ampere_turns(section)
     coils = tuple(float(coil.sign * coil.turns * phases[coil.phase]) for coil in section.layout.coils)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
-from skfem import MeshTri
 
 from geometry.cross_section import CrossSection
 from magnetostatics.local_steel import LocalSteel
@@ -43,7 +42,7 @@ class CutEdge(LocalSteel):
     depth: float
     severity: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.depth > 0:
             raise MaterialError(f"the depth of a damaged edge is positive, found {self.depth:g} m")
         if not self.severity < 1:

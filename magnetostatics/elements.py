@@ -11,13 +11,14 @@ The element index comes last in every array, so that each operation is one pass 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from skfem import ElementTriP1, ElementTriP2, MeshTri
-from skfem.element import Element
 from skfem.assembly import Dofs
+from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
 
@@ -78,7 +79,7 @@ class TriangleOrder:
         return _same_shape([self.element.lbasis(local, i)[1] for i in range(len(self.values))])
 
 
-def _same_shape(gradients) -> np.ndarray:
+def _same_shape(gradients: Iterable[np.ndarray]) -> np.ndarray:
     """Stack gradients of which some are constants."""
     return np.stack(np.broadcast_arrays(*(np.asarray(g, dtype=float) for g in gradients)))
 

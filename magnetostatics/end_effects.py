@@ -10,7 +10,7 @@ from math import log, pi
 
 import numpy as np
 
-from units import MU_0
+from units import MU_0, Values
 
 
 @dataclass(frozen=True)
@@ -27,11 +27,11 @@ class EndEffects:
     flux_factor: float = 1.0
     end_inductance: float = 0.0
 
-    def torque(self, per_length):
+    def torque(self, per_length: Values) -> Values:
         """Torque [Nm] from that of the 2-D field [Nm/m]; end turns carry flux, but make no torque."""
         return self.active_length * self.flux_factor * per_length
 
-    def flux_linkage(self, per_length_and_turn, turns: float, currents):
+    def flux_linkage(self, per_length_and_turn: Values, turns: float, currents: Values) -> np.ndarray:
         """Flux linkage [Wb] of the phases from that of the 2-D field [Wb/m per turn] and their currents [A]."""
         inside = self.active_length * self.flux_factor * turns * np.asarray(per_length_and_turn)
         return inside + self.end_inductance * np.asarray(currents)

@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
-
 import numpy as np
 
-from geometry.cross_section import CrossSection
 from geometry.machine import GeometryError
-from magnetostatics.model import FieldSolution
-
-
-@runtime_checkable
-class _OfPhases(Protocol):
-    """A state whose three phases carry one current each."""
-
-    def ampere_turns(self, section: CrossSection) -> np.ndarray: ...
+from magnetostatics.currents import PhaseCurrents
+from magnetostatics.model import FieldSolution, OperatingPoint
 
 
 def phase_flux_linkage(solution: FieldSolution) -> np.ndarray:
@@ -45,11 +36,12 @@ def flux_linkage_torque(solution: FieldSolution) -> float:
 
     T/l = 1.5 p (psi_d i_q - psi_q i_d),  i the ampere-turns of a coil, psi per turn and metre
     The energy of the field is the same after one electrical period, so the mean of this over a period is that of the
-    torque (to 0.1 % at 9 and 12 slots); cogging is not in it. For states with ``ampere_turns``, such as OperatingPoint.
+    torque (to 0.1 % at 9 and 12 slots); cogging is not in it.
+    Raises TypeError for a state without phase currents.
     """
     section, point = solution.model.section, solution.point
-    if not isinstance(point, _OfPhases):
-        raise TypeError(f"the dq torque needs the currents of three phases, found {type(point).__name__}")
+    if not isinstance(point, OperatingPoint | PhaseCurrents):
+        raise TypeError(f"torque from flux linkages needs the currents of phases, found {type(point).__name__}")
     electrical = section.machine.pole_pairs * point.angle
     psi_d, psi_q = park(phase_flux_linkage(solution), electrical, section.layout.phase_axis)
     i_d, i_q = park(point.ampere_turns(section), electrical, section.layout.phase_axis)

@@ -11,10 +11,11 @@ All currents at one angle share one joined system, so an angle is the task to ha
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import atan2, cos, hypot, pi, sin
-from typing import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -169,7 +170,7 @@ def solve_angle(
 
 
 def to_dataset(
-    model: FieldModel, grid: CurrentGrid, angles: Sequence[float], rows: Sequence[Mapping[str, Sequence]]
+    model: FieldModel, grid: CurrentGrid, angles: Sequence[float], rows: Sequence[Mapping[str, Any]]
 ) -> xr.Dataset:
     """The labelled map from the results of ``solve_angle`` in the order of the angles; units are in the attributes."""
     data = {name: (("angle", "id", "iq"), np.array([row[name] for row in rows]), _ATTRIBUTES[name]) for name in rows[0]}
@@ -186,7 +187,8 @@ def _blend(solutions: list[FieldSolution], weights: np.ndarray) -> FieldSolution
     if len(solutions) < 2:
         return None
     a = weights @ np.stack([solution.a for solution in solutions])
-    coarse = None if solutions[0].coarse is None else _blend([solution.coarse for solution in solutions], weights)
+    below = [solution.coarse for solution in solutions if solution.coarse is not None]
+    coarse = _blend(below, weights) if below else None
     return replace(solutions[0], a=a, coarse=coarse)
 
 

@@ -7,8 +7,8 @@ In reference coordinates, with g the slopes of A, h = M g and b2 = g . h / |D| (
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Sequence
 
 import numpy as np
 
@@ -22,7 +22,7 @@ class Iron:
     counts: how many elements of each; laws: of each
     """
 
-    def __init__(self, elements: Elements, counts: Sequence[int], laws: Sequence[Reluctivity]):
+    def __init__(self, elements: Elements, counts: Sequence[int], laws: Sequence[Reluctivity]) -> None:
         self.elements = replace(elements, order=elements.order.of_distinct_gradients)
         ends = np.cumsum(counts)
         parts = [slice(end - count, end) for end, count in zip(ends, counts)]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Callable
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from geometry.cross_section import CrossSection
 from materials.reluctivity import Reluctivity
 
 
+@dataclass(frozen=True)
 class LocalSteel:
     """Stands in ``MachineMaterials`` for a reluctivity law; the model asks it for the law of each element.
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Sequence
 
 import numpy as np
 from skfem import MeshTri
@@ -73,8 +73,8 @@ def refined(section: CrossSection) -> CrossSection:
     """
     coarse, mesh = section.mesh, section.mesh.refined()
     points, edges = mesh.p.copy(), _outline(coarse)
-    for centre in {(0.0, 0.0), section.assembly.stator_centre, section.assembly.rotor_centre}:
-        centre = np.array(centre)[:, None]
+    for place in {(0.0, 0.0), section.assembly.stator_centre, section.assembly.rotor_centre}:
+        centre = np.array(place)[:, None]
         first, last = (np.hypot(*(coarse.p[:, nodes] - centre)) for nodes in coarse.facets[:, edges])
         on_arc = (np.abs(last - first) < _SAME_RADIUS * first) & (first > 0)
         middles = coarse.p.shape[1] + edges[on_arc]  # scikit-fem numbers the new nodes like the edges

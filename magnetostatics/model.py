@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from time import process_time
-from typing import Callable, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from geometry.cross_section import CrossSection
 from geometry.machine import GeometryError
+from geometry.winding import Coil
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
 from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, lower_order, refine_order
@@ -23,7 +25,6 @@ from magnetostatics.unknowns import Turn, Unknowns
 from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 from units import MU_0
-
 
 _COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
 
@@ -57,7 +58,9 @@ class MachineMaterials:
 class OperatingState(Protocol):
     """What a field is solved for; ``OperatingPoint`` and the ones of ``magnetostatics.currents``."""
 
-    angle: float  # mechanical rotor angle, magnet 0 on the x axis at zero [rad]
+    @property
+    def angle(self) -> float:
+        """Mechanical rotor angle, magnet 0 on the x axis at zero [rad]."""
 
     def current_load(self, model: FieldModel) -> np.ndarray:
         """Right-hand side (n,) [A] of the currents."""
@@ -79,7 +82,7 @@ class OperatingPoint:
     packing_factor: float = 0.3
 
     def phase_densities(self, pole_pairs: int, phase_axis: float) -> np.ndarray:
-        """Current density in the copper of phases A, B, C [A/m^2]: J cos(p theta + 90 deg - axis_A + gamma - i 120 deg)."""
+        """Current density in the copper of A, B, C [A/m^2]: J cos(p theta + 90 deg - axis_A + gamma - i 120 deg)."""
         lead = pole_pairs * self.angle + pi / 2 - phase_axis + self.current_angle
         return self.current_density * np.cos(lead - 2 * pi / 3 * np.arange(3))
 
@@ -110,8 +113,8 @@ class FieldSolution:
 class FieldModel:
     """Assembles and solves the field of one meshed cross-section with given materials.
 
-    What depends on neither current nor angle is prepared once. The system joined at an angle is kept until another angle
-    is asked for, so that several currents at one angle share it.
+    What depends on neither current nor angle is prepared once. The system joined at an angle is kept until another
+    angle is asked for, so that several currents at one angle share it.
     topology: of another model whose cross-section has the same triangles; shared, it saves half of the preparation
     """
 
@@ -122,7 +125,7 @@ class FieldModel:
         settings: NewtonSettings = NewtonSettings(),
         order: TriangleOrder = QUADRATIC,
         topology: Topology | None = None,
-    ):
+    ) -> None:
         _check_magnets(section, materials)
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
@@ -192,7 +195,7 @@ class FieldModel:
         return self._spread([rows[coil.index] for coil, _ in sides], np.array([way for _, way in sides]), len(coils))
 
     @property
-    def _coils_of_sides(self) -> list:
+    def _coils_of_sides(self) -> list[tuple[Coil, int]]:
         """(coil, direction) of every coil side in the sector."""
         return [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
 
@@ -260,7 +263,7 @@ class FieldModel:
         problem = _Problem(self, point, load)
         u, record = newton(
             problem.free_values(self._first_guess(coarse, start)),
-            np.linalg.norm(problem.load),
+            float(np.linalg.norm(problem.load)),
             problem.residual,
             problem.direction,
             self.settings,
@@ -268,7 +271,9 @@ class FieldModel:
         )
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began, coarse)
 
-    def _coarse_solution(self, point: OperatingState, load: np.ndarray, start: FieldSolution | None):
+    def _coarse_solution(
+        self, point: OperatingState, load: np.ndarray, start: FieldSolution | None
+    ) -> FieldSolution | None:
         """The same problem with linear elements, None where they are the elements of this model."""
         if self.order is LINEAR:
             return None
@@ -278,9 +283,11 @@ class FieldModel:
         """Potential to start from (n,): that of linear elements, or the start and what they changed since."""
         if coarse is None:
             return np.zeros(self.size) if start is None else start.a
-        change = coarse.a if start is None else coarse.a - start.coarse.a
-        refined = refine_order(self.topology.facets, change)
-        return refined if start is None else start.a + refined
+        if start is None:
+            return refine_order(self.topology.facets, coarse.a)
+        if start.coarse is None:
+            raise ValueError("a start with quadratic elements carries the field of linear ones, found none")
+        return start.a + refine_order(self.topology.facets, coarse.a - start.coarse.a)
 
     def residual(self, point: OperatingState, a: np.ndarray) -> np.ndarray:
         """Load minus field forces of any potential a (n,) at the free unknowns (m,) [A]; zero for the solution."""
@@ -306,7 +313,7 @@ class FieldModel:
 class _Problem:
     """One operating point of a model in terms of its free unknowns u (m,)."""
 
-    def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray):
+    def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray) -> None:
         turn = model.unknowns.turn(point.angle)
         self.model, self.system = model, model._join(turn)
         self.column, self.sign = model.unknowns.turned(turn.edges)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 import numpy as np
+
+Residual = Callable[[np.ndarray], np.ndarray]
 
 
 class FieldSolutionError(RuntimeError):
@@ -43,7 +45,7 @@ class NewtonRecord:
 def newton(
     start: np.ndarray,
     scale: float,
-    residual: Callable[[np.ndarray], np.ndarray],
+    residual: Residual,
     direction: Callable[[np.ndarray, np.ndarray], np.ndarray],
     settings: NewtonSettings = NewtonSettings(),
     again: Callable[[np.ndarray], np.ndarray] | None = None,
@@ -60,7 +62,9 @@ def newton(
     """
     if scale == 0.0:  # neither magnets nor currents
         return np.zeros_like(start), NewtonRecord((), ())
-    u, r, residuals, steps = start, residual(start), [], []
+    residuals: list[float] = []
+    steps: list[float] = []
+    u, r = start, residual(start)
     size = float(np.linalg.norm(r) / scale)
     while size > settings.tolerance or (settings.always_step and not residuals):
         if len(residuals) == settings.most_iterations:
@@ -74,12 +78,19 @@ def newton(
     return u, NewtonRecord(tuple(residuals), tuple(steps))
 
 
-def _closer(u, other, r, residual) -> np.ndarray:
+def _closer(u: np.ndarray, other: np.ndarray, r: np.ndarray, residual: Residual) -> np.ndarray:
     """The field with the smaller residual."""
     return other if np.linalg.norm(residual(other)) < np.linalg.norm(r) else u
 
 
-def _step(u, r, residual, direction, must_fall: bool, settings: NewtonSettings):
+def _step(
+    u: np.ndarray,
+    r: np.ndarray,
+    residual: Residual,
+    direction: np.ndarray,
+    must_fall: bool,
+    settings: NewtonSettings,
+) -> tuple[np.ndarray, np.ndarray, float]:
     before, length = np.linalg.norm(r), 1.0
     there = u + direction
     trial = residual(there)

@@ -240,8 +240,10 @@ def _rotation(
 def _turning(angles: np.ndarray, arcs: list[SolvedArc]) -> xr.Dataset:
     torques = np.concatenate([arc.torques for arc in arcs])
     flux = np.concatenate([arc.flux_densities for arc in arcs])
-    data: dict[str, object] = {name: ("angle", torques[:, k]) for k, name in enumerate(_TORQUES)}
-    return xr.Dataset(data | {"flux_density": (("probe", "angle"), flux.T)}, {"angle": angles, "probe": list(arcs[0].probes)})
+    data: dict[str, tuple[str | tuple[str, ...], np.ndarray]]
+    data = {name: ("angle", torques[:, k]) for k, name in enumerate(_TORQUES)}
+    data["flux_density"] = (("probe", "angle"), flux.T)
+    return xr.Dataset(data, {"angle": angles, "probe": list(arcs[0].probes)})
 
 
 def _fields(case: FieldCase, machine: Machine, null: SolvedNullStates) -> NullFields:

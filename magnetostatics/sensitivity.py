@@ -10,8 +10,9 @@ parameter is whatever makes a slightly different model on the same triangles: ma
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Callable, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -45,8 +46,8 @@ _Ends = tuple[tuple[float, FieldModel, OperatingState], tuple[float, FieldModel,
 
 
 def _both_ways(solution: FieldSolution, variation: Variation) -> _Ends:
-    changes = variation.step, -variation.step
-    return tuple((change, *variation.at(solution.model, solution.point, change)) for change in changes)
+    step, (model, point) = variation.step, (solution.model, solution.point)
+    return (step, *variation.at(model, point, step)), (-step, *variation.at(model, point, -step))
 
 
 def _residual_slope(solution: FieldSolution, ends: _Ends) -> np.ndarray:

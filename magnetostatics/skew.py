@@ -14,13 +14,14 @@ chapter on windings; multi-slice fields: Piriou, Razek, IEEE Trans. Magn. 26 (19
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Callable
 
 import numpy as np
 
-from magnetostatics.currents import PhaseCurrents
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, OperatingState
+from magnetostatics.currents import CoilCurrents, PhaseCurrents
+from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from units import Values
 
 FOR_CONTINUOUS = 5  # Gauss points over a continuous skew; 1e-7 for harmonics that turn by pi in it, 3e-5 for 2 pi
 
@@ -38,25 +39,29 @@ def continuous_skew(skew: float, points: int = FOR_CONTINUOUS) -> tuple[np.ndarr
 
 def skewed(
     model: FieldModel,
-    point: OperatingState,
+    point: OperatingPoint | PhaseCurrents | CoilCurrents,
     slices: tuple[np.ndarray, np.ndarray],
-    read: Callable[[FieldSolution], np.ndarray],
-) -> np.ndarray:
+    read: Callable[[FieldSolution], Values],
+) -> Values:
     """Mean of ``read(solution)`` over the slices, all of them with the currents that ``point`` has in the middle.
 
     slices: of ``stepped_skew`` or ``continuous_skew``
     """
-    held, total, solution = with_held_currents(point, model), 0.0, None
+    total: Values = 0.0
+    held, solution = with_held_currents(point, model), None
     for offset, weight in zip(*slices):
         solution = model.solve(replace(held, angle=held.angle + float(offset)), start=solution)
         total = total + weight * np.asarray(read(solution))
     return total
 
 
-def with_held_currents(point: OperatingState, model: FieldModel) -> OperatingState:
+def with_held_currents(
+    point: OperatingPoint | PhaseCurrents | CoilCurrents, model: FieldModel
+) -> PhaseCurrents | CoilCurrents:
     """The same state with currents that do not follow the rotor when its angle is replaced."""
     if isinstance(point, OperatingPoint):
-        return PhaseCurrents(point.angle, tuple(point.ampere_turns(model.section).tolist()))
+        a, b, c = point.ampere_turns(model.section).tolist()
+        return PhaseCurrents(point.angle, (a, b, c))
     return point
 
 

@@ -24,7 +24,7 @@ _MOST_PATTERNS = 20  # that are kept; one takes about two megabytes
 class Topology:
     """Numbering and patterns of a meshed cross-section for one order of elements."""
 
-    def __init__(self, section: CrossSection, order: TriangleOrder):
+    def __init__(self, section: CrossSection, order: TriangleOrder) -> None:
         self.order = order
         self.dofs, self.size = element_dofs(section.mesh, order)
         self.unknowns = number_unknowns(section, order)
@@ -62,7 +62,7 @@ class Topology:
     @cached_property
     def fixed_pattern(self) -> FixedPattern:
         """The pattern without the rotor side of the gap."""
-        return FixedPattern(self._entries(self.iron), self._entries(self.linear), self.unknowns.count)
+        return FixedPattern.of(self._entries(self.iron), self._entries(self.linear), self.unknowns.count)
 
     def _entries(self, which: np.ndarray) -> Entries:
         u = self.unknowns

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Callable
 
 from geometry.cross_section import CrossSection
 from geometry.machine import Machine
@@ -21,7 +21,7 @@ class Remanence:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         materials = model.materials.with_magnets(lambda m: replace(m, remanence=m.remanence + change))
         return model.like(materials=materials), point
 
@@ -32,7 +32,7 @@ class RecoilPermeability:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         materials = model.materials.with_magnets(
             lambda m: replace(m, recoil_permeability=m.recoil_permeability + change)
         )
@@ -50,7 +50,7 @@ class OneMagnet:
     name: str = "remanence"
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         magnet = model.materials.magnet_at(self.number)
         changed = replace(magnet, **{self.name: getattr(magnet, self.name) + change})
         return model.like(materials=model.materials.with_magnet(self.number, changed)), point
@@ -62,7 +62,7 @@ class CurrentDensity:
 
     step: float = 1e3
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
+    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
         return model, replace(point, current_density=point.current_density + change)
 
 
@@ -72,7 +72,7 @@ class CurrentAngle:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float):
+    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
         return model, replace(point, current_angle=point.current_angle + change)
 
 
@@ -82,7 +82,7 @@ class SteelStrength:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return _with_steels(model, lambda law: ScaledReluctivity(law, 1 + change)), point
 
 
@@ -92,7 +92,7 @@ class SaturationPolarisation:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return _with_steels(model, lambda law: ScaledSaturation(law, 1 + change)), point
 
 
@@ -102,7 +102,7 @@ class StackingFactor:
 
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return _with_steels(model, lambda law: stacked(law, 1 + change)), point
 
 
@@ -123,7 +123,7 @@ class Materials:
     change: Callable[[MachineMaterials, float], MachineMaterials]
     step: float
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(materials=self.change(model.materials, change)), point
 
 
@@ -139,7 +139,7 @@ class Dimension:
     machine: Callable[[float], Machine]
     step: float = 1e-6  # m
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(self.morpher.to(self.machine(change))), point
 
 
@@ -154,7 +154,7 @@ class Shape:
     section: Callable[[float], CrossSection]
     step: float = 1e-6  # m or rad
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(self.section(change)), point
 
 
@@ -165,9 +165,9 @@ class PhaseCurrent:
     phase: int  # 0 A, 1 B, 2 C
     step: float = 1e-2
 
-    def at(self, model: FieldModel, point: PhaseCurrents, change: float):
-        currents = tuple(i + change * (k == self.phase) for k, i in enumerate(point.currents))
-        return model, replace(point, currents=currents)
+    def at(self, model: FieldModel, point: PhaseCurrents, change: float) -> tuple[FieldModel, OperatingState]:
+        a, b, c = (i + change * (k == self.phase) for k, i in enumerate(point.currents))
+        return model, replace(point, currents=(a, b, c))
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class CoilTurns:
     coil: int  # its index in the winding
     step: float = 1e-4
 
-    def at(self, model: FieldModel, point: OperatingState, change: float):
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         layout = model.section.layout
         now = next(coil.turns for coil in layout.coils if coil.index == self.coil)
         section = replace(model.section, layout=layout.with_turns({self.coil: now + change}))

@@ -11,7 +11,7 @@ import numpy as np
 
 from materials.errors import MaterialError
 from materials.reluctivity import Reluctivity
-from units import MU_0
+from units import MU_0, Values
 
 _MOST_STEPS = 60  # of Newton's method for one flux density; it takes 2 to 5
 _ROUNDING = 1e-13
@@ -25,20 +25,20 @@ class ScaledReluctivity(Reluctivity):
     law: Reluctivity
     factor: float
 
-    def nu(self, b2):
+    def nu(self, b2: Values) -> np.ndarray:
         return self.factor * self.law.nu(b2)
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         nu, slope = self.law.nu_and_derivative(b2)
         return self.factor * nu, self.factor * slope
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         return self.factor * self.law.field_strength(b)
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         return self.law.flux_density(h / self.factor)
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         return self.factor * self.law.energy_density(b)
 
 
@@ -52,23 +52,23 @@ class ScaledSaturation(Reluctivity):
     law: Reluctivity
     factor: float  # s
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _check_positive("scale of the saturation polarisation", self.factor)
 
-    def nu(self, b2):
+    def nu(self, b2: Values) -> np.ndarray:
         return self.law.nu(b2 / self.factor**2)
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         nu, slope = self.law.nu_and_derivative(b2 / self.factor**2)
         return nu, slope / self.factor**2
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         return self.factor * self.law.field_strength(np.asarray(b, dtype=float) / self.factor)
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         return self.factor * self.law.flux_density(np.asarray(h, dtype=float) / self.factor)
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         return self.factor**2 * self.law.energy_density(np.asarray(b, dtype=float) / self.factor)
 
 
@@ -90,28 +90,28 @@ class MixedReluctivity(Reluctivity):
     air: float | np.ndarray
     ratio: float | np.ndarray
 
-    def nu(self, b2):
+    def nu(self, b2: Values) -> np.ndarray:
         return self.nu_and_derivative(b2)[0]
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         b = self._in_steel(np.sqrt(np.asarray(b2, dtype=float)))
         nu, slope = self.law.nu_and_derivative(b * b)
         d, a, c, k = self.steel + self.air * MU_0 * nu, self.steel, self.air, self.ratio
         return k * nu / d, k * a * slope / (d**2 * (d**2 + 2 * c * MU_0 * b * b * d * slope))
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         return self.ratio * self.law.field_strength(self._in_steel(b))
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         inside = np.asarray(h, dtype=float) / self.ratio
         return self.steel * self.law.flux_density(inside) + self.air * MU_0 * inside
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         b = self._in_steel(b)
         air = MU_0 / 2 * self.law.field_strength(b) ** 2
         return self.ratio * (self.steel * self.law.energy_density(b) + self.air * air)
 
-    def _in_steel(self, flux):
+    def _in_steel(self, flux: Values) -> np.ndarray:
         """Flux density b of the steel [T] for the shared one: the root of a b + c mu_0 H_s(b) = B, odd in B."""
         flux = np.asarray(flux, dtype=float)
         size = np.abs(flux)

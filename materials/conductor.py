@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from materials.errors import MaterialError
+from units import Values
 
 
 @dataclass(frozen=True)
@@ -15,11 +16,11 @@ class Conductor:
     temperature_coefficient: float  # alpha [1/K]
     reference_temperature: float  # T_ref [degC]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.reference_resistivity > 0:
             raise MaterialError(f"a resistivity must be positive, found {self.reference_resistivity:g} Ohm m")
 
-    def resistivity(self, temperature):
+    def resistivity(self, temperature: Values) -> Values:
         """rho [Ohm m] at the temperature [degC], scalar or array of any shape."""
         return self.reference_resistivity * (
             1.0 + self.temperature_coefficient * (temperature - self.reference_temperature)

@@ -7,6 +7,6 @@ class MaterialError(ValueError):
     point: index (from 0) of the offending point of a curve, None when no single point is to blame.
     """
 
-    def __init__(self, message: str, point: int | None = None):
+    def __init__(self, message: str, point: int | None = None) -> None:
         super().__init__(message)
         self.point = point

@@ -19,11 +19,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import gamma, inf, pi, sqrt
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from materials.errors import MaterialError
+from units import Values
 
 # <|d/dt sin(2 pi t)|^1.5> over a period: what turns the excess term of a sine wave into its time form, 8.763.
 EXCESS_OF_SINE = (2 * pi) ** 1.5 * gamma(1.25) / (sqrt(pi) * gamma(1.75))
@@ -55,7 +58,7 @@ class IronLossLaw:
     rms_error: float = 0.0
     largest_error: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("hysteresis", "exponent", "eddy", "saturation", "excess", "density"):
             value = getattr(self, name)
             if not (value >= 0 and np.isfinite(value)):
@@ -63,7 +66,7 @@ class IronLossLaw:
         if not (self.exponent > 0 and self.density > 0):
             raise MaterialError(f"exponent and density of the iron loss of {self.grade} must be positive")
 
-    def specific_loss(self, frequency, peak):
+    def specific_loss(self, frequency: Values, peak: Values) -> Values:
         """Loss [W/kg] for a sinusoidal flux density of this frequency [Hz] and peak [T]; arrays that broadcast."""
         hysteresis = self.hysteresis * frequency * peak**self.exponent
         eddy = self.eddy * (frequency * peak) ** 2 * (1 + self.saturation * peak**2)
@@ -79,7 +82,16 @@ def classical_eddy(thickness: float, resistivity: float, density: float) -> floa
     return pi**2 * thickness**2 / (6 * resistivity * density)
 
 
-def fit_iron_loss(frequency, peak, loss, *, grade: str, density: float, source: str, resolution=0.0) -> IronLossLaw:
+def fit_iron_loss(
+    frequency: ArrayLike,
+    peak: ArrayLike,
+    loss: ArrayLike,
+    *,
+    grade: str,
+    density: float,
+    source: str,
+    resolution: Values = 0.0,
+) -> IronLossLaw:
     """Fit the law to measured losses in relative error, each point weighted by its rounding.
 
     frequency [Hz], peak [T], loss [W/kg]: arrays (n,); resolution: last digit of the losses [W/kg], scalar or (n,)
@@ -90,11 +102,11 @@ def fit_iron_loss(frequency, peak, loss, *, grade: str, density: float, source: 
         raise MaterialError(f"a loss fit needs {len(_SCALES) + 1} points or more, all positive; found {len(p)}")
     weight = _FIT_FLOOR / np.hypot(_FIT_FLOOR, resolution / 2 / p)
 
-    def law(x, **facts):
+    def law(x: np.ndarray, **facts: Any) -> IronLossLaw:
         k_h, k_c, k_e, alpha, k_s = x * _SCALES
         return IronLossLaw(grade, k_h, alpha, k_c, k_s, k_e, density, source, **facts)
 
-    def misfit(x):
+    def misfit(x: np.ndarray) -> np.ndarray:
         return weight * (law(x).specific_loss(f, b) / p - 1)
 
     x = least_squares(misfit, (1.5, 4.0, 5.0, 1.8, 0.3), bounds=(0, (100, 100, 1000, 3, 20)), xtol=1e-12, ftol=1e-12).x

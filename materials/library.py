@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+from materials.curve_units import wrong_unit
 from materials.errors import MaterialError
 from materials.reluctivity import SplineReluctivity
 
@@ -26,11 +27,13 @@ def load_steel(name: str, folder: Path | str = ".") -> SplineReluctivity:
 
     name: a grade of ``known_steels()``, or the path of a curve file ending in ``.csv``
     folder: folder from which a relative path counts, that is the folder of the study file
-    Raises MaterialError: unknown grade (lists the known ones), missing file, or a curve that cannot be used (names
-    the file and the line).
+    Raises MaterialError: unknown grade (lists the known ones), missing file, a curve in other units than its columns
+    say, or one that cannot be used (names the file and the line).
     """
     path = steel_file(name, folder)
     lines, H, B = read_curve(path)
+    if said := wrong_unit(H, B):
+        raise MaterialError(f"{path.name}: {said}")
     try:
         return SplineReluctivity.from_points(Path(name).stem.removesuffix("_bh"), H, B)
     except MaterialError as error:
@@ -57,7 +60,7 @@ def read_curve(path: Path) -> tuple[list[int], list[float], list[float]]:
     if not rows:
         raise MaterialError(f"{path.name} holds no data; expected the columns {FIELD_COLUMN},{FLUX_COLUMN}")
     reader = csv.DictReader((text for _, text in rows), skipinitialspace=True)
-    columns = [column.strip() for column in reader.fieldnames]
+    columns = [column.strip() for column in reader.fieldnames or ()]
     reader.fieldnames = columns
     _need_columns(path, columns)
     lines = [line for line, _ in rows[1:]]
@@ -65,14 +68,14 @@ def read_curve(path: Path) -> tuple[list[int], list[float], list[float]]:
     return lines, [point[0] for point in points], [point[1] for point in points]
 
 
-def _need_columns(path, columns) -> None:
+def _need_columns(path: Path, columns: list[str]) -> None:
     missing = [column for column in (FIELD_COLUMN, FLUX_COLUMN) if column not in columns]
     if missing:
         found = ", ".join(columns)
         raise MaterialError(f"{path.name}: column {' and '.join(missing)} missing; found {found}")
 
 
-def _point(path, line, row) -> tuple[float, float]:
+def _point(path: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
     try:
         return float(row[FIELD_COLUMN]), float(row[FLUX_COLUMN])
     except (TypeError, ValueError) as error:

@@ -29,7 +29,7 @@ class Magnet:
     reference_temperature: float = ROOM_TEMPERATURE  # T_ref [degC]
     axis_error: float = 0.0  # of the direction of magnetisation, counter-clockwise from the drawn one [rad]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (isfinite(self.remanence) and self.remanence >= 0):
             raise MaterialError(f"a magnet's remanence must be zero or more, found {self.remanence:g} T")
         if not self.recoil_permeability >= SMALLEST_RECOIL:

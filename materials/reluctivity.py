@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from materials.errors import MaterialError
-from units import MU_0
+from units import MU_0, Values
 
 NU_0 = 1.0 / MU_0  # m/H, reluctivity of vacuum
 
@@ -34,27 +35,27 @@ MOST_BINS = 4096  # of the table that finds the interval of a flux density
 class Reluctivity:
     """An isotropic anhysteretic law H(B). Arrays of any shape go in, arrays of the same shape come out."""
 
-    def nu(self, b2):
+    def nu(self, b2: Values) -> np.ndarray:
         """Reluctivity H/B [m/H] at the squared flux density b2 = |B|^2 [T^2], b2 >= 0."""
         return self.nu_and_derivative(b2)[0]
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         """Reluctivity H/B [m/H] and its derivative with respect to b2 = |B|^2 [m/(H T^2)]."""
         raise NotImplementedError
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         """H [A/m] at the flux density b [T]; odd in b."""
         raise NotImplementedError
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         """B [T] at the field strength h [A/m]; the inverse of ``field_strength``, odd in h."""
         raise NotImplementedError
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         """w(B) = integral of H dB from 0 to B [J/m^3]; even in b."""
         raise NotImplementedError
 
-    def coenergy_density(self, b):
+    def coenergy_density(self, b: Values) -> np.ndarray:
         """w'(B) = integral of B dH from 0 to H(B) = H B - w [J/m^3]; the argument is the flux density b [T]."""
         return self.field_strength(b) * np.asarray(b, dtype=float) - self.energy_density(b)
 
@@ -65,7 +66,7 @@ class LinearReluctivity(Reluctivity):
 
     relative_permeability: float  # mu_r
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (isfinite(self.relative_permeability) and self.relative_permeability > 0):
             raise MaterialError(f"a relative permeability must be positive, found {self.relative_permeability}")
 
@@ -74,17 +75,17 @@ class LinearReluctivity(Reluctivity):
         """1/(mu_0 mu_r) [m/H]."""
         return NU_0 / self.relative_permeability
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         b2 = np.asarray(b2, dtype=float)
         return np.full_like(b2, self.reluctivity), np.zeros_like(b2)
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         return self.reluctivity * np.asarray(b, dtype=float)
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         return np.asarray(h, dtype=float) / self.reluctivity
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         return 0.5 * self.reluctivity * np.asarray(b, dtype=float) ** 2
 
 
@@ -108,7 +109,7 @@ class PiecewiseCubic:
     points_per_bin: int  # at most
 
     @classmethod
-    def hermite(cls, B, H, slopes) -> PiecewiseCubic:
+    def hermite(cls, B: np.ndarray, H: np.ndarray, slopes: np.ndarray) -> PiecewiseCubic:
         """Cubic Hermite interpolant through (B, H) with the given slopes dH/dB [m/H] at the points."""
         h = np.diff(B)
         secants = np.diff(H) / h
@@ -119,32 +120,32 @@ class PiecewiseCubic:
         ends = np.append(B[1:-1], inf)
         return cls(B[:-1], ends, H[:-1], slopes[:-1], a2, a3, energies, *_bin_table(B))
 
-    def locate(self, b):
+    def locate(self, b: np.ndarray) -> np.ndarray:
         """Index of the interval of each flux density b >= 0 [T]."""
         k = self.interval_of_bin.take((b * self.bins_per_tesla).astype(np.intp), mode="clip")
         for _ in range(self.points_per_bin):
             k += b >= self.ends[k]
         return k
 
-    def value(self, b, k):
+    def value(self, b: np.ndarray, k: np.ndarray) -> np.ndarray:
         """H(b) [A/m]; b [T] in interval k."""
         t = b - self.starts[k]
         return self.a0[k] + t * (self.a1[k] + t * (self.a2[k] + t * self.a3[k]))
 
-    def value_and_slope(self, b, k):
+    def value_and_slope(self, b: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """H(b) [A/m] and dH/dB [m/H]."""
         t = b - self.starts[k]
         a1, a2t, a3tt = self.a1[k], t * self.a2[k], t * t * self.a3[k]
         return self.a0[k] + t * (a1 + a2t + a3tt), a1 + 2 * a2t + 3 * a3tt
 
-    def integral(self, b, k):
+    def integral(self, b: np.ndarray, k: np.ndarray) -> np.ndarray:
         """Integral of H dB from 0 to b [J/m^3]."""
         t = b - self.starts[k]
         quartic = self.a1[k] / 2 + t * (self.a2[k] / 3 + t * self.a3[k] / 4)
         return self.energies[k] + t * (self.a0[k] + t * quartic)
 
 
-def _bin_table(B):
+def _bin_table(B: np.ndarray) -> tuple[float, np.ndarray, int]:
     """Bins per tesla, interval of each bin, and the largest number of points inside one bin."""
     count = int(min(np.ceil(B[-1] / np.diff(B).min()), MOST_BINS))
     edges = np.linspace(0.0, B[-1], count + 1)
@@ -167,7 +168,7 @@ class ApproachToSaturation:
     rise: float  # c [T], by which the polarisation still grows
 
     @classmethod
-    def continuing(cls, last_field, last_flux, slope) -> ApproachToSaturation:
+    def continuing(cls, last_field: float, last_flux: float, slope: float) -> ApproachToSaturation:
         """Law that leaves the last point with the slope dH/dB [m/H]."""
         permeability = 1.0 / slope if slope > 0 else inf
         return cls(last_field, last_flux, max(0.0, last_field * (permeability - MU_0)))
@@ -177,20 +178,20 @@ class ApproachToSaturation:
         """J_s = J_l + c [T]."""
         return self.last_flux - MU_0 * self.last_field + self.rise
 
-    def value(self, b):
+    def value(self, b: np.ndarray) -> np.ndarray:
         """H [A/m] at b [T], b >= B_l: the positive root of mu_0 H^2 - (b - J_s) H - c H_l = 0."""
         u = b - self.saturation_polarisation
         return (u + np.sqrt(u * u + 4 * MU_0 * self.rise * self.last_field)) / (2 * MU_0)
 
-    def slope(self, h):
+    def slope(self, h: np.ndarray) -> np.ndarray:
         """dH/dB [m/H] at h [A/m]."""
         return 1.0 / (MU_0 + self.rise * self.last_field / (h * h))
 
-    def inverse(self, h):
+    def inverse(self, h: np.ndarray) -> np.ndarray:
         """B [T] at h [A/m], h >= H_l."""
         return MU_0 * h + self.saturation_polarisation - self.rise * self.last_field / h
 
-    def integral(self, b):
+    def integral(self, b: np.ndarray) -> np.ndarray:
         """Integral of H dB from B_l to b [J/m^3], as H B - H_l B_l minus the integral of B dH."""
         h, h_l = self.value(b), self.last_field
         logarithm = self.rise * h_l * np.log(h / h_l)
@@ -219,7 +220,7 @@ class SplineReluctivity(Reluctivity):
     tail: ApproachToSaturation
 
     @classmethod
-    def from_points(cls, name: str, H, B) -> SplineReluctivity:
+    def from_points(cls, name: str, H: ArrayLike, B: ArrayLike) -> SplineReluctivity:
         """Law through measured points.
 
         H: field strength [A/m], shape (n,), n >= 4, starts at 0, strictly increasing
@@ -244,7 +245,7 @@ class SplineReluctivity(Reluctivity):
         """End of the measured table [T]; larger values are extrapolated."""
         return self.tail.last_flux
 
-    def nu(self, b2):
+    def nu(self, b2: Values) -> np.ndarray:
         b2, shape = _flat(b2)
         b = np.sqrt(b2)
         k = self.table.locate(b)
@@ -255,7 +256,7 @@ class SplineReluctivity(Reluctivity):
             nu[beyond] = self.tail.value(b[beyond]) / b[beyond]
         return nu.reshape(shape)
 
-    def nu_and_derivative(self, b2):
+    def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         """nu and dnu/d(b2) = (dH/dB - nu)/(2 b2), exact in every piece; see ``Reluctivity``."""
         b2, shape = _flat(b2)
         b = np.sqrt(b2)
@@ -273,11 +274,11 @@ class SplineReluctivity(Reluctivity):
         np.copyto(derivative, self.table.a3[0], where=first)
         return nu.reshape(shape), derivative.reshape(shape)
 
-    def _away_from_zero(self, numerator, divisor, power=1):
+    def _away_from_zero(self, numerator: np.ndarray, divisor: np.ndarray, power: int = 1) -> np.ndarray:
         """Quotient without a division by zero in the first interval, whose values are overwritten by the caller."""
         return numerator / np.maximum(divisor, self.table.ends[0] ** power)
 
-    def field_strength(self, b):
+    def field_strength(self, b: Values) -> np.ndarray:
         b, shape = _flat(b)
         size = np.abs(b)
         H = self.table.value(size, self.table.locate(size))
@@ -285,7 +286,7 @@ class SplineReluctivity(Reluctivity):
         H[beyond] = self.tail.value(size[beyond])
         return np.copysign(H, b).reshape(shape)
 
-    def energy_density(self, b):
+    def energy_density(self, b: Values) -> np.ndarray:
         b, shape = _flat(b)
         inside = np.minimum(np.abs(b), self.tail.last_flux)
         energy = self.table.integral(inside, self.table.locate(inside))
@@ -293,7 +294,7 @@ class SplineReluctivity(Reluctivity):
         energy[beyond] += self.tail.integral(np.abs(b[beyond]))
         return energy.reshape(shape)
 
-    def flux_density(self, h):
+    def flux_density(self, h: Values) -> np.ndarray:
         h, shape = _flat(h)
         size = np.abs(h)
         B = _invert_monotone(self.table, np.minimum(size, self.tail.last_field), self.tail)
@@ -302,12 +303,12 @@ class SplineReluctivity(Reluctivity):
         return np.copysign(B, h).reshape(shape)
 
 
-def _flat(values):
+def _flat(values: Values) -> tuple[np.ndarray, tuple[int, ...]]:
     values = np.asarray(values, dtype=float)
     return values.ravel(), values.shape
 
 
-def _slopes(H, B):
+def _slopes(H: np.ndarray, B: np.ndarray) -> np.ndarray:
     """dH/dB at the points [m/H]: PCHIP but for the first and the last, see ``SplineReluctivity``."""
     slopes = PchipInterpolator(B, H)(B, 1)
     slopes[0] = (3 * H[1] / B[1] - slopes[1]) / 2
@@ -315,7 +316,7 @@ def _slopes(H, B):
     return slopes
 
 
-def _invert_monotone(table: PiecewiseCubic, h, tail: ApproachToSaturation, steps: int = 60):
+def _invert_monotone(table: PiecewiseCubic, h: np.ndarray, tail: ApproachToSaturation, steps: int = 60) -> np.ndarray:
     """B with H(B) = h inside the table: Newton's method, halving the bracket where a step would leave it."""
     k = np.searchsorted(table.a0, h, side="right") - 1
     low, high = table.starts[k], np.minimum(table.ends[k], tail.last_flux)
@@ -331,7 +332,7 @@ def _invert_monotone(table: PiecewiseCubic, h, tail: ApproachToSaturation, steps
     return b
 
 
-def check_curve(name: str, H, B) -> None:
+def check_curve(name: str, H: np.ndarray, B: np.ndarray) -> None:
     """Raise MaterialError, with the number of the point, unless (H [A/m], B [T]) is a usable magnetisation curve."""
     if H.ndim != 1 or H.shape != B.shape:
         raise MaterialError(f"{name}: expected as many H as B in two lists, found shapes {H.shape} and {B.shape}")
@@ -347,17 +348,17 @@ def check_curve(name: str, H, B) -> None:
     _check_last_slope(name, H, B)
 
 
-def _refuse(name, H, B, wrong, reason) -> None:
+def _refuse(name: str, H: np.ndarray, B: np.ndarray, wrong: np.ndarray, reason: str) -> None:
     if wrong.any():
         point = int(np.argmax(wrong))
         raise MaterialError(f"{name}: {_point(H, B, point)} {reason}", point)
 
 
-def _point(H, B, index) -> str:
+def _point(H: np.ndarray, B: np.ndarray, index: int) -> str:
     return f"point {index + 1} (H = {H[index]:g} A/m, B = {B[index]:g} T)"
 
 
-def _check_last_slope(name, H, B) -> None:
+def _check_last_slope(name: str, H: np.ndarray, B: np.ndarray) -> None:
     permeability = (B[-1] - B[-2]) / (H[-1] - H[-2]) / MU_0
     if permeability * (1 + SLOPE_ROUNDING) < 1:
         raise MaterialError(
@@ -367,7 +368,7 @@ def _check_last_slope(name, H, B) -> None:
         )
 
 
-def _check_saturation(name, tail: ApproachToSaturation) -> None:
+def _check_saturation(name: str, tail: ApproachToSaturation) -> None:
     if tail.saturation_polarisation > LARGEST_POLARISATION:
         raise MaterialError(
             f"{name}: continued beyond its last point (H = {tail.last_field:g} A/m, B = {tail.last_flux:g} T) "

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pipeline.closure import module_file
+
 _PLAIN = (str, int, bool, type(None))
 
 
@@ -94,8 +96,6 @@ def _decoded_record(content: dict, datasets: list[xr.Dataset] | None) -> Any:
 
 def _own(module: str) -> str:
     """The name of a module, refused where it is not of the project or its tests."""
-    from pipeline.closure import module_file  # noqa: PLC0415 - the closure hashes with this module's digest
-
     if module_file(module) is None:
         raise CodecError(f"{module} is not a module of this project")
     return module

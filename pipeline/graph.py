@@ -84,15 +84,29 @@ class Stage:
 
     name: as in ``make <name>``; function: typed values -> artefact; says: what it does, in a few words
     files: typed values -> ``figures.files.File``s, None where people have nothing to read of it
+    on_request: runs only when it is named
     """
 
     name: str
     function: Callable
     says: str
     files: Callable | None = None
+    on_request: bool = False
+
+
+@dataclass(frozen=True)
+class Export:
+    """The files that people read of a stage: a step of its own, which may read what later stages make.
+
+    name: of the stage with ``.files``; function: typed values -> ``figures.files.File``s
+    """
+
+    name: str
+    function: Callable
 
 
 Node = Source | View | Stage
+Step = Stage | Export
 
 
 @dataclass(frozen=True)
@@ -119,6 +133,11 @@ class Graph:
         """Every stage after those it reads from, otherwise as declared."""
         return _ordered(self)
 
+    @property
+    def usual(self) -> tuple[Stage, ...]:
+        """The stages that run when none is named."""
+        return tuple(stage for stage in self.stages if not stage.on_request)
+
     def stage(self, name: str) -> Stage:
         """The stage of a name; KeyError for an unknown one."""
         return {stage.name: stage for stage in self.stages}[name]
@@ -127,6 +146,17 @@ class Graph:
         """The stages that one needs, and the one itself, in order."""
         needed = {stage.name} | {one.name for one in _stages_behind(self, stage)}
         return tuple(one for one in self.stages if one.name in needed)
+
+    def steps(self, stages: tuple[Stage, ...]) -> tuple[Step, ...]:
+        """These stages in order, each export as soon as everything that it reads is made."""
+        found: list[Step] = []
+        waiting = [(stage, Export(f"{stage.name}.files", stage.files)) for stage in stages if stage.files is not None]
+        for stage in stages:
+            found.append(stage)
+            ready = [pair for pair in waiting if {*self.parents(pair[1].function), pair[0]} <= set(found)]
+            found += [export for _, export in ready]
+            waiting = [pair for pair in waiting if pair not in ready]
+        return tuple(found)
 
     def parents(self, function: Callable) -> tuple[Stage, ...]:
         """The stages whose artefacts a function reads, directly or through views."""

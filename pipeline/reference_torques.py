@@ -5,7 +5,17 @@ Writes ``results/reference/torque_per_length.csv``. Run it only when a value is 
 
 from __future__ import annotations
 
-from pipeline.stage import PROJECT, write_atomically
+from math import sqrt
+
+import pandas as pd
+
+from magnetostatics.model import OperatingPoint
+from magnetostatics.torque import arkkio_torque, maxwell_torque
+from pipeline.closure import PROJECT
+from pipeline.results import write_atomically
+from study.inputs_field import field_case
+from study.read import read_study
+from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
 TABLE = PROJECT / "results" / "reference" / "torque_per_length.csv"
 STUDY = "motorcycle"
@@ -33,29 +43,18 @@ def cases() -> list[dict]:
     ]
 
 
-def solve(case: dict) -> dict[str, float]:
+def solve(row: dict) -> dict[str, float]:
     """Torque per length by both routes at the mesh of the sweep."""
-    from math import sqrt
-
-    from magnetostatics.model import OperatingPoint
-    from magnetostatics.torque import arkkio_torque, maxwell_torque
-    from pipeline.models import field_model
-    from study.convert import to_machine, to_mesh_density
-    from study.read import read_study
-    from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
-
-    study = read_study(STUDY, case["overrides"].split())
-    model = field_model(study, to_machine(study.machine), to_mesh_density(study.mesh))
-    amplitude = sqrt(2) * case["j_rms_A_per_mm2"] * AMPERE_PER_SQUARE_MILLIMETRE
-    angles = case["angle_deg"] * DEGREE, case["current_angle_deg"] * DEGREE
-    solution = model.solve(OperatingPoint(angles[0], amplitude, angles[1], study.winding.packing_factor))
+    case = field_case(read_study(STUDY, row["overrides"].split()))
+    model = case.model(case.family.reference)
+    amplitude = sqrt(2) * row["j_rms_A_per_mm2"] * AMPERE_PER_SQUARE_MILLIMETRE
+    angles = row["angle_deg"] * DEGREE, row["current_angle_deg"] * DEGREE
+    solution = model.solve(OperatingPoint(angles[0], amplitude, angles[1], case.packing))
     return {"torque_arkkio_Nm_per_m": arkkio_torque(solution), "torque_maxwell_Nm_per_m": maxwell_torque(solution)}
 
 
 def main() -> None:
     """Solve every case and write the table."""
-    import pandas as pd
-
     table = pd.DataFrame([{**case, **solve(case)} for case in cases()])
     write_atomically(TABLE, lambda path: table.to_csv(path, index=False, float_format="%.6f"))
     print(f"{len(table)} values in {TABLE.relative_to(PROJECT)}")

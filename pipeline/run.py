@@ -20,7 +20,7 @@ from figures.report import Section
 from pipeline.checkpoint import Checkpoint
 from pipeline.closure import PROJECT, code_digest, packages_of
 from pipeline.codec import digest
-from pipeline.graph import Graph, Source, Stage, View, parameters, takes_workers
+from pipeline.graph import Export, Graph, Source, Stage, Step, View, parameters, takes_workers
 from pipeline.pools import Pool, PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
 from study.errors import StudyError
@@ -126,15 +126,14 @@ class Run:
 
     # ---- one result -------------------------------------------------------------------------------------------------
 
-    def stage(self, stage: Stage) -> None:
-        """Make the artefact of a stage and the files of it, each where something that it reads changed."""
-        made = self._current(stage.name, self.inputs(stage.function), lambda: self._make(stage))
-        self._done.add(stage.name)
-        written = stage.files is not None and self._current(
-            f"{stage.name}.files", self.inputs(stage.files), lambda: self._write_files(f"{stage.name}.files", stage.files)
-        )
-        if not made and not written:
-            print(f"{stage.name}: unchanged, not run again", flush=True)
+    def step(self, step: Step) -> None:
+        """Make the artefact of a stage, or the files of an export, where something that it reads changed."""
+        make = self._make if isinstance(step, Stage) else self._write_files
+        made = self._current(step.name, self.inputs(step.function), lambda: make(step))
+        if isinstance(step, Stage):
+            self._done.add(step.name)
+            if not made:
+                print(f"{step.name}: unchanged, not run again", flush=True)
 
     def _current(self, name: str, inputs: dict[str, str], make: Callable[[], list[str]]) -> bool:
         """Call ``make`` where the result of this name is not what these inputs give; True when it was called."""
@@ -167,9 +166,9 @@ class Run:
             one.remove()
         return outputs
 
-    def _write_files(self, name: str, files: Callable) -> list[str]:
+    def _write_files(self, export: Export) -> list[str]:
         written = []
-        for file in files(**self.arguments(files)):
+        for file in export.function(**self.arguments(export.function)):
             self.results.write(file.name, file.write)
             written.append(file.name)
         return written
@@ -178,17 +177,18 @@ class Run:
 
     def all(self, stages: tuple[Stage, ...]) -> None:
         """Every stage in order; one that cannot go on is noted, and those that need it are left out."""
-        for stage in stages:
+        for step in self.graph.steps(stages):
             try:
-                self.stage(stage)
+                self.step(step)
             except Missing as missing:
-                print(f"{stage.name}: left out, it needs {missing}", flush=True)
-                self._note(stage, f"left out: it needs {missing}.")
+                print(f"{step.name}: left out, it needs {missing}", flush=True)
+                if isinstance(step, Stage):  # the files of a stage that failed go without saying
+                    self._note(step, f"left out: it needs {missing}.")
             except (ResultsError, StudyError):
                 raise
             except Exception as error:  # noqa: BLE001 - whatever stops a stage must not lose the report
-                self._note(stage, self._said(error))
-                print(f"{stage.name}: {self.failures[-1].reason}", file=sys.stderr, flush=True)
+                self._note(step, self._said(error))
+                print(f"{step.name}: {self.failures[-1].reason}", file=sys.stderr, flush=True)
 
     def _said(self, error: Exception) -> str:
         """The sentence of a room that refuses what the study asks for; the traceback first for anything else."""
@@ -200,8 +200,8 @@ class Run:
         traceback.print_exception(told)
         return f"a fault of the program: {type(told).__name__}: {told}"
 
-    def _note(self, stage: Stage, reason: str) -> None:
-        self.failures.append(Failure(stage.name, reason))
+    def _note(self, step: Step, reason: str) -> None:
+        self.failures.append(Failure(step.name, reason))
 
     def sections(self) -> Iterator[Section]:
         """The sections of the report for which there is something to say."""

@@ -43,7 +43,7 @@ def run_command(options: argparse.Namespace) -> None:
     with sentences(), _pool(options, graph) as pool:
         run = Run(graph, study, results_of(study), pool)
         with run.results.held():
-            run.all(graph.stages if last is None else graph.before(graph.stage(last)))
+            run.all(graph.usual if last is None else graph.before(graph.stage(last)))
             if last is None or run.failures:
                 run.write_report(page_of)
                 print(f"report: {run.results.folder / REPORT}")

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from math import isfinite, sqrt
+from math import sqrt
 from pathlib import Path
+
+from study.inputs_field import field_case
 
 from figures.export import write_vtu
 from figures.field_map import field_map
@@ -17,9 +19,10 @@ from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from pipeline.arguments import add_overrides
 from study.errors import StudyError
-from study.inputs_field import field_case
-from study.read import check_steel, read_study
+from study.operating_point import AskedPoint, asked_point
+from study.read import read_study
 from study.schema import Study
+from study.usable import check_mesh, check_steel
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, SQUARE_MILLIMETRE
 
 
@@ -47,8 +50,9 @@ def add_solve(parser: argparse.ArgumentParser) -> None:
 def solve(options: argparse.Namespace) -> None:
     """See the module's text."""
     study = read_study(options.study, options.set)
+    asked = asked_point(options.angle_deg, _amplitude(options), options.current_angle_deg)
     check_steel(study)
-    solution = _field(study, options)
+    solution = _field(study, asked, options.sweep_mesh)
     result = _result(solution)
     _print(result, options.json)
     if options.vtu:
@@ -57,32 +61,19 @@ def solve(options: argparse.Namespace) -> None:
         field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
 
 
-def _field(study: Study, options: argparse.Namespace) -> FieldSolution:
-    amplitude, case = _amplitude(options), field_case(study)
-    model = (case.model if options.sweep_mesh else case.detailed_model)(case.family.reference)
-    point = OperatingPoint(
-        options.angle_deg * DEGREE,
-        amplitude * AMPERE_PER_SQUARE_MILLIMETRE,
-        options.current_angle_deg * DEGREE,
-        case.packing,
-    )
-    return model.solve(point)
+def _field(study: Study, asked: AskedPoint, sweep_mesh: bool) -> FieldSolution:
+    case = field_case(study)
+    machine = case.family.reference
+    check_mesh(study, machine, case.density if sweep_mesh else case.detail)
+    model = (case.model if sweep_mesh else case.detailed_model)(machine)
+    return model.solve(OperatingPoint(asked.angle, asked.amplitude, asked.current_angle, case.packing))
 
 
 def _amplitude(options: argparse.Namespace) -> float:
     """Amplitude of the current density [A/mm2]; none stated means no current."""
     if options.j_rms is not None:
-        amplitude = sqrt(2) * options.j_rms
-    else:
-        amplitude = options.j_amplitude or 0.0
-    for name in ("angle_deg", "current_angle_deg"):
-        if not isfinite(getattr(options, name)):
-            raise StudyError(
-                f"--{name.replace('_', '-')} must be a finite number of degrees, found {getattr(options, name)}."
-            )
-    if not isfinite(amplitude) or amplitude < 0:
-        raise StudyError(f"the current density must be a finite number, zero or more A/mm2, found {amplitude:g}.")
-    return amplitude
+        return sqrt(2) * options.j_rms
+    return options.j_amplitude or 0.0
 
 
 def _result(solution: FieldSolution) -> dict:

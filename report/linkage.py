@@ -41,7 +41,7 @@ def section(found: LinkageFront, search: LinkageSearch) -> Section:
         "Linkage",
         (
             text,
-            Picture(picture_name("linkage_front"), "The front, the choice, and where its hardpoints lie in their boxes."),
+            Picture(picture_name("linkage_front"), "The front, the choice, and where hardpoints lie in their boxes."),
             f"Decision: {found.reason}.",
             Table(_linkages(found), "Linkages over the wheel travel; margin: of the angles to their limits."),
             *_verdict(found),
@@ -113,9 +113,8 @@ def _verdict(found: LinkageFront) -> tuple[str, ...]:
     """How much better the front is than a stated linkage that it dominates."""
     if found.stated is None or not found.stated.standing.dominated:
         return ()
-    place = found.stated.standing
-    better = f"at its ratio an angle objective of {place.second_at_same_first:.3f} instead of {place.objectives[1]:.3f}"
-    return (f"The stated linkage is dominated: {_level_ratio(found)}{better} rad².",)
+    parts = [text for text in (_level_ratio(found), _level_angles(found.stated.standing)) if text]
+    return (f"The stated linkage is dominated{': ' + ', '.join(parts) if parts else ''}.",)
 
 
 def _level_ratio(found: LinkageFront) -> str:
@@ -124,4 +123,12 @@ def _level_ratio(found: LinkageFront) -> str:
     if stated is None or limits.ratio_weight != 1 or np.isnan(stated.standing.first_at_same_second):
         return ""
     level, own = stated.standing.first_at_same_second * limits.ratio / _RATIO, stated.built.ratio_nominal / _RATIO
-    return f"at its angles the front has {level:.1f} instead of {own:.1f} mm/rad, "
+    return f"at its angles the front has {level:.1f} instead of {own:.1f} mm/rad"
+
+
+def _level_angles(place: Standing) -> str:
+    """The angles of the front at the stated first objective."""
+    if np.isnan(place.second_at_same_first):
+        return ""
+    level, own = place.second_at_same_first, place.objectives[1]
+    return f"at its ratio an angle objective of {level:.3f} instead of {own:.3f} rad²"

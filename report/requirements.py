@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Iterator, Mapping
+from typing import Any, Iterator, Mapping
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from drivetrain.output import Output, in_unit, labelled
 from drivetrain.requirements import Requirements, StatedRequirements
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Section, Table, heading
@@ -16,7 +17,6 @@ from figures.vehicle import force_velocity_cloud, obstacle_peaks, requirement_ba
 from units import FACTORS, drawn, split_unit
 from vehicle.demands import ROAD_SHOWN, RideCase, RideRequirements, required
 from vehicle.indices import RideSummary, WorkingPoint
-from vehicle.ride import Run
 from vehicle.ride_means import RideMeans
 from vehicle.road import Obstacle
 from vehicle.traces import Trace
@@ -66,11 +66,14 @@ def section(found: RideRequirements, case: RideCase, stated: StatedRequirements 
     )
 
 
-def stated_section(requirements: Requirements) -> Section:
+def stated_section(requirements: Requirements, output: Output) -> Section:
     """The requirements of a study that drives no vehicle."""
-    rows = [(heading(name), value) for name, value in drawn(requirements, _REQUIRED).items()]
+    rows = [
+        (labelled(words, unit), in_unit(getattr(requirements, name), unit)) for name, words, unit in output.demands
+    ]
     table = pd.DataFrame(rows, columns=["requirement", "value"])
-    return Section("Requirements", ("As stated in the study file.", Table(table, "At the wheel.")))
+    place = output.place[:1].upper() + output.place[1:]
+    return Section("Requirements", ("As stated in the study file.", Table(table, f"{place}.")))
 
 
 def runs_table(found: RideRequirements) -> pd.DataFrame:
@@ -116,12 +119,10 @@ def _set_by(found: RideRequirements) -> dict[str, str]:
     return {"maximum_damping": "given", **words}
 
 
-def _bars(
-    found: RideRequirements, stated: StatedRequirements | None
-) -> list[tuple[str, float, float | None, str]]:
+def _bars(found: RideRequirements, stated: StatedRequirements | None) -> list[tuple[str, Any, Any, str]]:
     values, words = drawn(required(found), _REQUIRED), _set_by(found)
-    given = drawn(stated.requirements, _REQUIRED) if stated is not None else dict.fromkeys(_REQUIRED)
-    return [(heading(name), values[name], given[name], words[split_unit(name)[0]]) for name in _REQUIRED]
+    given = drawn(stated.requirements, _REQUIRED) if stated is not None else {}
+    return [(heading(name), values[name], given.get(name), words[split_unit(name)[0]]) for name in _REQUIRED]
 
 
 def _table(found: RideRequirements, stated: StatedRequirements | None) -> pd.DataFrame:
@@ -181,17 +182,12 @@ def _obstacle_figure(found: RideRequirements, case: RideCase) -> Figure:
 
 def _obstacle_points(found: RideRequirements, case: RideCase) -> dict[tuple[float, float], WorkingPoint]:
     """Working point of the peak force by speed [m/s] and amplitude [m]."""
-    damping = found.demands.force_peak.set_by.damping
-    both = zip(case.overload_runs, found.overload, strict=True)
-    return {_obstacle(run): one.at_force_peak for run, one in both if _is_shown(run, damping)}
-
-
-def _is_shown(run: Run, damping: str) -> bool:
-    return isinstance(run.scenario.road, Obstacle) and run.damping.name == damping
-
-
-def _obstacle(run: Run) -> tuple[float, float]:
-    return run.scenario.speed, run.scenario.road.amplitude
+    points, damping = {}, found.demands.force_peak.set_by.damping
+    for run, one in zip(case.overload_runs, found.overload, strict=True):
+        road = run.scenario.road
+        if isinstance(road, Obstacle) and run.damping.name == damping:
+            points[run.scenario.speed, road.amplitude] = one.at_force_peak
+    return points
 
 
 def _few(amplitudes: list[float]) -> list[float]:

@@ -1,15 +1,17 @@
-"""Which sections the design chain of a study needs, and whether its vehicle, linkage and gears can be."""
+"""Which sections the design chain of a study needs."""
 
 from __future__ import annotations
 
-from drivetrain.four_bar import LinkageError
 from study.errors import StudyError
-from study.inputs_linkage import linkage_search
-from study.inputs_vehicle import ride_case
-from study.schema import Study
-from vehicle.errors import VehicleError
+from study.schema import MatchSection, Study
 
 TEMPLATE = "studies/template.toml"
+_OF_A_WHEEL = (
+    ("match", "equivalent_mass_max_kg"),
+    ("assembly", "viscous_friction_Ns_per_m"),
+    ("assembly", "coulomb_friction_N"),
+)
+_OF_GEARS = tuple(key for key in MatchSection.model_fields if key.startswith("gear_"))
 _HARDPOINTS = ("hardpoint_a", "wheel_axle", "hardpoint_b_min", "hardpoint_b_max", "hardpoint_c_min", "hardpoint_c_max")
 
 
@@ -28,10 +30,36 @@ def check_chain(study: Study, origin: str) -> None:
 
     origin: where the values come from, for the sentence
     """
-    said = _vehicle_problem(study) if drives(study) else _stated_problem(study)
-    said = said or (_linkage_problem(study) if searches_linkage(study) else None)
+    said = _output_problem(study) or _gearbox_problem(study)
+    if study.drive is None and said is None:
+        said = _vehicle_problem(study) if drives(study) else _stated_problem(study)
+        said = said or (_linkage_problem(study) if searches_linkage(study) else None)
     if said is not None:
         raise StudyError(f"{origin}: {said}.")
+
+
+def _output_problem(study: Study) -> str | None:
+    """A wheel and a shaft state different things."""
+    wheel = ("requirements", "linkage", "chain", "printed_actuator")
+    if study.drive is not None:
+        found = [name for name in wheel if getattr(study, name) is not None]
+        return f"[drive] stands in the place of [{found[0]}]; remove one of the two" if found else None
+    if study.linkage is None:
+        return f"section [linkage] is missing; take it over from {TEMPLATE}, or state a load on a shaft in [drive]"
+    for section, key in _OF_A_WHEEL:
+        if getattr(getattr(study, section), key) is None:
+            return f"{section}.{key} is missing; add it under [{section}]"
+    return None
+
+
+def _gearbox_problem(study: Study) -> str | None:
+    stages = study.match.gearbox_stages
+    if stages == 0:
+        return None
+    if study.gearbox is None:
+        return f"match.gearbox_stages = {stages} needs the section [gearbox]; take it over from {TEMPLATE}"
+    missing = [key for key in _OF_GEARS if getattr(study.match, key) is None]
+    return f"match.gearbox_stages = {stages} needs match.{missing[0]}; add it under [match]" if missing else None
 
 
 def _stated_problem(study: Study) -> str | None:
@@ -40,7 +68,7 @@ def _stated_problem(study: Study) -> str | None:
             "section [requirements] is missing; add it, or let runs of the vehicle give them with "
             'chain.requirements = "vehicle"'
         )
-    if study.gearbox.swing_deg is None:
+    if study.gearbox is not None and study.gearbox.swing_deg is None:
         return "stated requirements need gearbox.swing_deg, since no vehicle is run; add it under [gearbox]"
     return None
 
@@ -75,28 +103,3 @@ def _linkage_problem(study: Study) -> str | None:
     if missing:
         return f'chain.linkage = "optimised" needs linkage.{missing[0]}; add it, or state the ratios and write "stated"'
     return None
-
-
-def check_libraries(study: Study) -> None:
-    """Build the vehicle, its dampers and scenarios, the linkage problem and the gear rules, as far as they are used.
-
-    StudyError with the sentence of the package that refuses them.
-    """
-    if drives(study):
-        _build_vehicle(study)
-    if searches_linkage(study):
-        _build_linkage(study)
-
-
-def _build_vehicle(study: Study) -> None:
-    try:
-        ride_case(study)
-    except VehicleError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error
-
-
-def _build_linkage(study: Study) -> None:
-    try:
-        linkage_search(study)
-    except LinkageError as error:
-        raise StudyError(f"{study.path}: {str(error).rstrip('.')}.") from error

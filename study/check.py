@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
 from study.chain import drives, searches_linkage
 from study.errors import exit_on_wrong_study
-from study.read import check_study, read_study
+from study.read import read_study
 from study.schema import Study
+from study.usable import check_study
 
 
 def summary(study: Study) -> str:
@@ -32,14 +32,21 @@ def summary(study: Study) -> str:
 
 
 def _required(study: Study) -> str:
-    if drives(study):
-        ride = study.ride
+    ride, required = study.ride, study.requirements
+    if drives(study) and ride is not None:
         what = "motorcycle" if study.motorcycle is not None else "quarter car"
         return (
             f"from runs of the {what}: road class {ride.road_class} at {ride.cruise_speed_km_per_h:g} km/h, "
             f"{ride.maximum_regenerative_damping_kNs_per_m:g} kNs/m"
         )
-    required = study.requirements
+    if study.drive is not None:
+        drive = study.drive
+        return (
+            f"{drive.torque_peak_Nm:g} Nm peak, {drive.torque_rms_Nm:g} Nm RMS, {drive.speed_peak_rpm:g} rpm at most, "
+            "on a shaft"
+        )
+    if required is None:
+        return "nothing"
     return (
         f"{required.force_peak_N:g} N peak, {required.force_rms_N:g} N RMS, "
         f"{required.maximum_damping_kNs_per_m:g} kNs/m, as stated"
@@ -47,7 +54,9 @@ def _required(study: Study) -> str:
 
 
 def _linkage(study: Study) -> str:
-    if searches_linkage(study):
+    if study.linkage is None:
+        return "none, the load sits on the shaft"
+    if study.linkage_search is not None and searches_linkage(study):
         return f"searched, choice {study.linkage_search.choice}"
     return f"{study.linkage.ratio_nominal_mm_per_rad:g} mm/rad, as stated"
 
@@ -64,4 +73,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
+from typing import Iterator
 
 EXIT_WRONG_INPUT = 2
 
@@ -11,13 +12,13 @@ EXIT_WRONG_INPUT = 2
 class StudyError(ValueError):
     """A study that cannot be used; every sentence names the file, the key, what was found and what to do."""
 
-    def __init__(self, *sentences: str):
+    def __init__(self, *sentences: str) -> None:
         super().__init__("\n".join(sentences))
         self.sentences = sentences
 
 
 @contextmanager
-def exit_on_wrong_study():
+def exit_on_wrong_study() -> Iterator[None]:
     """Turn a ``StudyError`` into its sentences on standard error and exit code 2, without a traceback."""
     try:
         yield

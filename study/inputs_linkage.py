@@ -10,12 +10,14 @@ from drivetrain.linkage_front import GeneticSettings
 from drivetrain.linkage_problem import Box, Limits, LinkageProblem, Travel
 from drivetrain.linkage_stage import LinkageSearch
 from drivetrain.requirements import InstallationSpace, Linkage
+from study.inputs_drive import drive_linkage
+from study.needed import needed
 from study.schema import LinkageSearchSection, LinkageSection, Study
 
 
 def linkage_search(study: Study) -> LinkageSearch:
     """Problem, settings and rule of a study that searches its linkage; LinkageError where they contradict."""
-    search = study.linkage_search
+    search = needed(study.linkage_search, "linkage_search")
     return LinkageSearch(
         problem=linkage_problem(study),
         settings=GeneticSettings(search.seeds, search.population, search.generations),
@@ -25,7 +27,9 @@ def linkage_search(study: Study) -> LinkageSearch:
 
 
 def stated_linkage(study: Study) -> Linkage:
-    """The ratios that the study states."""
+    """The ratios that the study states; 1 for a load on the shaft."""
+    if study.drive is not None:
+        return drive_linkage(study.drive)
     section = study.linkage.si
     return Linkage(section.ratio_nominal, section.ratio_max, section.envelope_radius_max)
 
@@ -37,7 +41,7 @@ def installation_space(study: Study) -> InstallationSpace:
 
 def linkage_problem(study: Study) -> LinkageProblem:
     """Swing arm, boxes, travel and limits."""
-    section, search = study.linkage.si, study.linkage_search.si
+    section, search = study.linkage.si, needed(study.linkage_search, "linkage_search").si
     return LinkageProblem(
         arm=_arm(study.linkage),
         box_b=Box(complex(*section.hardpoint_b_min), complex(*section.hardpoint_b_max), "B"),

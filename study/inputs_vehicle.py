@@ -6,8 +6,9 @@ from dataclasses import fields
 from pathlib import Path
 
 from drivetrain.requirements import Requirements, StatedRequirements
-from study.errors import StudyError
-from study.schema import DampersSection, MotorcycleSection, QuarterCarSection, Study
+from study.inputs_drive import drive_requirements
+from study.needed import needed
+from study.schema import MotorcycleSection, QuarterCarSection, Study
 from units import to_si
 from vehicle.damping import DamperCurve, linear_damper, mixed, read_damper_curve
 from vehicle.demands import RideCase
@@ -35,15 +36,15 @@ def ride_case(study: Study) -> RideCase:
         curves=(maximum, minimum, mixed(rebound=maximum, bump=minimum)),
         road=tuple(_road(study)),
         overload=tuple([*_obstacles(study), *_acceleration(study)]),
-        maximum_damping=study.ride.si.maximum_regenerative_damping,
+        maximum_damping=needed(study.ride, "ride").si.maximum_regenerative_damping,
     )
 
 
 def stated_requirements(study: Study) -> Requirements:
-    """The requirements that the study states. Raises StudyError where it states none."""
-    if study.requirements is None:
-        raise StudyError(f"{study.path}: section [requirements] is missing; add it.")
-    section = study.requirements.si
+    """The requirements that the study states, of a wheel or of a shaft. Raises StudyError where it states none."""
+    if study.drive is not None:
+        return drive_requirements(study.drive)
+    section = needed(study.requirements, "requirements").si
     return Requirements(**{f.name: getattr(section, f.name) for f in fields(Requirements)})
 
 
@@ -56,7 +57,7 @@ def vehicle(study: Study) -> Vehicle:
     """The vehicle that the study describes; VehicleError where it cannot be."""
     if study.motorcycle is not None:
         return _motorcycle(study.motorcycle, damper_curve(study, "front"))
-    return _quarter_car(study.quarter_car)
+    return _quarter_car(needed(study.quarter_car, "quarter_car"))
 
 
 def _motorcycle(section: MotorcycleSection, front_damper: DamperCurve) -> Motorcycle:
@@ -113,16 +114,9 @@ def table_file(study: Study, text: str) -> Path:
     return study.path.parent / text if text.lower().endswith(".csv") else DATA / f"{text}.csv"
 
 
-def vehicle_files(study: Study) -> tuple[Path, ...]:
-    """The tables that the runs of the vehicle depend on."""
-    names = [getattr(study.dampers, name) for name in DampersSection.model_fields if not name.endswith("_per_m")]
-    names += [study.obstacles.shape] if study.obstacles is not None else []
-    return tuple(table_file(study, name) for name in names if name is not None)
-
-
 def _road(study: Study) -> list[Scenario]:
     """The random road, once a seed."""
-    ride = study.ride.si
+    ride = needed(study.ride, "ride").si
     return road_scenarios(roughness_of_class(ride.road_class), ride.cruise_speed, ride.road_duration, ride.road_seeds)
 
 

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+import os
 import re
-import tomllib
 from pathlib import Path
-from typing import Sequence
+from typing import Any, Sequence
 
 from pydantic import ValidationError
 
 from geometry.checks import check_machine
 from geometry.machine import GeometryError
 from geometry.winding import star_of_slots
-from study.chain import check_chain, check_libraries
-from study.convert import to_machine
+from study.chain import check_chain
 from study.errors import StudyError
-from units import split_unit
+from study.inputs_machine import machine_family
 from study.schema import MachineSection, Study
 from study.sentences import sections_with, sentences
+from study.toml_file import parsed, read_table
+from units import split_unit
 
 STUDIES = Path(__file__).resolve().parent.parent / "studies"
+# Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.
+MESH_NAMES = {
+    "gap_edges": "gap_edges_per_revolution",
+    "gap_layers": "gap_layers",
+    "across_iron": "elements_across_tooth",
+}
+_LONGEST_SHOWN = 200
 _BARE_WORD = re.compile(r"[\w./-]+")
 
 
@@ -28,10 +36,10 @@ def read_study(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Study
 
     path_or_name: path of a TOML file, or the name of a file in ``studies/`` without its ending
     overrides: texts ``section.key=value`` with the value as TOML writes it (a bare word counts as text)
-    Raises StudyError with one sentence for each problem. ``check_study`` opens the steel's curve as well.
+    Raises StudyError with one sentence for each problem. ``study.usable.check_study`` finds what takes a second.
     """
     path = study_path(path_or_name)
-    data, changes = _table(path), [_override(text) for text in overrides]
+    data, changes = read_table(path), [_override(text) for text in overrides]
     for section, key, value, _ in changes:
         _put(data, section, key, value)
     if not data:
@@ -39,37 +47,10 @@ def read_study(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Study
     study = _validated(data, path, {(section, key): text for section, key, _, text in changes})
     study._path = path
     origin = _origin(path, overrides)
-    _check_winding(study, "machine.slots", study.machine.slots, origin)
+    check_winding(study, "machine.slots", study.machine.slots, origin)
     _check_geometry(study, origin)
     check_chain(study, origin)
     return study
-
-
-def check_study(study: Study) -> None:
-    """What only the whole pipeline needs, and what takes a second: sweep, steel, vehicle, linkage and gears."""
-    check_sweep(study)
-    check_steel(study)
-    check_libraries(study)
-
-
-def check_sweep(study: Study) -> None:
-    """Every slot count of the sweep must have a balanced winding; StudyError with a sentence otherwise."""
-    for slots in study.sweep.slots:
-        _check_winding(study, "sweep.slots", slots, str(study.path))
-
-
-def check_steel(study: Study) -> None:
-    """The steel must exist and its curve be usable; StudyError with a sentence otherwise."""
-    from materials.errors import MaterialError  # imports scipy, which takes a second
-    from materials.library import load_steel
-
-    key = f'{study.path}: materials.steel = "{study.materials.steel}"'
-    try:
-        load_steel(study.materials.steel, study.path.parent)
-    except MaterialError as error:
-        raise StudyError(f"{key} cannot be used, {_sentence_part(error)}.") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{key} cannot be read ({error}); give a readable csv file or a known grade.") from error
 
 
 def study_path(path_or_name: str | Path) -> Path:
@@ -77,42 +58,33 @@ def study_path(path_or_name: str | Path) -> Path:
     text = str(path_or_name)
     is_name = re.fullmatch(r"[\w-]+", text) is not None
     path = STUDIES / f"{text}.toml" if is_name else Path(text)
-    if not path.exists():
+    if os.path.islink(path) and not os.path.exists(path):
+        raise StudyError(f"{path} is a symbolic link that leads to no file; give the path of the study file itself.")
+    if not _may_be_there(path):
         known = ", ".join(sorted(file.stem for file in STUDIES.glob("*.toml")))
         raise StudyError(f"{_short(path)} does not exist; give the path of a study file or one of the names {known}.")
     return _short(path)
 
 
-def study_files(study: Study) -> list[Path]:
-    """Files of the user's own that the study refers to, for input hashes: the steel's csv where it is not a grade."""
-    steel = study.materials.steel
-    return [study.path.parent / steel] if steel.lower().endswith(".csv") else []
+def _may_be_there(path: Path) -> bool:
+    """Whether to go on to open the file; a folder that may not be looked into is reported there."""
+    try:
+        return path.exists()
+    except OSError:
+        return True
 
 
 def _origin(path: Path, overrides: Sequence[str]) -> str:
     """Where a combination of values comes from."""
-    return " ".join((str(path), *(f"--set {text}" for text in overrides)))
+    return " ".join((str(path), *(f"--set {text[:_LONGEST_SHOWN]}" for text in overrides)))
 
 
 def _short(path: Path) -> Path:
     """The path as seen from the current folder where it lies below it."""
     try:
         return path.resolve().relative_to(Path.cwd())
-    except ValueError:
+    except (ValueError, OSError):
         return path
-
-
-def _table(path: Path) -> dict:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise StudyError(f"{path} cannot be read ({error.strerror}); give a readable TOML file.") from error
-    except UnicodeDecodeError as error:
-        raise StudyError(
-            f"{path} is not a text file in UTF-8 (byte {error.start}); save it as UTF-8 text or give the right file."
-        ) from error
-    except tomllib.TOMLDecodeError as error:
-        raise StudyError(f"{path} is not valid TOML: {error}; correct that place.") from error
 
 
 def _override(text: str) -> tuple[str, str, object, str]:
@@ -132,24 +104,24 @@ def _how_to_override(key: str, equals: str) -> str:
 
 
 def _value(text: str, value: str) -> object:
+    subject = f"--set {text[:_LONGEST_SHOWN]}: {value[:_LONGEST_SHOWN] or 'nothing'} is not a TOML value, "
     try:
-        return tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError as error:
+        return parsed(f"value = {value}", subject, "give a number, a list in brackets or a text in quotes")["value"]
+    except StudyError:
         if _BARE_WORD.fullmatch(value):
             return value
-        raise StudyError(f"--set {text}: {value or 'nothing'} is not a TOML value; give a number, "
-                         'a list in brackets or a text in quotes.') from error
+        raise
 
 
-def _put(data: dict, section: str, key: str, value: object) -> None:
+def _put(data: dict[str, Any], section: str, key: str, value: object) -> None:
     table = data.setdefault(section, {})
     if isinstance(table, dict):  # anything else is reported by the validation
         table[key] = value
 
 
-def _validated(data: dict, path: Path, overridden: dict) -> Study:
+def _validated(data: dict[str, Any], path: Path, overridden: dict[tuple, str]) -> Study:
     def place(loc: tuple) -> str:
-        return f"--set {overridden[loc[:2]]}" if loc[:2] in overridden else str(path)
+        return f"--set {overridden[loc[:2]][:_LONGEST_SHOWN]}" if loc[:2] in overridden else str(path)
 
     try:
         return Study.model_validate(data)
@@ -160,23 +132,33 @@ def _validated(data: dict, path: Path, overridden: dict) -> Study:
 # ------------------------------------------------------------------------- checks by the packages that know
 
 
-def _check_winding(study: Study, key: str, slots: int, origin: str) -> None:
-    poles = study.machine.poles
+def check_winding(study: Study, key: str, slots: int, origin: str) -> None:
+    """StudyError unless this number of slots, which stands under a key, carries a balanced winding."""
+    poles, winding = study.machine.poles, study.winding
     try:
-        star_of_slots(slots, poles // 2, study.winding.layers, study.winding.coil_pitch)
+        star_of_slots(slots, poles // 2, winding.layers, winding.coil_pitch)
     except GeometryError as error:
-        raise StudyError(f"{origin}: {key} = {slots}, machine.poles = {poles}: {_sentence_part(error)}.") from error
+        pitch = "" if winding.coil_pitch is None else f", winding.coil_pitch = {winding.coil_pitch}"
+        raise StudyError(
+            f"{origin}: {key} = {slots}, machine.poles = {poles}{pitch}: {sentence_part(error)}."
+        ) from error
 
 
 def _check_geometry(study: Study, origin: str) -> None:
     try:
-        check_machine(to_machine(study.machine))
+        check_machine(machine_family(study.machine).reference)
     except GeometryError as error:
-        said = _with_key_names(_sentence_part(error))
-        raise StudyError(f"{origin}: [machine] cannot be built, {said}{_present_values(study, said)}.") from error
+        raise StudyError(f"{origin}: [machine] cannot be built, {with_keys(study, error)}.") from error
 
 
-def _sentence_part(error: Exception) -> str:
+def with_keys(study: Study, error: GeometryError) -> str:
+    """What the geometry says, with the keys of the file and the values that it states for them."""
+    said = _with_key_names(sentence_part(error))
+    return said + _present_values(study, said)
+
+
+def sentence_part(error: Exception) -> str:
+    """The words of an error, to be gone on with."""
     return str(error).rstrip(".")
 
 
@@ -185,11 +167,13 @@ def _with_key_names(message: str) -> str:
     for key in MachineSection.model_fields:
         stem = split_unit(key)[0]
         message = re.sub(rf"\b{stem}\b(?!_)", key, message) if stem != key else message
+    for name, key in MESH_NAMES.items():
+        message = re.sub(rf"\b{name}\b(?!_)", f"mesh.{key}", message)
     return message
 
 
 def _present_values(study: Study, message: str) -> str:
     """What the file states for the keys that a message names."""
-    stated = study.machine.model_dump(exclude_none=True)
+    stated = {**study.machine.model_dump(exclude_none=True), **study.mesh.model_dump(exclude_none=True)}
     named = [f"{key} = {value}" for key, value in stated.items() if re.search(rf"\b{key}\b", message)]
     return f" (now {', '.join(named)})" if named else ""

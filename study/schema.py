@@ -7,12 +7,11 @@ Defaults exist only for numerical resolution and for keys that are marked option
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Annotated, Literal, Optional
+from typing import Annotated, Any, Literal, Optional, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from units import split_unit, to_si
 
@@ -30,9 +29,11 @@ class Quantity:
         return f"{self.low:g} to {self.high:g} {split_unit(key)[1]}".rstrip()
 
     def holds(self, number: float) -> bool:
-        return isfinite(number) and self.low <= number <= self.high
+        """Whether the number lies in the range; NaN and the infinities do not."""
+        return self.low <= number <= self.high
 
 
+_LARGEST_NUMBER = 1e300  # integers of a file may be larger than any number that is calculated with
 Listed = Field(strict=False)  # a TOML array arrives as a list and is kept as a tuple
 
 
@@ -53,19 +54,20 @@ class Section(BaseModel):
 
     @field_validator("*", mode="after")
     @classmethod
-    def _stays_in_its_range(cls, value, info):
-        quantity = cls.quantity(info.field_name)
+    def _stays_in_its_range(cls, value: Any, info: ValidationInfo) -> Any:
+        key = str(info.field_name)
+        quantity = cls.quantity(key)
         if quantity is None or value is None:
             return value
         for number in value if isinstance(value, tuple) else (value,):
             if not quantity.holds(number):
-                raise ValueError(_out_of_range(number, quantity, info.field_name))
+                raise ValueError(_out_of_range(number, quantity, key))
         return value
 
 
 def _out_of_range(number: float, quantity: Quantity, key: str) -> str:
     expected = f"give {quantity.allowed(key)} ({quantity.meaning})"
-    if not isfinite(number):
+    if not abs(number) < _LARGEST_NUMBER:  # also NaN
         return f"is not a finite number; {expected}"
     hint = " and looks like a value in metres" if key.endswith("_mm") and quantity.holds(number * 1e3) else ""
     return f"is outside the allowed range{hint}; {expected}"
@@ -93,6 +95,7 @@ class MachineSection(Section):
     shoe_aspect_ratio: Annotated[float, Quantity("shoe depths d_1 over d_2, alpha_d", 0.05, 20)]
     shaft_radius_mm: Annotated[float, Quantity("shaft radius", 0.3, 900)]
     magnet_arc_fraction: Annotated[float, Quantity("magnet arc over pole pitch", 0.1, 1)]
+    stacking_factor: Annotated[float, Quantity("steel over stack length of the laminations, of their mass", 0.5, 1)]
     magnetisation: Literal["parallel", "radial"]
     # optional: stated instead of derived from the back iron (eqs 3.53, 3.57, 3.58)
     tooth_width_mm: Annotated[Optional[float], Quantity("tooth width w_tb", 0.3, 200)] = None
@@ -101,7 +104,7 @@ class MachineSection(Section):
 
     @field_validator("poles", mode="after")
     @classmethod
-    def _poles_come_in_pairs(cls, poles):
+    def _poles_come_in_pairs(cls, poles: int) -> int:
         if poles % 2:
             raise ValueError("is odd, but magnets come in pairs; give an even number")
         return poles
@@ -119,6 +122,9 @@ class MaterialsSection(Section):
     copper_temperature_coefficient_per_K: Annotated[
         float, Quantity("linear temperature coefficient of the copper resistivity", 0, 0.02)
     ]
+    lamination_density_kg_per_m3: Annotated[float, Quantity("density of the electrical steel", 1000, 20000)]
+    magnet_density_kg_per_m3: Annotated[float, Quantity("density of the magnets", 1000, 20000)]
+    copper_density_kg_per_m3: Annotated[float, Quantity("density of the copper", 1000, 20000)]
 
 
 class WindingSection(Section):
@@ -163,7 +169,7 @@ class SweepSection(Section):
     j_overload_rms_A_per_mm2: Annotated[float, Quantity("overload current density in the copper", 0.1, 200)]
 
     @model_validator(mode="after")
-    def _ends_are_in_order(self):
+    def _ends_are_in_order(self) -> Self:
         _require_order(self, "back_iron_fraction_min", "back_iron_fraction_max")
         _require_order(self, "rotor_radius_fraction_min", "rotor_radius_fraction_max")
         _require_order(self, "j_nominal_rms_A_per_mm2", "j_overload_rms_A_per_mm2")
@@ -171,7 +177,7 @@ class SweepSection(Section):
 
     @field_validator("slots", "stator_diameters_mm", mode="after")
     @classmethod
-    def _named_once(cls, values):
+    def _named_once(cls, values: tuple[float, ...]) -> tuple[float, ...]:
         if len(set(values)) < len(values):
             raise ValueError("names a value twice; give each one once")
         return values
@@ -188,19 +194,67 @@ class SaturationSection(Section):
     limits_compared_T: Annotated[tuple[float, ...], Listed, Quantity("limits compared in the report", 0.3, 2.5)]
 
 
+_BELOW_THEIR_PEAK = (
+    ("force_rms_N", "force_peak_N"),
+    ("velocity_rms_m_per_s", "velocity_peak_m_per_s"),
+    ("power_rms_W", "power_peak_W"),
+    ("velocity_at_force_peak_m_per_s", "velocity_peak_m_per_s"),
+    ("force_at_power_peak_N", "force_peak_N"),
+    ("velocity_at_power_peak_m_per_s", "velocity_peak_m_per_s"),
+)
+_ROUNDED = 0.05  # of stated products: tables are rounded
+
+
 class RequirementsSection(Section):
-    """What the actuator must do, at the wheel (thesis Table 3.7); magnitudes, without the table's signs."""
+    """What the actuator must do, at the wheel (thesis Table 3.7); magnitudes, without the table's signs.
+
+    No damping, holding without motion and a peak force at standstill are zeros that mean something.
+    """
 
     maximum_damping_kNs_per_m: Annotated[float, Quantity("maximum regenerative damping", 0, 1e4)]
     force_rms_N: Annotated[float, Quantity("RMS actuator force", 1e-3, 1e6)]
-    velocity_rms_m_per_s: Annotated[float, Quantity("RMS actuator velocity", 1e-4, 1e2)]
-    power_rms_W: Annotated[float, Quantity("RMS actuator power", 1e-3, 1e6)]
+    velocity_rms_m_per_s: Annotated[float, Quantity("RMS actuator velocity", 0, 1e2)]
+    power_rms_W: Annotated[float, Quantity("RMS actuator power", 0, 1e6)]
     velocity_peak_m_per_s: Annotated[float, Quantity("peak actuator velocity", 1e-4, 1e2)]
     force_peak_N: Annotated[float, Quantity("peak actuator force", 1e-3, 1e6)]
-    velocity_at_force_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak force", 1e-4, 1e2)]
+    velocity_at_force_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak force", 0, 1e2)]
     power_peak_W: Annotated[float, Quantity("peak actuator power", 1e-3, 1e7)]
     force_at_power_peak_N: Annotated[float, Quantity("actuator force at the peak power", 1e-3, 1e6)]
     velocity_at_power_peak_m_per_s: Annotated[float, Quantity("actuator velocity at the peak power", 1e-4, 1e2)]
+
+    @model_validator(mode="after")
+    def _no_mean_or_simultaneous_value_above_the_peak(self) -> Self:
+        for low, high in _BELOW_THEIR_PEAK:
+            _require_order(self, low, high, equal_allowed=True)
+        most = self.force_peak_N * self.velocity_peak_m_per_s
+        if self.power_peak_W > most * (1 + _ROUNDED):
+            raise ValueError(
+                f"has power_peak_W = {self.power_peak_W:g} above force_peak_N times velocity_peak_m_per_s = {most:g}; "
+                "reduce the power, or raise force or velocity"
+            )
+        return self
+
+
+class DriveSection(Section):
+    """A load on the slow shaft in the place of a wheel: a robot joint, a pump; magnitudes."""
+
+    torque_peak_Nm: Annotated[float, Quantity("peak torque of the shaft", 1e-3, 1e6)]
+    speed_at_torque_peak_rpm: Annotated[float, Quantity("speed at the peak torque", 0, 1e5)]
+    torque_rms_Nm: Annotated[float, Quantity("RMS torque of the shaft", 1e-3, 1e6)]
+    speed_rms_rpm: Annotated[float, Quantity("RMS speed of the shaft", 0, 1e5)]
+    power_rms_W: Annotated[float, Quantity("RMS power", 0, 1e6)]
+    speed_peak_rpm: Annotated[float, Quantity("peak speed of the shaft", 1e-3, 1e5)]
+    torque_at_power_peak_Nm: Annotated[float, Quantity("torque at the peak power", 0, 1e6)]
+    speed_at_power_peak_rpm: Annotated[float, Quantity("speed at the peak power", 0, 1e5)]
+    inertia_max_kg_m2: Annotated[
+        float, Quantity("inertia of rotor and gears at the shaft that counts as 1 in the cost", 1e-9, 1e5)
+    ]
+    viscous_friction_Nms_per_rad: Annotated[float, Quantity("viscous friction at the shaft", 0, 1e5)]
+    coulomb_friction_Nm: Annotated[float, Quantity("dry friction at the shaft", 0, 1e5)]
+    # optional: an inertia that is compared with that of the drive, braking in short circuit, room for the casing
+    load_inertia_kg_m2: Annotated[Optional[float], Quantity("inertia of the load at the shaft", 0, 1e6)] = None
+    damping_Nms_per_rad: Annotated[Optional[float], Quantity("damping in short circuit", 0, 1e6)] = None
+    diameter_max_mm: Annotated[Optional[float], Quantity("largest diameter of the casing", 5, 4000)] = None
 
 
 class ChainSection(Section):
@@ -258,7 +312,9 @@ class DampersSection(Section):
 class RideSection(Section):
     """Random road at cruise speed, and how much of the damping the actuator must give as a generator."""
 
-    maximum_regenerative_damping_kNs_per_m: Annotated[float, Quantity("damping without active power", 1e-3, 1e4)]
+    maximum_regenerative_damping_kNs_per_m: Annotated[
+        float, Quantity("damping without active power, 0: none is asked for", 0, 1e4)
+    ]
     road_class: Literal["A", "B", "C", "D", "E"]
     cruise_speed_km_per_h: Annotated[float, Quantity("speed on the random road", 1, 500)]
     road_duration_s: Annotated[float, Quantity("length of a run on the random road", 1, 600)]
@@ -279,7 +335,7 @@ class ObstaclesSection(Section):
 
     @field_validator("amplitudes_mm", mode="after")
     @classmethod
-    def _every_obstacle_has_a_height(cls, amplitudes):
+    def _every_obstacle_has_a_height(cls, amplitudes: tuple[float, ...]) -> tuple[float, ...]:
         if 0 in amplitudes:
             raise ValueError("names an obstacle without amplitude; give millimetres above (bump) or below (pothole)")
         return amplitudes
@@ -313,7 +369,7 @@ class LinkageSection(Section):
     hardpoint_c_max_mm: Annotated[Optional[Point], _COORDINATE] = None
 
     @model_validator(mode="after")
-    def _ends_are_in_order(self):
+    def _ends_are_in_order(self) -> Self:
         _require_order(self, "ratio_nominal_mm_per_rad", "ratio_max_mm_per_rad", equal_allowed=True)
         return self
 
@@ -343,7 +399,7 @@ class LinkageSearchSection(Section):
     ] = None
 
     @model_validator(mode="after")
-    def _the_rule_has_its_number(self):
+    def _the_rule_has_its_number(self) -> Self:
         needed = {"smallest_ratio": "angles_worst_rad2", "best_angles": "ratio_max_mm_per_rad"}.get(self.choice)
         if needed and getattr(self, needed) is None:
             raise ValueError(f'has choice = "{self.choice}" without {needed}; add it')
@@ -356,7 +412,10 @@ class MatchSection(Section):
     length_max_mm: Annotated[float, Quantity("largest active length", 1, 5000)]
     speed_max_rad_per_s: Annotated[float, Quantity("largest rotor speed", 1, 1e5)]
     mass_max_kg: Annotated[float, Quantity("mass that counts as 1 in the cost", 0.01, 1e4)]
-    equivalent_mass_max_kg: Annotated[float, Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)]
+    # optional: only with a wheel; a [drive] states its inertia_max_kg_m2
+    equivalent_mass_max_kg: Annotated[
+        Optional[float], Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)
+    ] = None
     weight_inertia: Annotated[float, Quantity("weight of the equivalent inertia against the mass, w_m", 0, 1)]
     weight_radius: Annotated[float, Quantity("weight of the stator radius, w_Rso", 0, 100)]
     radius_limit_mm: Annotated[float, Quantity("stator radius that counts as 1 in the cost", 5, 1000)]
@@ -365,15 +424,18 @@ class MatchSection(Section):
     # optional: the designer's choice of the machine to go on with; without it the least cost decides
     chosen_slots: Annotated[Optional[int], Quantity("slot count to go on with", 3, 360)] = None
     chosen_stator_diameter_mm: Annotated[Optional[float], Quantity("stator diameter to go on with", 10, 2000)] = None
-    steel_density_kg_per_m3: Annotated[float, Quantity("density of steel", 1000, 20000)]
-    gearbox_stages: Annotated[int, Quantity("planetary stages", 1, 6)]
-    gear_ring_diameter_fraction: Annotated[float, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)]
-    gear_contact_stress_MPa: Annotated[float, Quantity("allowable contact stress sigma_H", 50, 5000)]
-    gear_overload_factor: Annotated[float, Quantity("overload factor K_A", 1, 5)]
-    gear_contact_ratio_factor: Annotated[float, Quantity("contact ratio factor Z_eps", 0.3, 1)]
-    gear_pressure_angle_deg: Annotated[float, Quantity("pressure angle", 10, 35)]
-    gear_youngs_modulus_GPa: Annotated[float, Quantity("Young's modulus of the gears", 10, 1000)]
-    gear_poisson_ratio: Annotated[float, Quantity("Poisson's ratio of the gears", 0, 0.49)]
+    steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
+    gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
+    # optional: only with planetary stages
+    gear_ring_diameter_fraction: Annotated[
+        Optional[float], Quantity("ring pitch diameter over the outer diameter", 0.3, 1)
+    ] = None
+    gear_contact_stress_MPa: Annotated[Optional[float], Quantity("allowable contact stress sigma_H", 50, 5000)] = None
+    gear_overload_factor: Annotated[Optional[float], Quantity("overload factor K_A", 1, 5)] = None
+    gear_contact_ratio_factor: Annotated[Optional[float], Quantity("contact ratio factor Z_eps", 0.3, 1)] = None
+    gear_pressure_angle_deg: Annotated[Optional[float], Quantity("pressure angle", 10, 35)] = None
+    gear_youngs_modulus_GPa: Annotated[Optional[float], Quantity("Young's modulus of the gears", 10, 1000)] = None
+    gear_poisson_ratio: Annotated[Optional[float], Quantity("Poisson's ratio of the gears", 0, 0.49)] = None
 
 
 class GearboxSection(Section):
@@ -422,8 +484,9 @@ class AssemblySection(Section):
     bearing_seat_mm: Annotated[float, Quantity("bearing seat on either side of the machine", 0, 500)]
     sensor_cover_mm: Annotated[float, Quantity("cover with the position sensor", 0, 500)]
     casing_mass_kg: Annotated[float, Quantity("casing, bearings, shafts and lever", 0, 1e4)]
-    viscous_friction_Ns_per_m: Annotated[float, Quantity("viscous friction at the wheel", 0, 1e6)]
-    coulomb_friction_N: Annotated[float, Quantity("dry friction at the wheel", 0, 1e5)]
+    # optional: only with a wheel; a [drive] states its own
+    viscous_friction_Ns_per_m: Annotated[Optional[float], Quantity("viscous friction at the wheel", 0, 1e6)] = None
+    coulomb_friction_N: Annotated[Optional[float], Quantity("dry friction at the wheel", 0, 1e5)] = None
 
 
 class PrintedActuatorSection(Section):
@@ -442,10 +505,12 @@ class PrintedActuatorSection(Section):
 
 
 class PrintedMachineSection(Section):
-    """What somebody else states for the machine of ``[machine]``; it is matched in the same way and shown beside ours."""
+    """What somebody else states for the machine of ``[machine]``; it is matched in the same way, shown beside ours."""
 
     source: Annotated[str, Field(min_length=1)]
-    torque_nominal_Nm_per_m: Annotated[float, Quantity("stated torque per length at the nominal current density", 0.01, 1e5)]
+    torque_nominal_Nm_per_m: Annotated[
+        float, Quantity("stated torque per length at the nominal current density", 0.01, 1e5)
+    ]
     half_slot_area_mm2: Annotated[float, Quantity("stated half-slot area", 0.01, 1e5)]
 
 
@@ -479,13 +544,14 @@ class Study(Section):
     obstacles: Optional[ObstaclesSection] = None
     acceleration: Optional[AccelerationSection] = None
     requirements: Optional[RequirementsSection] = None
-    linkage: LinkageSection
+    drive: Optional[DriveSection] = None  # in the place of [requirements] and [linkage]
+    linkage: Optional[LinkageSection] = None
     linkage_search: Optional[LinkageSearchSection] = None
     match: MatchSection
     printed_machine: Optional[PrintedMachineSection] = None
     winding_selection: WindingSelectionSection
     flux_map: FluxMapSection = FluxMapSection()
-    gearbox: GearboxSection
+    gearbox: Optional[GearboxSection] = None  # not for a direct drive
     assembly: AssemblySection
     printed_actuator: Optional[PrintedActuatorSection] = None
 
@@ -496,13 +562,9 @@ class Study(Section):
         """The file that the study was read from."""
         return self._path
 
-    def subset(self, *sections: str) -> dict:
-        """The named sections as plain data for a stage's input hash, without the path of the file."""
-        present = {name: getattr(self, name) for name in sections}
-        return {name: section and section.model_dump(mode="json") for name, section in present.items()}
-
 
 def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:
     low, high = getattr(section, low_key), getattr(section, high_key)
     if low > high or (low == high and not equal_allowed):
-        raise ValueError(f"has {low_key} = {low:g} not below {high_key} = {high:g}; exchange or change them")
+        relation = "above" if equal_allowed else "not below"
+        raise ValueError(f"has {low_key} = {low:g} {relation} {high_key} = {high:g}; exchange or change them")

@@ -6,18 +6,18 @@ import json
 import re
 from difflib import get_close_matches
 from math import isfinite
-from typing import get_args
+from typing import Any, Callable, get_args
 
 from pydantic import ValidationError
 
-from units import converted, same_quantity, split_unit
 from study.schema import Section, Study
+from units import converted, same_quantity, split_unit
 
 _TEMPLATE = "studies/template.toml"
 _LONGEST_SHOWN = 60
 
 
-def sentences(error: ValidationError, place) -> list[str]:
+def sentences(error: ValidationError, place: Callable[[tuple], str]) -> list[str]:
     """The problems as sentences, file order lost, each once.
 
     place: function that names where a key comes from, given its location: the file, or the override that set it
@@ -28,7 +28,7 @@ def sentences(error: ValidationError, place) -> list[str]:
     return [f"{place(problem['loc'])}: {_sentence(problem)}." for problem in told]
 
 
-def shown(value) -> str:
+def shown(value: object) -> str:
     """A value as a study file would state it, shortened."""
     if isinstance(value, float) and not isfinite(value):
         return str(value)
@@ -47,7 +47,7 @@ def section_class(name: str) -> type[Section]:
     return annotation if isinstance(annotation, type) else get_args(annotation)[0]
 
 
-def _sentence(problem: dict) -> str:
+def _sentence(problem: Any) -> str:
     if problem["type"] == "missing":
         return _missing(problem["loc"])
     if problem["type"] == "extra_forbidden":
@@ -64,14 +64,14 @@ def _missing(loc: tuple) -> str:
     return f"{section}.{key} is missing; add it under [{section}]: {_expected(section, key)}"
 
 
-def _own(loc: tuple, found, said: str) -> str:
+def _own(loc: tuple, found: object, said: str) -> str:
     """A problem found by a rule of the schema: the rule says it, the key and the value are put in front."""
     if len(loc) == 1:
         return f"[{loc[0]}] {said}"
     return f"{_dotted(loc)} = {shown(found)} {said}"
 
 
-def _wrong_kind(loc: tuple, found) -> str:
+def _wrong_kind(loc: tuple, found: object) -> str:
     if len(loc) == 1:
         return f"{loc[0]} = {shown(found)} stands where the section [{loc[0]}] is expected; make it a table"
     section, key = loc[:2]
@@ -98,7 +98,7 @@ def _expected(section: str, key: str) -> str:
     return "a text in quotes" + (" of a-z, 0-9, - and _" if key == "id" else "")
 
 
-def _kind(annotation) -> str:
+def _kind(annotation: Any) -> str:
     number = "an integer" if "int" in str(annotation) else "a number"
     return f"a list, each entry {number}" if "uple" in str(annotation) else number
 
@@ -106,7 +106,7 @@ def _kind(annotation) -> str:
 # ------------------------------------------------------------------------------------- unknown keys
 
 
-def _unknown(loc: tuple, found) -> str:
+def _unknown(loc: tuple, found: object) -> str:
     if len(loc) == 1:
         return _unknown_section(loc[0])
     section, key = loc[:2]
@@ -129,7 +129,7 @@ def _unknown_section(name: str) -> str:
     return f"section [{name}] is unknown; the sections are {', '.join(Study.model_fields)}"
 
 
-def _wrong_unit(section: str, key: str, meant: str, found) -> str:
+def _wrong_unit(section: str, key: str, meant: str, found: object) -> str:
     unit, right = split_unit(key)[1], split_unit(meant)[1]
     if not unit:
         return f"{section}.{key} = {shown(found)} lacks its unit; write {meant}, the value in {right}"
@@ -141,7 +141,7 @@ def _wrong_unit(section: str, key: str, meant: str, found) -> str:
     return f"{section}.{key} = {shown(found)} is in {unit}, but this is read in {right}; write {write}"
 
 
-def _in_unit(found, unit: str, right: str) -> str:
+def _in_unit(found: object, unit: str, right: str) -> str:
     number = isinstance(found, (int, float)) and not isinstance(found, bool) and converted(found, unit, right)
     return f"<value in {right}>" if number is False or number is None else f"{number:.6g}"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vehicle.damping import DamperCurve, added, bounded
 from vehicle.errors import VehicleError, require_not_negative, require_positive
@@ -21,7 +22,7 @@ class ForceSpeedLimit:
     speed: tuple[float, ...]
     force: tuple[float, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         v, f = np.array(self.speed, dtype=float), np.array(self.force, dtype=float)
         sound = v.shape == f.shape and v.size >= 2 and np.isfinite(v).all() and np.isfinite(f).all()
         if not (sound and v[0] == 0 and (np.diff(v) > 0).all() and (f >= 0).all()):
@@ -30,7 +31,7 @@ class ForceSpeedLimit:
                 f"{v.size} speeds and {f.size} forces; correct the table"
             )
 
-    def at(self, velocity):
+    def at(self, velocity: ArrayLike) -> np.ndarray:
         """Largest force [N] at these velocities [m/s]."""
         return np.interp(np.abs(velocity), self.speed, self.force, right=0.0)
 
@@ -50,7 +51,7 @@ class Actuator:
     viscous_friction: float = 0.0
     breakaway_speed: float = 5e-3
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_not_negative(
             "actuator",
             equivalent_mass=self.equivalent_mass,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.signal import bilinear, lfilter
 
 # Numerator and denominator in descending powers of s, thesis eq. 3.23 (fit by Zuo and Nayfeh).
 WEIGHTING = ((80.03, 989.0, 0.02108), (1.0, 78.92, 2412.0, 5614.0))
 
 
-def weighting_gain(frequency):
+def weighting_gain(frequency: ArrayLike) -> np.ndarray:
     """|H_2631| at these frequencies [Hz]; within 15 % of the standard's W_k between 0.5 and 2 Hz."""
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
     numerator, denominator = WEIGHTING

@@ -6,9 +6,9 @@ each ``capped`` at the regenerative damping.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 
@@ -32,7 +32,7 @@ class DamperCurve:
     force: tuple[float, ...]
     source: str
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         v, f = np.array(self.velocity, dtype=float), np.array(self.force, dtype=float)
         if v.ndim != 1 or v.shape != f.shape or v.size < 2 or not (np.isfinite(v).all() and np.isfinite(f).all()):
             raise VehicleError(
@@ -52,9 +52,9 @@ class DamperCurve:
                 "never a force along the motion; correct the table"
             )
 
-    def at(self, velocity):
+    def at(self, velocity: float | np.ndarray) -> np.ndarray:
         """Force [N] at these velocities [m/s], any shape."""
-        return np.interp(velocity, self.velocity, self.force)
+        return np.asarray(np.interp(velocity, self.velocity, self.force))
 
     @property
     def steepest(self) -> float:
@@ -87,10 +87,11 @@ def linear_damper(damping: float, name: str, fastest: float = 10.0) -> DamperCur
 
 def mixed(*, rebound: DamperCurve, bump: DamperCurve, name: str = "mixed") -> DamperCurve:
     """One curve in rebound, another one in bump (thesis, text to Table 3.4)."""
-    points = [(v, f) for v, f in zip(bump.velocity, bump.force) if v < 0] + [(0.0, 0.0)]
-    points += [(v, f) for v, f in zip(rebound.velocity, rebound.force) if v > 0]
+    points = [(v, f) for v, f in zip(bump.velocity, bump.force, strict=True) if v < 0] + [(0.0, 0.0)]
+    points += [(v, f) for v, f in zip(rebound.velocity, rebound.force, strict=True) if v > 0]
     source = f"rebound of '{rebound.name}', bump of '{bump.name}'"
-    return DamperCurve(name, *zip(*points, strict=True), source)
+    velocity, force = zip(*points, strict=True)
+    return DamperCurve(name, velocity, force, source)
 
 
 def capped(curve: DamperCurve, maximum_damping: float) -> DamperCurve:
@@ -103,7 +104,9 @@ def capped(curve: DamperCurve, maximum_damping: float) -> DamperCurve:
     return bounded(curve, lambda v: maximum_damping * np.abs(v), (0.0,), f"F/v up to {maximum_damping:g} Ns/m")
 
 
-def bounded(curve: DamperCurve, bound: Callable, knots: tuple[float, ...], note: str) -> DamperCurve:
+def bounded(
+    curve: DamperCurve, bound: Callable[[np.ndarray], np.ndarray], knots: tuple[float, ...], note: str
+) -> DamperCurve:
     """The curve with |F| <= bound(v); exact, since the points where the two cross are added.
 
     bound: force [N] over velocity, straight between the knots [m/s]

@@ -24,7 +24,7 @@ class Tyre:
 
     stiffness: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive("tyre", stiffness=self.stiffness)
 
 
@@ -36,7 +36,7 @@ class EndStops:
     rebound: float
     stiffness: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.bump < 0 < self.rebound:
             raise VehicleError(
                 f"end stops: bump must be below and rebound above the static position, found {self.bump:g} and "
@@ -63,7 +63,7 @@ class Axle:
     tyre: Tyre
     stops: EndStops = NO_STOPS
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive(
             "axle",
             sprung_mass=self.sprung_mass,
@@ -97,8 +97,16 @@ class Vehicle:
     sprung_mass: float
     pitch_inertia: float
     cog_height: float
-    axles: tuple[Axle, ...]
-    passive_dampers: tuple[DamperCurve, ...]
+
+    @property
+    def axles(self) -> tuple[Axle, ...]:
+        """All axles, front first."""
+        raise NotImplementedError
+
+    @property
+    def passive_dampers(self) -> tuple[DamperCurve, ...]:
+        """Curves of all axles but the last."""
+        raise NotImplementedError
 
     @property
     def actuated(self) -> Axle:
@@ -161,7 +169,7 @@ class Motorcycle(Vehicle):
     rear: Axle
     front_damper: DamperCurve
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive("motorcycle", sprung_mass=self.sprung_mass, pitch_inertia=self.pitch_inertia)
         require_positive("motorcycle", cog_height=self.cog_height)
         carried = self.front.sprung_mass + self.rear.sprung_mass
@@ -218,9 +226,8 @@ class QuarterCar(Vehicle):
 
     pitch_inertia = 1.0  # never turned: the axle lies under the centre of gravity
     cog_height = 0.0  # propulsion does not act on it
-    passive_dampers = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive(
             "quarter car",
             sprung_mass=self.sprung_mass,
@@ -233,6 +240,10 @@ class QuarterCar(Vehicle):
     def axles(self) -> tuple[Axle, ...]:
         tyre = Tyre(self.tyre_stiffness)
         return (Axle(0.0, self.sprung_mass, self.unsprung_mass, self.spring_stiffness, tyre, self.stops),)
+
+    @property
+    def passive_dampers(self) -> tuple[DamperCurve, ...]:
+        return ()
 
     @property
     def natural_frequencies(self) -> np.ndarray:

@@ -5,10 +5,12 @@ A state is an array (2, 2 + n, runs): coordinates (body height, pitch, wheel hei
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import ceil
-from typing import NamedTuple, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vehicle.damping import DamperCurve
 from vehicle.errors import VehicleError
@@ -24,7 +26,7 @@ class Hinges:
     curves: one for each entry of the velocities, (axles, runs)
     """
 
-    def __init__(self, curves: Sequence[Sequence[DamperCurve]]):
+    def __init__(self, curves: Sequence[Sequence[DamperCurve]]) -> None:
         terms = [[_hinge_terms(curve) for curve in row] for row in curves]
         most = max(len(knots) for row in terms for _, knots, _ in row)
         self.slope = np.array([[slope for slope, *_ in row] for row in terms])
@@ -41,7 +43,7 @@ class Hinges:
         return self.slope * velocity + np.add.reduce(ramps)
 
 
-def _hinge_terms(curve: DamperCurve):
+def _hinge_terms(curve: DamperCurve) -> tuple[float, np.ndarray, np.ndarray]:
     """Slope next to rest, below it where they differ; inner knots; changes of slope at them, away from rest."""
     v, f = np.array(curve.velocity), np.array(curve.force)
     slopes, knots = np.diff(f) / np.diff(v), v[1:-1]
@@ -53,7 +55,7 @@ def _padded(values: np.ndarray, length: int) -> np.ndarray:
     return np.pad(values, (0, length - len(values)))
 
 
-def _stacked(values) -> np.ndarray:
+def _stacked(values: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
     """(axles, runs, knots) as (knots, axles, runs)."""
     return np.moveaxis(np.array(values, dtype=float).reshape(len(values), len(values[0]), -1), -1, 0)
 
@@ -67,7 +69,7 @@ class ClippedSum:
     ramps of dampers on one side, tyres where the wheel leaves the road. Every row is exactly zero at rest.
     """
 
-    def __init__(self, motion: Motion):
+    def __init__(self, motion: Motion) -> None:
         axles = range(len(motion.unsprung))
         rows = [row for axle in axles for row in _suspension_rows(motion, axle)]
         rows += [_tyre_row(motion, axle) for axle in axles]  # last, where the road is taken off
@@ -89,13 +91,17 @@ class ClippedSum:
         return self._push @ pieces
 
 
-def _suspension_rows(motion: Motion, axle: int) -> list[tuple]:
+# C, low, high, o, w, P of one row of a clipped sum; scalars or one number a run.
+_Row = tuple[np.ndarray, ArrayLike, ArrayLike, ArrayLike, ArrayLike, np.ndarray]
+
+
+def _suspension_rows(motion: Motion, axle: int) -> list[_Row]:
     """(C, low, high, o, w, P) of spring, stops and damper of one axle; they pull body and wheel together."""
     stretch, nothing = motion.strokes[axle], np.zeros(motion.strokes.shape[1])
     stroke, rate = np.concatenate([stretch, nothing]), np.concatenate([nothing, stretch])
     pull = _push_on_wheel(motion, axle)
     pull[:2] = motion.to_body[:, axle]
-    rows = [(stroke, -np.inf, np.inf, 0.0, motion.spring[axle, 0], pull)]
+    rows: list[_Row] = [(stroke, -np.inf, np.inf, 0.0, motion.spring[axle, 0], pull)]
     bump, rebound, stiffness = (column[axle, 0] for column in (motion.bump, motion.rebound, motion.stop))
     for low, high, end in ((rebound, np.inf, rebound), (-np.inf, bump, bump)):
         if stiffness > 0 and np.isfinite(end):
@@ -107,7 +113,7 @@ def _suspension_rows(motion: Motion, axle: int) -> list[tuple]:
     return rows
 
 
-def _tyre_row(motion: Motion, axle: int) -> tuple:
+def _tyre_row(motion: Motion, axle: int) -> _Row:
     """The same of a tyre: on the wheel alone, at most its static load is missing."""
     height = np.zeros(2 * motion.strokes.shape[1])
     height[2 + axle] = 1.0
@@ -150,7 +156,13 @@ class Motion:
     dampers: curve of each axle and run, (axles, runs); equivalent_mass [kg] and propulsion F_prop [N]: (runs,)
     """
 
-    def __init__(self, vehicle: Vehicle, dampers: Sequence[Sequence[DamperCurve]], equivalent_mass, propulsion):
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        dampers: Sequence[Sequence[DamperCurve]],
+        equivalent_mass: ArrayLike,
+        propulsion: ArrayLike,
+    ) -> None:
         axles = vehicle.axles
         self.vehicle = vehicle
         self.strokes = vehicle.stretch_matrix
@@ -194,7 +206,7 @@ class Motion:
         """Force of the equivalent mass [N], (runs,), from the derivative that ``derivative`` gives."""
         return self.equivalent_mass * self._relative_acceleration(state, change)
 
-    def _add_inertia(self, state, change):
+    def _add_inertia(self, state: np.ndarray, change: np.ndarray) -> None:
         """F = m w / (1 + m mu) for the relative acceleration w without the mass and the mobility mu [1/kg]."""
         vehicle, lever = self.vehicle, self.position[-1] * np.cos(state[0, 1])
         mobility = 1 / vehicle.sprung_mass + lever**2 / vehicle.pitch_inertia + 1 / vehicle.actuated.unsprung_mass
@@ -203,13 +215,13 @@ class Motion:
         change[1, 1] -= lever * force / vehicle.pitch_inertia
         change[1, -1] += force / vehicle.actuated.unsprung_mass
 
-    def _relative_acceleration(self, state, change):
+    def _relative_acceleration(self, state: np.ndarray, change: np.ndarray) -> np.ndarray:
         pitch, rate = state[0, 1], state[1, 1]
         turning = np.cos(pitch) * change[1, 1] - np.sin(pitch) * rate**2
         return change[1, 0] + self.position[-1] * turning - change[1, -1]
 
     @staticmethod
-    def _vertical(state):
+    def _vertical(state: np.ndarray) -> np.ndarray:
         """Heights and their rates: sine of the pitch in the place of the angle."""
         heights = state.copy()
         np.sin(state[0, 1], out=heights[0, 1])
@@ -238,7 +250,7 @@ class Motion:
         return float(max(damped.max(), sprung.max()))
 
 
-def _column(values) -> np.ndarray:
+def _column(values: Iterable[float]) -> np.ndarray:
     return np.array([[value] for value in values], dtype=float)
 
 
@@ -263,7 +275,7 @@ def integrate(motion: Motion, road: np.ndarray, step: float) -> np.ndarray:
     return states
 
 
-def _runge_kutta(motion: Motion, state, road, rise, step):
+def _runge_kutta(motion: Motion, state: np.ndarray, road: np.ndarray, rise: np.ndarray, step: float) -> np.ndarray:
     middle = road + rise / 2
     first = motion.derivative(state, road)
     second = motion.derivative(state + step / 2 * first, middle)

@@ -74,7 +74,7 @@ class LqrWeights:
     stroke: float
     wheel: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive("LQR weights", stroke=self.stroke, wheel=self.wheel)
 
 
@@ -88,7 +88,9 @@ def lqr_gain(car: QuarterCar, weights: LqrWeights) -> np.ndarray:
     return (b.T @ solve_continuous_are(a, b, q, r) / r)[0]
 
 
-def lqr_problem(car: QuarterCar, weights: LqrWeights):
+def lqr_problem(
+    car: QuarterCar, weights: LqrWeights
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A_x, B_x, Q, R of the Riccati equation (4.20-4.24)."""
     a, b, _, _ = state_space(car)
     a_x = TO_STROKE_STATES @ a @ np.linalg.inv(TO_STROKE_STATES)

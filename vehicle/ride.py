@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Callable, Iterator, Sequence
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from vehicle.models import Vehicle
 from vehicle.motion import AxleForces, Motion, integrate
 from vehicle.road import FlatRoad, Road
 
+Kept = TypeVar("Kept")
 _MOST_TOGETHER = 64  # runs in one integration, which bounds the memory
 BALANCE_TOLERANCE = 5e-3  # of the energy that went through the vehicle
 
@@ -36,7 +38,7 @@ class Scenario:
     longitudinal: float = 0.0
     time_step: float = 1e-3
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         owner = f"scenario '{self.name}'"
         require_not_negative(owner, speed=self.speed)
         require_positive(owner, duration=self.duration, time_step=self.time_step)
@@ -133,24 +135,24 @@ def simulate(runs: Sequence[Run]) -> list[RideHistory]:
     return simulate_and_keep(lambda history: history, runs)
 
 
-def simulate_and_keep(what: Callable[[RideHistory], object], runs: Sequence[Run]) -> list:
+def simulate_and_keep(what: Callable[[RideHistory], Kept], runs: Sequence[Run]) -> list[Kept]:
     """``what(history)`` of every run, in their order; the histories themselves are let go.
 
     Runs of the same vehicle, duration and time step are integrated together, which costs little more than one.
     Raises VehicleError when a suspension is faster than its damper curve knows, the energy balance is off by more than
     0.5 %, or the motion has no bounds.
     """
-    found: dict[int, object] = {}
+    found: dict[int, Kept] = {}
     order = sorted(range(len(runs)), key=lambda k: _kind(runs, k))
-    for _, alike in groupby(order, key=lambda k: _kind(runs, k)):
-        alike = list(alike)
+    for _, group in groupby(order, key=lambda k: _kind(runs, k)):
+        alike = list(group)
         for first in range(0, len(alike), _MOST_TOGETHER):
             numbers = alike[first : first + _MOST_TOGETHER]
             found |= zip(numbers, map(what, _together([runs[k] for k in numbers])), strict=True)
     return [found[k] for k in range(len(runs))]
 
 
-def _kind(runs: Sequence[Run], number: int) -> tuple:
+def _kind(runs: Sequence[Run], number: int) -> tuple[int, float, float]:
     """What runs must share to be integrated together; the vehicle by its first place in the list."""
     run = runs[number]
     vehicle = next(k for k, other in enumerate(runs) if other.vehicle == run.vehicle)
@@ -210,7 +212,9 @@ def _history(run: Run, time: np.ndarray, road: np.ndarray, states: np.ndarray) -
     return history
 
 
-def _balance(motion: Motion, time: np.ndarray, state, road, forces: AxleForces) -> EnergyBalance:
+def _balance(
+    motion: Motion, time: np.ndarray, state: np.ndarray, road: np.ndarray, forces: AxleForces
+) -> EnergyBalance:
     """Works by the trapezoidal rule over the history."""
     dissipated = np.trapezoid(forces.damper * forces.rate, time)
     lift = -(forces.tyre[:, 1:] + forces.tyre[:, :-1]) / 2 * np.diff(road)

@@ -67,7 +67,7 @@ class IsoRoad(Road):
     sample_time: float = 1e-3
     cutoff_wavelength: float = CUTOFF_WAVELENGTH
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         require_positive(
             "road",
             roughness=self.roughness,
@@ -119,7 +119,7 @@ class ObstacleShape:
     height: tuple[float, ...]
     source: str
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         x, h = np.array(self.distance, dtype=float), np.array(self.height, dtype=float)
         sound = x.shape == h.shape and x.size >= 3 and np.isfinite(x).all() and np.isfinite(h).all()
         if not (sound and x[0] == 0 and (np.diff(x) > 0).all() and h[0] == h[-1] == 0 and np.abs(h).max() == 1):
@@ -147,7 +147,7 @@ class Obstacle(Road):
     shape: ObstacleShape
     amplitude: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (np.isfinite(self.amplitude) and self.amplitude != 0):
             raise VehicleError(
                 f"obstacle: needs an amplitude other than zero, found {self.amplitude:g}; give metres above "

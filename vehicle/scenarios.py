@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from collections.abc import Sequence
 
+from units import FACTORS, MILLIMETRE
 from vehicle.damping import DamperCurve
 from vehicle.errors import require_positive
 from vehicle.indices import RideSummary, summary
 from vehicle.models import Vehicle
 from vehicle.ride import Run, Scenario, simulate_and_keep
 from vehicle.road import IsoRoad, Obstacle, ObstacleShape
-from units import FACTORS, MILLIMETRE
 
 RANDOM_ROAD = "random road"
 OBSTACLE_STEP = 2.5e-4  # s; flanks last some milliseconds and end stops act as long

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import sqrt
-from typing import Callable, Sequence
 
 import numpy as np
 from scipy.linalg import expm, solve_continuous_lyapunov
@@ -76,7 +76,7 @@ def _covariance_of_step(ride: LinearRide, step: float) -> np.ndarray:
 
 
 def _indices(ride: LinearRide, covariance: np.ndarray) -> RideIndices:
-    def root(row):
+    def root(row: np.ndarray) -> float:
         return sqrt(max(row @ covariance @ row, 0.0))
 
     return RideIndices(

@@ -27,6 +27,8 @@ def read_columns(path: Path, *names: str) -> tuple[tuple[float, ...], ...]:
 
 
 def _lines(path: Path) -> list[str]:
+    if not Path(path).is_file():  # a named pipe would be waited for
+        raise VehicleError(f"{path}: cannot be read, there is no such file; give the path of a CSV file")
     try:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -34,7 +36,7 @@ def _lines(path: Path) -> list[str]:
     return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
-def _number(path: Path, number: int, row: dict, name: str) -> float:
+def _number(path: Path, number: int, row: dict[str, str], name: str) -> float:
     try:
         value = float(row[name])
     except (TypeError, ValueError):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Sequence
 
 import numpy as np
 import xarray as xr
@@ -60,10 +60,10 @@ def traces(names: Sequence[str], histories: Sequence[RideHistory | Trace], until
     kept = slice(None) if until is None else slice(0, int(np.searchsorted(time, until, side="right")))
     names_of_one = ("stroke", "velocity", "actuator_force")
     single = {name: [getattr(one, name)[kept] for one in histories] for name in names_of_one}
-    data = {name: (("run", "time"), np.array(rows)) for name, rows in single.items()}
-    data["tyre_loads"] = (("run", "wheel", "time"), np.array([one.tyre_loads[:, kept] for one in histories]))
-    data["road"] = (("wheel", "time"), road[:, kept])
-    return Traces(tuple(names), xr.Dataset(data, {"time": time[kept]}))
+    loads = np.array([one.tyre_loads[:, kept] for one in histories])
+    data = xr.Dataset({name: (("run", "time"), np.array(rows)) for name, rows in single.items()})
+    data = data.assign(tyre_loads=(("run", "wheel", "time"), loads), road=(("wheel", "time"), road[:, kept]))
+    return Traces(tuple(names), data.assign_coords(time=time[kept]))
 
 
 def road_histories(histories: Sequence[RideHistory]) -> xr.Dataset:

@@ -5,35 +5,14 @@ Temperatures stay in degrees Celsius (names end in ``_T``) and frequencies in he
 
 from __future__ import annotations
 
-from math import pi
+from typing import Final
 
+import units
+from units import DEGREE, RPM
 from workbench.errors import WorkbenchError
 
-# unit as written -> factor to the unit used inside
-FACTORS: dict[str, float] = {
-    "1": 1.0, "percent": 1e-2,
-    "m": 1.0, "mm": 1e-3, "um": 1e-6, "cm": 1e-2,
-    "rad": 1.0, "deg": pi / 180, "mrad": 1e-3,
-    "rpm": pi / 30, "rad_per_s": 1.0, "deg_per_s": pi / 180,
-    "Hz": 1.0, "kHz": 1e3,
-    "s": 1.0, "ms": 1e-3,
-    "m_per_s": 1.0, "mm_per_s": 1e-3,
-    "V": 1.0, "mV": 1e-3, "kV": 1e3,
-    "A": 1.0, "mA": 1e-3,
-    "ohm": 1.0, "mohm": 1e-3, "kohm": 1e3, "Ohm": 1.0, "mOhm": 1e-3,
-    "Nm": 1.0, "mNm": 1e-3,
-    "N": 1.0, "kN": 1e3, "mN": 1e-3,
-    "Vs": 1.0, "mVs": 1e-3, "Wb": 1.0, "mWb": 1e-3,
-    "H": 1.0, "mH": 1e-3, "uH": 1e-6,
-    "W": 1.0, "kW": 1e3, "mW": 1e-3,
-    "kg": 1.0, "g": 1e-3, "kg_m2": 1.0,
-    "T": 1.0, "mT": 1e-3,
-    "Ns_per_m": 1.0, "kNs_per_m": 1e3, "Nms_per_rad": 1.0,
-    "N_per_A": 1.0, "Vs_per_m": 1.0, "Nm_per_A": 1.0, "N_per_m": 1.0,
-    "degC": 1.0, "K": 1.0, "per_K": 1.0, "percent_per_K": 1e-2,
-}  # fmt: skip
-
-_LONGEST_FIRST = sorted(FACTORS, key=len, reverse=True)
+# What columns have beyond the one table: pure numbers, and differences of temperature.
+FACTORS: Final[dict[str, float]] = {**units.FACTORS, "1": 1.0, "K": 1.0}
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -41,10 +20,8 @@ def split_unit(name: str) -> tuple[str, str]:
 
     The unit T is read from a name only as ``mT``: ``magnet_T`` is a temperature.
     """
-    for unit in _LONGEST_FIRST:
-        if unit not in ("T", "1") and name.endswith("_" + unit):
-            return name[: -len(unit) - 1], unit
-    return name, ""
+    quantity, unit = units.split_unit(name)
+    return (name, "") if unit == "T" else (quantity, unit)
 
 
 def factor(unit: str, where: str) -> float:
@@ -62,9 +39,9 @@ def factor(unit: str, where: str) -> float:
 def for_people(name: str) -> tuple[str, float]:
     """Unit in which people read a condition, and the factor from the unit used inside."""
     if "angle" in name or name == "phase":
-        return "deg", 180 / pi
+        return "deg", 1 / DEGREE
     if name == "speed":
-        return "rpm", 30 / pi
+        return "rpm", 1 / RPM
     for ending, unit in _UNITS_INSIDE.items():
         if name == ending or name.startswith(ending + "_"):
             return unit, 1.0

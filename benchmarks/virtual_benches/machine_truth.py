@@ -6,9 +6,9 @@ field solutions of the very machine at the very angles and currents.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Mapping, Sequence
 
 import numpy as np
 

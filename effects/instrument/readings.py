@@ -6,9 +6,10 @@ Columns are named by patterns: "v_*" is every phase voltage. ``readings`` are re
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fnmatch import fnmatch
 from functools import cache
-from typing import Callable, ClassVar
+from typing import ClassVar
 
 import numpy as np
 

@@ -1,86 +1,149 @@
-"""What an actuator can do: a linear flux map against closed forms, and remedies that remedy."""
+"""What an actuator can do: a linear flux map against closed forms, and batches of designs against single ones."""
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import inf, sqrt
 
 import numpy as np
 import pytest
-import xarray as xr
+from tests.drivetrain.linear_machine import AREA, END, LENGTH, POLES, PSI, RHO, STRANDS, TURNS, closed_form, per_turn
 
-from drivetrain.capability import ActuatorDesign, Requirement, levers_of, remedies
-from electrical.resistance import phase_resistance
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine, torque_speed_envelope
+from drivetrain.asked import (
+    ActiveLength,
+    ContinuousEffort,
+    Diameter,
+    EquivalentMass,
+    LowSpeedDamping,
+    PeakEffort,
+    PeakEffortAtRest,
+    PeakPower,
+    PhaseCurrent,
+    RotorSpeed,
+)
+from drivetrain.capability import ActuatorDesign, together
+from drivetrain.output import Shaft, Wheel
+from drivetrain.remedies import (
+    DIRECT_DRIVE_LEVERS,
+    ActiveLengthLever,
+    TransmissionLever,
+    TurnsLever,
+    VoltageLever,
+    remedies,
+)
+from electrical.dq import DriveLimits, torque_speed_envelope
+from units import FACTORS
 
-PSI, L_D, L_Q, POLES = 5e-3, 4e-6, 4e-6, 5  # per turn and metre: Wb, H, H; without saliency
-TURNS, STRANDS, AREA, LENGTH, END, RHO = 8, 20, 0.2e-6, 0.04, 0.016, 1.7e-8
-
-
-def flux_map(reach=1500.0):
-    i = np.linspace(-reach, reach, 9)
-    d, q = np.meshgrid(i, i, indexing="ij")
-    tables = {"psi_d": (("id", "iq"), PSI + L_D * d), "psi_q": (("id", "iq"), L_Q * q)}
-    data = xr.Dataset(tables, {"id": i, "iq": i}, {"pole_pairs": POLES})
-    return data.expand_dims(angle=[0.0])
+AMPERES = sqrt(2) * 20e6 * AREA * STRANDS
+EVERY = (PeakEffortAtRest(1.0), PeakEffort(1.0, 2.0), PeakPower(1.0, 3.0), ContinuousEffort(1.0), LowSpeedDamping(1.0),
+         RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0), Diameter(1.0, 0.1))  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def design():
     return ActuatorDesign(
-        flux_map=flux_map(), turns=TURNS, strands=STRANDS, wire_area=AREA, resistivity=RHO, coils_in_series=4,
-        active_length=LENGTH, end_turn_length=END, nominal_density=6e6, overload_density=20e6, dc_voltage=48.0,
-        transmission_ratio=2e-3, stator_outer_radius=0.04, rotor_outer_radius=0.016, density=7800.0, gearbox_mass=0.7,
-        other_mass=2.0, gearbox_inertia=2e-6,
+        per_turn=per_turn(), peak_torque_per_length=1.5 * POLES * PSI * AMPERES * TURNS, turns=TURNS, strands=STRANDS,
+        wire_area=AREA, resistivity=RHO, coils_in_series=4, active_length=LENGTH, end_turn_length=END,
+        nominal_density=6e6, overload_density=20e6, dc_voltage=48.0, transmission_ratio=2e-3,
+        rotor_inertia_per_length=8e-4, gearbox_inertia=2e-6,
     )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def plain():
-    scale = TURNS * LENGTH
-    resistance = phase_resistance(
-        turns=TURNS, strands=STRANDS, wire_area=AREA, active_length=LENGTH, end_turn_length=END, coils_in_series=4,
-        resistivity=RHO,
-    )  # fmt: skip
-    return SynchronousMachine(POLES, scale * PSI, TURNS * scale * L_D, TURNS * scale * L_Q, resistance)
-
-
-def test_forces_are_those_of_the_constant_parameters(design, plain):
-    current = sqrt(2) * 20e6 * AREA * STRANDS
-    assert design.force_peak == pytest.approx(1.5 * POLES * plain.psi_m * current / 2e-3, rel=1e-6)
-    assert design.force_continuous == pytest.approx(design.force_peak * 6 / 20, rel=1e-6)
+def test_efforts_are_those_of_the_constant_parameters(design):
+    plain = closed_form()
+    assert design.effort_peak == pytest.approx(1.5 * POLES * plain.psi_m * AMPERES / 2e-3, rel=1e-9)
+    assert design.effort_continuous == pytest.approx(design.effort_peak * 6 / 20, rel=1e-6)
     speed = np.array([0.5, 2.0, 4.0])
-    limits = DriveLimits.from_dc_bus(current, 48.0)
-    expected = torque_speed_envelope(plain, limits, speed / 2e-3).torque / 2e-3
-    assert design.force_at(speed) == pytest.approx(np.nan_to_num(expected), rel=1e-4)
+    expected = torque_speed_envelope(plain, DriveLimits.from_dc_bus(AMPERES, 48.0), speed / 2e-3).torque / 2e-3
+    assert design.effort_over(speed) == pytest.approx(np.nan_to_num(expected), rel=1e-4)
+    assert design.effort_at(-2.0) == pytest.approx(expected[1], rel=1e-4)
 
 
-def test_damping_mass_and_inertia_are_their_formulas(design, plain):
+def test_the_envelope_at_rest_is_the_stated_peak(design):
+    assert design.effort_at(0.0) == pytest.approx(design.effort_peak, rel=1e-6)
+
+
+def test_damping_and_inertia_are_their_formulas(design):
+    plain = closed_form()
     constant = 1.5 * POLES * plain.psi_m
-    assert design.regenerative_damping == pytest.approx(2 * constant**2 / (3 * plain.resistance * 4e-6), rel=1e-6)
-    assert design.mass == pytest.approx(7800 * pi * 0.04**2 * LENGTH + 2.7)
-    rotor = 7800 * pi * 0.016**2 * LENGTH * 0.016**2 / 2  # m R^2 / 2
-    assert design.equivalent_mass == pytest.approx((rotor + 2e-6) / 4e-6)
+    assert design.low_speed_damping == pytest.approx(2 * constant**2 / (3 * plain.resistance * 4e-6), rel=1e-6)
+    assert design.equivalent_mass == pytest.approx((8e-4 * LENGTH + 2e-6) / 4e-6)
+    assert design.phase_current_rms == pytest.approx(AMPERES / sqrt(2))
+
+
+@pytest.mark.parametrize("requirement", EVERY, ids=lambda one: type(one).__name__)
+def test_a_batch_reads_as_its_designs_do(design, requirement):
+    longer, rewound = replace(design, active_length=0.06), TurnsLever().moved(design, 5.0)
+    several = [design, longer, rewound, replace(design, dc_voltage=30.0), replace(design, transmission_ratio=3e-3)]
+    batch = np.broadcast_to(requirement.reached(together(several)), len(several))
+    assert batch == pytest.approx([float(requirement.reached(one)) for one in several], rel=1e-9)
+
+
+# ---- requirements ---------------------------------------------------------------------------------------------------
+
+
+def test_margins_on_both_sides(design):
+    least = PeakEffortAtRest(0.8 * design.effort_peak).check(design)
+    most = ActiveLength(0.8 * LENGTH).check(design)
+    assert least.holds and least.margin == pytest.approx(0.25)
+    assert not most.holds and most.margin == pytest.approx(-0.25)
+
+
+@pytest.mark.parametrize("requirement", EVERY[:5], ids=lambda one: type(one).__name__)
+def test_nothing_asked_for_holds_without_a_division(design, requirement):
+    check = replace(requirement, needed=0.0).check(design)
+    assert check.holds and check.margin == inf
+
+
+def test_words_and_units_are_those_of_the_output():
+    wheel, shaft = Wheel(), Shaft()
+    assert PeakEffort(1.0, 1.64).name(wheel) == "peak force at 1.64 m/s"
+    assert PeakEffort(1.0, 100 * FACTORS["rpm"]).name(shaft) == "peak torque at 100 rpm"
+    assert PeakEffort(1.0, 2500 * FACTORS["rpm"]).name(shaft) == "peak torque at 2500 rpm"
+    for one in EVERY:
+        assert one.unit(wheel) in FACTORS and one.unit(shaft) in FACTORS
+        assert "force" not in one.name(shaft) and "wheel" not in one.name(shaft)
+
+
+# ---- remedies -------------------------------------------------------------------------------------------------------
+
+
+def found_by(design, *requirements):
+    """Remedies by the lever's type."""
+    checks = [one.check(design) for one in requirements]
+    return {type(one.lever): one for one in remedies(design, checks)}
 
 
 def test_a_remedy_is_the_least_that_helps(design):
-    needed = 1.2 * design.force_peak
-    wanted = Requirement("peak force", needed, lambda d: d.force_peak)
-    short = Requirement("active length", 1.1 * LENGTH, lambda d: d.active_length, at_most=True)
-    found = {one.lever.name: one for one in remedies(design, (wanted, short))}
-    assert found["active length"].value == pytest.approx(1.2 * LENGTH, rel=5e-3)
-    assert found["active length"].fails_then == ("active length",)
-    assert found["transmission ratio"].value == pytest.approx(2e-3 / 1.2, rel=5e-3)
-    assert found["bus voltage"].value is None  # voltage does nothing at rest
-    moved = levers_of(design)[0].moved(design, found["active length"].value)
+    wanted, short = PeakEffortAtRest(1.2 * design.effort_peak), ActiveLength(1.1 * LENGTH)
+    found = found_by(design, wanted, short)
+    assert found[ActiveLengthLever].value == pytest.approx(1.2 * LENGTH, rel=5e-3)
+    assert found[ActiveLengthLever].fails_then == (short,)
+    assert found[TransmissionLever].value == pytest.approx(2e-3 / 1.2, rel=5e-3)
+    assert found[VoltageLever].value is None  # voltage does nothing at rest
+    moved = ActiveLengthLever().moved(design, found[ActiveLengthLever].value)
     assert wanted.check(moved).holds and not wanted.check(design).holds
 
 
+def test_remedies_at_speed_are_those_of_one_search_after_the_other(design):
+    wanted = PeakEffort(1.1 * float(design.effort_at(3.0)), 3.0)
+    for one in found_by(design, wanted).values():
+        assert one.value is None or wanted.check(one.lever.moved(design, one.value)).holds
+        back = None if one.value is None else one.now * (one.value / one.now) ** 0.95
+        assert back is None or not wanted.check(one.lever.moved(design, back)).holds
+
+
 def test_rewinding_keeps_the_copper_and_trades_voltage_for_current(design):
-    half = levers_of(design)[3].moved(design, TURNS / 2)
+    half = TurnsLever().moved(design, TURNS / 2)
     assert half.turns * half.strands == pytest.approx(TURNS * STRANDS)
-    assert half.force_peak == pytest.approx(design.force_peak, rel=1e-6)
-    assert half.limits.current_peak == pytest.approx(2 * design.limits.current_peak)
-    assert half.force_at(3.0)[0] == pytest.approx(replace(design, dc_voltage=96.0).force_at(3.0)[0], rel=1e-4)
+    assert half.effort_peak == pytest.approx(design.effort_peak, rel=1e-6)
+    assert half.phase_current_rms == pytest.approx(2 * design.phase_current_rms)
+    assert half.effort_at(3.0) == pytest.approx(replace(design, dc_voltage=96.0).effort_at(3.0), rel=1e-4)
 
 
 def test_what_holds_needs_no_remedy(design):
-    assert remedies(design, (Requirement("peak force", 0.5 * design.force_peak, lambda d: d.force_peak),)) == ()
+    assert found_by(design, PeakEffortAtRest(0.5 * design.effort_peak)) == {}
+
+
+def test_a_direct_drive_keeps_its_ratio(design):
+    checks = [PeakEffortAtRest(1.2 * design.effort_peak).check(design)]
+    moved = {type(one.lever) for one in remedies(design, checks, DIRECT_DRIVE_LEVERS)}
+    assert TransmissionLever not in moved and ActiveLengthLever in moved

@@ -1,10 +1,21 @@
 """Length curves of the constraints and the sentences of their violations."""
 
+from dataclasses import replace
+from math import inf
+
 import numpy as np
 import pytest
 
-from drivetrain.constraints import LengthLimit, NominalForce, OverloadForce, SpeedLimit, winding_damping
+from drivetrain.constraints import (
+    LengthLimit,
+    NominalForce,
+    OverloadForce,
+    PlanetClearance,
+    SpeedLimit,
+    largest_stage_ratio,
+)
 from drivetrain.match import bound_constraints, damping_constraint, force_constraints, linear_overload
+from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
 RATIO = 2.3 * MILLIMETRE
@@ -48,7 +59,7 @@ def test_minimum_length_gives_exactly_the_requirement(thesis, damping, ratio):
 
 def test_damping_curve_equals_the_machine_it_stands_for(thesis, damping):
     """Eq. 3.92 against eqs 3.75-3.82 of a machine with explicit turns."""
-    turns, copper = 7, 0.3 * thesis.section.half_slot_area
+    turns, copper = 7, 0.3 * thesis.section.coil_side_area
     current = np.sqrt(2) * 6e6 * copper / turns
     torque_constant = 50.0 * LENGTH / current
     resistance = 2 * (LENGTH + damping.end_turn_length) * thesis.loading.resistivity * 4 * turns**2 / copper
@@ -97,3 +108,20 @@ def test_force_sentences_name_the_missing_newtons():
 def test_linear_overload_is_a_proportion():
     assert linear_overload(50.0, 6.0, 20.0) == pytest.approx(500 / 3)
     assert linear_overload(55.66, 6.0, 20.0) / 145.6 > 1.2  # field solution at 20 A/mm^2 RMS
+
+
+def test_no_damping_asks_for_no_length(damping):
+    none = replace(damping, damping=0.0)
+    assert none.minimum_length(RATIO) == 0 and none.violation(RATIO, LENGTH) is None
+    assert none.minimum_length(np.array([1e-3, 2e-3])).tolist() == [0.0, 0.0]
+    assert none.capability(RATIO, LENGTH) == damping.capability(RATIO, LENGTH)
+
+
+def test_planets_bound_the_ratio_of_a_stage():
+    """Three clear each other below 14.93; two always do; the bound is where the pitch circles touch."""
+    assert largest_stage_ratio(3) == pytest.approx(14.93, abs=0.005) and largest_stage_ratio(2) == inf
+    one_stage = PlanetClearance(1, 3, 0.170)
+    assert one_stage.minimum_ratio() == pytest.approx(0.170 / 14.93, rel=1e-3)
+    assert PlanetClearance(2, 3, 0.170).minimum_ratio() == pytest.approx(0.170 / 14.93**2, rel=1e-3)
+    assert "3 planets overlap at a stage ratio of 42.50" in one_stage.violation(4e-3, LENGTH)
+    assert one_stage.violation(12e-3, LENGTH) is None

@@ -9,8 +9,9 @@ from scipy.optimize import differential_evolution
 
 from drivetrain.four_bar import FourBar, LinkageError, SwingArm, from_lengths
 from drivetrain.linkage_choice import BestAngles, Knee, SmallestRatio
-from drivetrain.linkage_front import GeneticSettings, non_dominated, pareto_front, standing
+from drivetrain.linkage_front import GeneticSettings, pareto_front, standing
 from drivetrain.linkage_problem import CONSTRAINTS, Box, Limits, LinkageProblem, Travel
+from drivetrain.pareto import non_dominated
 from units import DEGREE, MILLIMETRE
 
 MM = MILLIMETRE

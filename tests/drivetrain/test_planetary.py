@@ -28,12 +28,12 @@ def disc(diameter, width):
 
 
 def kinetic_energy(shape, width, carrier_speed):
-    """Sun, three planets that roll inside the fixed ring, solid carrier; speeds from rolling contacts alone."""
+    """Sun and planets that roll inside the fixed ring, solid carrier; speeds from rolling contacts alone."""
     centre_velocity = carrier_speed * shape.carrier_diameter / 2
     planet_speed = -centre_velocity / (shape.planet_diameter / 2)  # no slip at the fixed ring
     sun_speed = 2 * centre_velocity / (shape.sun_diameter / 2)  # far side of the rolling planet
     planet_mass, planet_inertia = disc(shape.planet_diameter, width)
-    planets = 3 * (planet_mass * centre_velocity**2 + planet_inertia * planet_speed**2) / 2
+    planets = shape.planets * (planet_mass * centre_velocity**2 + planet_inertia * planet_speed**2) / 2
     sun = disc(shape.sun_diameter, width)[1] * sun_speed**2 / 2
     return sun + planets + disc(shape.carrier_diameter, width)[1] * carrier_speed**2 / 2
 
@@ -46,9 +46,10 @@ def test_wheels_fit_into_the_ring(ratio):
     assert 1 + shape.ring_diameter / shape.sun_diameter == pytest.approx(ratio, rel=1e-14)
 
 
+@pytest.mark.parametrize("planets", [2, 3, 5])
 @pytest.mark.parametrize("ratio", RATIOS)
-def test_inertia_holds_the_kinetic_energy(ratio):
-    stage = PlanetaryStage(StageShape(ratio, 72 * MILLIMETRE), 9 * MILLIMETRE, 85 * MILLIMETRE, STEEL)
+def test_inertia_holds_the_kinetic_energy(ratio, planets):
+    stage = PlanetaryStage(StageShape(ratio, 72 * MILLIMETRE, planets), 9 * MILLIMETRE, 85 * MILLIMETRE, STEEL)
     energy = kinetic_energy(stage.shape, stage.face_width, carrier_speed=3.7)
     assert stage.inertia_at_carrier * 3.7**2 / 2 == pytest.approx(energy, rel=1e-12)
 

@@ -19,6 +19,7 @@ SLOT = dict(
     slot_bottom_radius=(42.5 - 3.3) * MILLIMETRE,
     tooth_width=5.5 * MILLIMETRE,
 )
+TOOTH_COIL = SLOT | {"coil_pitch": 1}
 WIRE_AREA = pi * 0.25**2 * SQUARE_MILLIMETRE
 PRINTED_WINDING = dict(
     turns=7, strands=22, wire_area=WIRE_AREA, active_length=41 * MILLIMETRE, coils_in_series=4,
@@ -27,12 +28,32 @@ PRINTED_WINDING = dict(
 
 
 def test_end_turn_keeps_the_shoe():
-    assert end_turn_length(**SLOT) == pytest.approx(16.30 * MILLIMETRE, abs=0.01 * MILLIMETRE)
+    assert end_turn_length(**TOOTH_COIL) == pytest.approx(16.30 * MILLIMETRE, abs=0.01 * MILLIMETRE)
 
 
 def test_end_turn_without_the_shoe_is_the_printed_equation():
-    bare = SLOT | {"shoe_top_radius": (15.7 + 0.5) * MILLIMETRE}
+    bare = TOOTH_COIL | {"shoe_top_radius": (15.7 + 0.5) * MILLIMETRE}
     assert end_turn_length(**bare) == pytest.approx(15.72 * MILLIMETRE, abs=0.01 * MILLIMETRE)
+
+
+@pytest.mark.physics
+def test_a_distributed_coil_has_the_end_turn_over_its_slots():
+    """Two poles in 12 slots: a pitch of three is a quarter of the circumference at mid slot, 45.8 mm, and half a circle
+    over it 71.9 mm, where a tooth coil has 16.3 mm."""
+    quarter = 2 * pi * (SLOT["shoe_top_radius"] + SLOT["slot_bottom_radius"]) / 2 / 4
+    assert end_turn_length(**SLOT, coil_pitch=3) == pytest.approx(pi / 2 * quarter, rel=1e-14)
+    assert end_turn_length(**SLOT, coil_pitch=3) == pytest.approx(71.9 * MILLIMETRE, abs=0.1 * MILLIMETRE)
+
+
+def test_the_end_turn_of_a_distributed_coil_grows_with_its_pitch():
+    one, two, three = (end_turn_length(**SLOT, coil_pitch=pitch) for pitch in (1, 2, 3))
+    assert one < two < three
+    assert three - two == pytest.approx(two / 2, rel=1e-14)
+
+
+def test_a_coil_without_pitch_is_refused():
+    with pytest.raises(ValueError, match="one slot pitch or more"):
+        end_turn_length(**SLOT, coil_pitch=0)
 
 
 def test_centre_distance_spans_the_tooth_and_half_a_slot():
@@ -44,17 +65,17 @@ def test_centre_distance_spans_the_tooth_and_half_a_slot():
 
 def test_a_slot_without_depth_is_refused():
     with pytest.raises(ValueError, match="no depth"):
-        end_turn_length(**SLOT | {"slot_bottom_radius": 19 * MILLIMETRE})
+        end_turn_length(**TOOTH_COIL | {"slot_bottom_radius": 19 * MILLIMETRE})
 
 
 @pytest.mark.parametrize("tooth_width", [0.0, 20 * MILLIMETRE])
 def test_a_tooth_that_does_not_fit_is_refused(tooth_width):
     with pytest.raises(ValueError, match="tooth width"):
-        end_turn_length(**SLOT | {"tooth_width": tooth_width})
+        end_turn_length(**TOOTH_COIL | {"tooth_width": tooth_width})
 
 
 def test_phase_to_phase_resistance_of_the_printed_winding():
-    resistance = phase_resistance(**PRINTED_WINDING, end_turn_length=end_turn_length(**SLOT))
+    resistance = phase_resistance(**PRINTED_WINDING, end_turn_length=end_turn_length(**TOOTH_COIL))
     assert 2 * resistance == pytest.approx(25.0 * MILLIOHM, abs=0.2 * MILLIOHM)
 
 
@@ -76,7 +97,8 @@ def test_both_forms_of_the_resistance_agree_with_a_single_resistivity():
 
 def test_warm_copper_closes_the_gap_to_the_printed_resistance():
     warm = PRINTED_WINDING | {"resistivity": copper_resistivity(45.0)}
-    assert 2 * phase_resistance(**warm, end_turn_length=end_turn_length(**SLOT)) == pytest.approx(27.4e-3, rel=0.01)
+    resistance = phase_resistance(**warm, end_turn_length=end_turn_length(**TOOTH_COIL))
+    assert 2 * resistance == pytest.approx(27.4e-3, rel=0.01)
 
 
 def test_copper_resistivity():

@@ -8,10 +8,11 @@ import pytest
 import xarray as xr
 from scipy.io import loadmat
 
-from electrical import flux_map_limits, synchronous_machine
+from electrical import dq
+from electrical.dq import DriveLimits
 from electrical.flux_map_export import flux_tables, write_mat, write_npz
 from electrical.flux_map_machine import FluxMapMachine, FluxMapMachineError
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine
+from electrical.synchronous_machine import SynchronousMachine
 
 PLAIN = SynchronousMachine(5, 7.5e-3, 85e-6, 95e-6, 14e-3)  # a small surface-magnet machine, R counted
 BURIED = SynchronousMachine(4, 0.05, 0.4e-3, 1.1e-3, 0.05)
@@ -48,7 +49,7 @@ SPEEDS = np.linspace(0.0, 1600.0, 33)
 
 @pytest.fixture(scope="module")
 def envelope():
-    return flux_map_limits.torque_speed_envelope(MACHINE, LIMITS, SPEEDS)
+    return dq.torque_speed_envelope(MACHINE, LIMITS, SPEEDS)
 
 
 def fine_currents(points=41):
@@ -159,15 +160,15 @@ def test_apparent_exceeds_incremental_inductance_in_saturation():
 def test_linear_limit(machine, limits):
     """A linear map is the constant-parameter machine: MTPA, base speed, envelope."""
     mapped = linear(machine, limits.current_peak)
-    base = synchronous_machine.base_speed(machine, limits)
+    base = dq.base_speed(machine, limits)
     speed = np.linspace(0.0, 4.0, 17) * base
-    ours = flux_map_limits.torque_speed_envelope(mapped, limits, speed)
-    theirs = synchronous_machine.torque_speed_envelope(machine, limits, speed)
+    ours = dq.torque_speed_envelope(mapped, limits, speed)
+    theirs = dq.torque_speed_envelope(machine, limits, speed)
     assert ours.torque == pytest.approx(theirs.torque, rel=1e-6, nan_ok=True)
     assert ours.i_d == pytest.approx(theirs.i_d, abs=2e-4 * limits.current_peak, nan_ok=True)
-    assert flux_map_limits.base_speed(mapped, limits) == pytest.approx(base, rel=1e-6)
-    mtpa = synchronous_machine.mtpa_currents(machine, 90.0)
-    assert flux_map_limits.mtpa_currents(mapped, 90.0) == pytest.approx(mtpa, abs=1e-3)
+    assert dq.base_speed(mapped, limits) == pytest.approx(base, rel=1e-6)
+    mtpa = dq.mtpa_currents(machine, 90.0)
+    assert dq.mtpa_currents(mapped, 90.0) == pytest.approx(mtpa, abs=1e-3)
 
 
 def test_constant_parameters_of_a_linear_map():
@@ -194,15 +195,15 @@ def test_envelope_keeps_both_limits(envelope):
 
 
 def test_constant_torque_ends_at_the_base_speed():
-    base = flux_map_limits.base_speed(MACHINE, LIMITS)
-    full = MACHINE.torque(*flux_map_limits.mtpa_currents(MACHINE, CURRENT))
-    below, above = flux_map_limits.torque_speed_envelope(MACHINE, LIMITS, base * np.array([0.999, 1.01])).torque
+    base = dq.base_speed(MACHINE, LIMITS)
+    full = MACHINE.torque(*dq.mtpa_currents(MACHINE, CURRENT))
+    below, above = dq.torque_speed_envelope(MACHINE, LIMITS, base * np.array([0.999, 1.01])).torque
     assert below == pytest.approx(full, rel=1e-9)
     assert above < full * (1 - 1e-5)
 
 
 def test_mtpa_is_where_the_torque_has_no_slope_along_the_circle():
-    i_d, i_q = flux_map_limits.mtpa_currents(MACHINE, np.array([30.0, 80.0, CURRENT]))
+    i_d, i_q = dq.mtpa_currents(MACHINE, np.array([30.0, 80.0, CURRENT]))
     assert np.hypot(i_d, i_q) == pytest.approx([30.0, 80.0, CURRENT])
     for turn in (-0.01, 0.01):
         c, s = np.cos(turn), np.sin(turn)
@@ -212,7 +213,7 @@ def test_mtpa_is_where_the_torque_has_no_slope_along_the_circle():
 @pytest.mark.physics
 def test_mtpv_without_resistance_has_torque_stationary_along_the_flux_circle():
     lossless = replace(MACHINE, resistance=0.0)
-    i_d, i_q = flux_map_limits.mtpv_currents(lossless, LIMITS.voltage_peak, np.array([1200.0, 1500.0]))
+    i_d, i_q = dq.mtpv_currents(lossless, LIMITS.voltage_peak, np.array([1200.0, 1500.0]), lossless.reach)
     assert np.all(np.isfinite(i_d))
     psi = np.array(lossless.flux_linkage(i_d, i_q))
     assert np.hypot(*psi) == pytest.approx(LIMITS.voltage_peak / (5 * np.array([1200.0, 1500.0])), rel=1e-6)
@@ -231,9 +232,9 @@ def test_power_balance_has_no_loss_but_copper(envelope):
 
 def test_a_limit_beyond_the_map_is_refused():
     with pytest.raises(FluxMapMachineError, match="current limit of .* leaves the map"):
-        flux_map_limits.torque_speed_envelope(MACHINE, DriveLimits(2 * CURRENT, 20.0), SPEEDS)
+        dq.torque_speed_envelope(MACHINE, DriveLimits(2 * CURRENT, 20.0), SPEEDS)
     with pytest.raises(FluxMapMachineError, match="current limit of .* leaves the map"):
-        flux_map_limits.mtpa_currents(MACHINE, 2 * CURRENT)
+        dq.mtpa_currents(MACHINE, 2 * CURRENT)
 
 
 # ---- winding --------------------------------------------------------------------------------------------------------

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from electrical import synchronous_machine
-from electrical.flux_map_limits import torque_speed_envelope
+from electrical.dq import DriveLimits, operating_map, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
-from electrical.flux_map_operating import operating_map
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine
+from electrical.synchronous_machine import SynchronousMachine
 
 PLAIN = SynchronousMachine(5, 7.5e-3, 85e-6, 95e-6, 14e-3)
 LIMITS = DriveLimits(120.0, 27.7)
@@ -18,11 +16,11 @@ TORQUE, SPEED = np.linspace(0.0, 6.4, 17), np.linspace(0.0, 1400.0, 15)
 def plane():
     i = np.linspace(-130.0, 130.0, 15)
     machine = FluxMapMachine(5, i, i, *PLAIN.flux_linkage(*np.meshgrid(i, i, indexing="ij")), PLAIN.resistance)
-    return machine, operating_map(machine, LIMITS, TORQUE, SPEED)
+    return machine, operating_map(machine, LIMITS, TORQUE[:, None], SPEED)
 
 
 def test_currents_are_those_of_the_constant_parameters(plane):
-    expected = synchronous_machine.operating_map(PLAIN, LIMITS, TORQUE[:, None], SPEED[None, :])
+    expected = operating_map(PLAIN, LIMITS, TORQUE[:, None], SPEED[None, :])
     both = np.isfinite(expected.i_q) & np.isfinite(plane[1].i_q)
     assert both.sum() > 150 and (np.isfinite(expected.i_q) == np.isfinite(plane[1].i_q)).mean() > 0.97
     assert plane[1].current_peak[both] == pytest.approx(expected.current_peak[both], rel=5e-3, abs=0.1)

@@ -6,9 +6,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from electrical.synchronous_machine import (
+from electrical.dq import (
     DriveLimits,
-    SynchronousMachine,
     base_speed,
     corner_speed,
     maximum_power,
@@ -17,6 +16,7 @@ from electrical.synchronous_machine import (
     power_at_base_speed,
     torque_speed_envelope,
 )
+from electrical.synchronous_machine import SynchronousMachine
 from units import RPM
 
 CURRENT = sqrt(2) * 20e6 * pi * 0.25e-3**2 * 22  # A peak, 22 wires of 0.5 mm at 20 A/mm^2 RMS

@@ -1,23 +1,27 @@
 """Choice of turns and wires with the thesis's inputs, and the rules of the choice."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
 
+from electrical.dq import DriveLimits, base_speed, peak_torque
+from electrical.flux_map_machine import FluxMapMachine, FluxMapMachineError
 from electrical.resistance import COPPER_RESISTIVITY_20
+from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_selection import (
     PerTurnMachine,
-    Wire,
     WindingError,
     WindingLimits,
     WindingRequirement,
+    Wire,
     evaluate_windings,
     feasible_pairs,
     required_base_speed,
     select_winding,
     winding_requirement,
+    with_maximum_power,
 )
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, RPM, SQUARE_MILLIMETRE
 
@@ -25,24 +29,13 @@ WIRE = Wire(0.5 * MILLIMETRE, COPPER_RESISTIVITY_20)
 OVERLOAD = 20 * AMPERE_PER_SQUARE_MILLIMETRE
 AMPERE_TURNS = sqrt(2) * OVERLOAD * WIRE.area * 7 * 22
 LENGTH = 41 * MILLIMETRE
+FLUX, INDUCTANCE = 6 / LENGTH / (7.5 * AMPERE_TURNS), 84e-6 / 49 / LENGTH  # per turn (squared) and metre
 THESIS = PerTurnMachine(  # 6 Nm from 41 mm at 7 x 22 wires; 84 uH per phase; flux that of the overload
-    pole_pairs=5,
+    dq=SynchronousMachine(5, FLUX, INDUCTANCE, INDUCTANCE, 0.0),
     coils_in_series=4,
-    half_slot_area=98.2 * SQUARE_MILLIMETRE,
+    coil_side_area=98.2 * SQUARE_MILLIMETRE,
     active_length=LENGTH,
     end_turn_length=16.305 * MILLIMETRE,
-    flux_linkage=6 / LENGTH / (7.5 * AMPERE_TURNS),
-    inductance_d=84e-6 / 49 / LENGTH,
-    inductance_q=84e-6 / 49 / LENGTH,
-    overload_torque=6 / LENGTH,
-    overload_ampere_turns=AMPERE_TURNS,
-)
-FIELD = replace(  # field solution of the drawn machine, k_cp J = 0.3 x 20 A/mm^2 RMS
-    THESIS,
-    half_slot_area=100.45 * SQUARE_MILLIMETRE,
-    flux_linkage=0.029508,
-    overload_torque=145.6,
-    overload_ampere_turns=sqrt(2) * OVERLOAD * 0.3 * 100.45 * SQUARE_MILLIMETRE,
 )
 LIMITS = WindingLimits(
     packing_limit=0.3, packing_tolerance=0.04, overload_current_density=OVERLOAD, dc_voltage=48.0,
@@ -99,7 +92,8 @@ def test_only_what_is_missed_is_called_relaxed():
     "turns, strands, rms, peak, base_rpm, power", [(7, 22, 86.4, 122.2, 4311, 2690), (4, 39, 153.2, 216.6, 7624, 4750)]
 )
 def test_numbers_of_the_thesis_windings(turns, strands, rms, peak, base_rpm, power):
-    winding = evaluate_windings(THESIS, WIRE, LIMITS, ((turns, strands),))[0]
+    windings = evaluate_windings(THESIS, WIRE, LIMITS, ((turns, strands),))
+    winding = with_maximum_power(THESIS, WIRE, LIMITS, windings)[0]
     assert winding.current_rms == pytest.approx(rms, abs=0.05)
     assert winding.current_peak == pytest.approx(peak, abs=0.05)
     assert winding.base_speed / RPM == pytest.approx(base_rpm, rel=0.04)
@@ -118,7 +112,8 @@ def test_electrical_data_of_the_chosen_winding(limited_choice):
 def test_packing_of_the_printed_windings_on_both_slot_areas():
     pairs = ((7, 22), (4, 39))
     narrow = [w.packing for w in evaluate_windings(THESIS, WIRE, LIMITS, pairs)]
-    drawn = [w.packing for w in evaluate_windings(FIELD, WIRE, LIMITS, pairs)]
+    larger = replace(THESIS, coil_side_area=100.45 * SQUARE_MILLIMETRE)
+    drawn = [w.packing for w in evaluate_windings(larger, WIRE, LIMITS, pairs)]
     assert narrow == pytest.approx([0.308, 0.312], abs=5e-4)
     assert drawn == pytest.approx([0.301, 0.305], abs=5e-4)
 
@@ -154,34 +149,20 @@ def test_more_turns_cost_base_speed_and_save_current():
     assert np.all(np.diff([w.base_speed for w in windings]) < 0)
     assert np.all(np.diff([w.current_rms for w in windings]) < 0)
     assert [w.peak_torque for w in windings] == pytest.approx([windings[0].peak_torque] * 4, rel=1e-12)
-    ideal = [w.maximum_power * w.turns for w in windings]  # 1.5 psi V / L, less the copper loss
+    powers = with_maximum_power(THESIS, WIRE, LIMITS, windings)
+    ideal = [w.maximum_power * w.turns for w in powers]  # 1.5 psi V / L, less the copper loss
     assert ideal == pytest.approx([ideal[0]] * 4, rel=0.05)
 
 
-def test_flux_runs_from_no_load_to_overload_through_the_field_solution():
-    density = np.array([6.0, 8.485, 12.0, 16.97, 20.0, 28.28])  # A/mm^2 peak
-    torque = np.array([39.72, 55.66, 76.92, 103.0, 116.5, 145.6])  # Nm/m, field solution
-    ampere_turns = density * 1e6 * 0.3 * FIELD.half_slot_area
-    ours = 1.5 * 5 * FIELD.flux_linkage_at(ampere_turns) * ampere_turns
-    assert ours == pytest.approx(torque, rel=0.015)
-    assert ours[-1] == pytest.approx(torque[-1], rel=1e-3)
-
-
-def test_torque_constants_of_the_field_solution():
-    winding = evaluate_windings(FIELD, WIRE, LIMITS, ((7, 22),))[0]
-    assert winding.no_load_torque_constant == pytest.approx(63e-3, rel=0.01)
-    assert winding.torque_constant == pytest.approx(49.1e-3, rel=0.005)
-
-
 def test_the_winding_hands_on_its_machine(limited_choice):
-    machine = limited_choice.chosen.machine(pole_pairs=5)
+    machine = limited_choice.chosen.constant_parameters(pole_pairs=5)
     chosen = limited_choice.chosen
     assert machine.torque_constant == pytest.approx(chosen.torque_constant, rel=1e-12)
     assert machine.torque(0.0, chosen.current_peak) == pytest.approx(chosen.peak_torque, rel=1e-12)
 
 
 def test_a_missed_peak_torque_is_said():
-    short = replace(FIELD, active_length=36 * MILLIMETRE)
+    short = replace(THESIS, active_length=36 * MILLIMETRE)
     assert "below the peak force requirement" in select_winding(short, WIRE, LIMITS, REQUIREMENT).reason
 
 
@@ -198,17 +179,33 @@ def test_a_current_limit_below_every_winding_is_refused():
 
 def test_a_wire_thicker_than_the_slot_is_refused():
     with pytest.raises(WindingError, match="does not fit"):
-        feasible_pairs(THESIS.half_slot_area, Wire(8 * MILLIMETRE, COPPER_RESISTIVITY_20), LIMITS)
+        feasible_pairs(THESIS.coil_side_area, Wire(8 * MILLIMETRE, COPPER_RESISTIVITY_20), LIMITS)
 
 
-def test_an_overload_flux_above_no_load_is_refused():
-    with pytest.raises(WindingError, match="RMS ampere-turns"):
-        replace(THESIS, overload_ampere_turns=AMPERE_TURNS / sqrt(2))
+def test_more_ampere_turns_than_the_map_holds_are_refused():
+    i = np.linspace(-0.9, 0.9, 9) * AMPERE_TURNS
+    small = FluxMapMachine(5, i, i, *THESIS.dq.flux_linkage(*np.meshgrid(i, i, indexing="ij")), 0.0)
+    with pytest.raises(FluxMapMachineError, match="leaves the map"):
+        select_winding(replace(THESIS, dq=small), WIRE, LIMITS, REQUIREMENT)
 
 
-def test_far_more_ampere_turns_than_the_field_solution_are_refused():
-    with pytest.raises(WindingError, match="ampere-turns"):
-        select_winding(FIELD, WIRE, replace(LIMITS, packing_limit=0.5), REQUIREMENT)
+@pytest.mark.physics
+def test_a_linear_map_values_windings_as_its_constant_parameters_do():
+    """Turns scale currents, voltages and resistances in the same way whichever describes one turn and one metre."""
+    salient = SynchronousMachine(5, FLUX, 0.8 * INDUCTANCE, 1.3 * INDUCTANCE, 0.0)
+    i = np.linspace(-1.3, 1.3, 15) * AMPERE_TURNS
+    mapped = FluxMapMachine(5, i, i, *salient.flux_linkage(*np.meshgrid(i, i, indexing="ij")), 0.0)
+    pairs = ((4, 39), (7, 22), (11, 14))
+    plain, field = (
+        with_maximum_power(one, WIRE, LIMITS, evaluate_windings(one, WIRE, LIMITS, pairs))
+        for one in (replace(THESIS, dq=salient), replace(THESIS, dq=mapped))
+    )
+    for ours, theirs in zip(field, plain, strict=True):
+        assert asdict(ours) == pytest.approx(asdict(theirs), rel=1e-6)
+        machine = theirs.constant_parameters(5)
+        limits = DriveLimits.from_dc_bus(theirs.current_peak, LIMITS.dc_voltage)
+        assert base_speed(machine, limits) == pytest.approx(theirs.base_speed, rel=1e-9)
+        assert peak_torque(machine, limits) == pytest.approx(theirs.peak_torque, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Files: .vtu and back, the scene, the report, and looking into the fields of a study."""
 
 import base64
+from pathlib import Path
 import json
 import re
 
@@ -25,7 +26,7 @@ from figures.scene import render_scene
 from figures.style import new_figure
 from figures.whole_field import whole_field
 from pipeline import inspect_fields
-from pipeline.stage import StageError
+from pipeline.results import ResultsError
 
 
 @pytest.fixture(scope="module")
@@ -125,10 +126,10 @@ def test_report_reads_from_top_to_bottom(tmp_path):
 
 
 def test_picture_from_a_file_is_the_file(tmp_path):
-    path = tmp_path / "one.png"
-    path.write_bytes(b"\x89PNG picture")
-    assert Picture(path, "").source == Picture(b"\x89PNG picture", "").source
-    assert base64.b64decode(Picture(path, "").source.split(",")[1]) == b"\x89PNG picture"
+    (tmp_path / "one.png").write_bytes(b"\x89PNG picture")
+    source = Picture("one.png", "").source(tmp_path)
+    assert source == Picture(b"\x89PNG picture", "").source(Path())
+    assert base64.b64decode(source.split(",")[1]) == b"\x89PNG picture"
 
 
 @pytest.mark.parametrize(
@@ -183,13 +184,13 @@ def test_files_where_there_is_no_window(field, tmp_path, capsys):
 
 
 def test_fields_of_a_study(half_machine, tmp_path):
-    with pytest.raises(StageError, match="no fields to look at yet"):
+    with pytest.raises(ResultsError, match="no fields to look at yet"):
         inspect_fields.read_fields(tmp_path)
     write_vtu(tmp_path / "nominal.vtu", half_machine)
-    (tmp_path / ".half.part.vtu").write_text("being written")
+    (tmp_path / ".half.partxy.vtu").write_text("being written")
     assert list(inspect_fields.read_fields(tmp_path)) == ["nominal"]
     (tmp_path / "broken.vtu").write_text("broken")
-    with pytest.raises(StageError, match="broken.vtu is not a .vtu file.*make fields"):
+    with pytest.raises(ResultsError, match="broken.vtu is not a .vtu file.*make fields"):
         inspect_fields.read_fields(tmp_path)
 
 

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from matplotlib.text import Text
 
+from drivetrain.output import Wheel
 from figures.design_map import constrained_flux_density, design_map, design_maps, in_millimetres, select_optimum
 from figures.fits import QUANTITIES, fits, is_refused
 from figures.limits import limits
@@ -159,10 +160,9 @@ def test_mean_counts_the_repeated_sample_once():
 # ---- match ----------------------------------------------------------------------------------------------------------
 
 
-def matched(radius, ratio=2.3e-3, length=36e-3, cost=0.6):
-    section = SimpleNamespace(slots=12, stator_outer_radius=radius)
-    values = {"transmission_ratio": ratio, "active_length": length, "cost": SimpleNamespace(total=cost)}
-    return SimpleNamespace(section=section, ratio_bounds=(1.3e-3, 4.5e-3), **values)
+MATCHED = SimpleNamespace(
+    transmission_ratio=2.3e-3, active_length=36e-3, total_cost=0.6, ratio_bounds=(1.3e-3, 4.5e-3)
+)
 
 
 def test_match_curves_tell_enforced_from_reported(assert_readable):
@@ -176,7 +176,7 @@ def test_match_curves_tell_enforced_from_reported(assert_readable):
         cost=sum(terms.values()),
         **terms,
     )
-    figure = match_curves(curves, matched(42.5e-3), length_limit=70e-3)
+    figure = match_curves(curves, MATCHED, output=Wheel(), title="12 slots, Ø 85 mm", length_limit=70e-3)
     text = words(figure)
     assert "regenerative damping (not enforced)" in text and "overload force (not enforced)" not in text
     assert "2.30 mm/rad, 36.0 mm" in text and "transmission ratio / (mm/rad)" in text
@@ -187,11 +187,13 @@ def test_match_curves_tell_enforced_from_reported(assert_readable):
 
 
 def test_radius_without_a_match_stays_empty(assert_readable):
-    result = SimpleNamespace(radii=np.array([35e-3, 42.5e-3]), matches=(None, matched(42.5e-3)))
-    table = pd.concat([radius_table(12, "field", result), radius_table(12, "linear", result)])
+    numbers = {"transmission_ratio": 2.3e-3, "active_length": 36e-3, "cost": 0.6}
+    found = {name: np.array([np.nan, value]) for name, value in numbers.items()}
+    result = SimpleNamespace(radii=np.array([35e-3, 42.5e-3]), **found)
+    table = pd.concat([radius_table(12, "field", result, Wheel()), radius_table(12, "linear", result, Wheel())])
     assert table.stator_outer_radius_mm.tolist() == [35.0, 42.5] * 2
     assert table.cost.isna().tolist() == [True, False] * 2
-    figure = match_over_radius(table, best=best_row(12, "field", matched(42.5e-3)))
+    figure = match_over_radius(table, Wheel(), best=best_row(12, "field", 42.5e-3, MATCHED, Wheel()))
     assert "12 slots, overload torque scaled linearly" in words(figure) and "chosen" in words(figure)
     assert_readable(figure)
 
@@ -218,7 +220,7 @@ def test_maps_are_drawn_at_the_wheel(assert_readable):
     operating = SimpleNamespace(torque=torque, speed=speed, voltage_peak=current / 5, current_peak=current)
     point = WheelPoint("force peak", 1.6, -2614.0)
     limit = SimpleNamespace(voltage_peak=27.7, current_peak=122.0)
-    figure = force_velocity(operating, 2.3e-3, title="7 turns", required=(point,), limits=limit)
+    figure = force_velocity(operating, 2.3e-3, output=Wheel(), title="7 turns", required=(point,), limits=limit)
     axes = figure.axes[0]
     assert axes.get_xlabel() == "velocity at the wheel / (m/s)" and axes.get_ylabel() == "force at the wheel / kN"
     assert axes.get_xlim() == pytest.approx((-1500 * 2.3e-3, 1500 * 2.3e-3))

@@ -133,7 +133,7 @@ def test_one_and_three_stages(request_of, load):
 
 
 def test_a_ratio_that_no_teeth_give(request_of):
-    with pytest.raises(GearError, match="no tooth numbers with 3 equally spaced planets.*relax the ratio tolerance"):
+    with pytest.raises(GearError, match="no tooth numbers with 3 equally spaced planets.*widen gearbox.ratio_tolerance"):
         search(request_of(ratio_tolerance=1e-6, ratio=76.3, modules=(0.8 * MM,)))
 
 
@@ -183,5 +183,12 @@ def test_a_contact_ratio_that_spur_teeth_do_not_have(request_of):
 
 
 def test_a_ratio_below_two_a_stage(request_of):
-    with pytest.raises(GearError, match="have 1.73 each: use fewer stages"):
+    with pytest.raises(GearError, match="have 1.73 each: use fewer stages, match.gearbox_stages = 1"):
         request_of(ratio=3.0)
+    with pytest.raises(GearError, match="match.speed_max_rad_per_s.* or drive directly, match.gearbox_stages = 0"):
+        request_of(ratio=1.5, stage_count=1)
+
+
+def test_one_stage_for_a_ratio_of_two_is_sent_to_more_stages(request_of):
+    with pytest.raises(GearError, match="where 15.17 is the largest: use more stages, match.gearbox_stages = 2"):
+        search(request_of(stage_count=1))

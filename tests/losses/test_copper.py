@@ -6,20 +6,21 @@ from math import pi, sqrt
 import pytest
 
 from electrical.resistance import copper_resistivity
-from geometry.winding import star_of_slots
-from losses.copper import WoundMachine, copper_loss
+from electrical.wound_machine import WoundMachine
+from losses.copper import copper_loss
 from tests.losses.conftest import machine
 from units import MILLIMETRE, MILLIOHM
 
 WIRE = pi * (0.5 * MILLIMETRE) ** 2 / 4
-PRINTED = WoundMachine(machine(), star_of_slots(12, 5), 7, 22, WIRE, active_length=41 * MILLIMETRE)
+PRINTED = WoundMachine(machine(), 4, 1, 7, 22, WIRE, 41 * MILLIMETRE, copper_resistivity(20.0))
 
 
 @pytest.mark.reference
 def test_resistance_of_the_printed_winding():
     """24.96 mOhm phase to phase at 20 degC by eq. 3.82; the printed 27.4 mOhm is this copper at 45 degC."""
-    assert 2 * PRINTED.phase_resistance(copper_resistivity(20.0)) == pytest.approx(24.96 * MILLIOHM, rel=1e-3)
-    assert 2 * PRINTED.phase_resistance(copper_resistivity(44.9)) == pytest.approx(27.4 * MILLIOHM, rel=1e-3)
+    assert 2 * PRINTED.phase_resistance == pytest.approx(24.96 * MILLIOHM, rel=1e-3)
+    warm = replace(PRINTED, resistivity=copper_resistivity(44.9))
+    assert 2 * warm.phase_resistance == pytest.approx(27.4 * MILLIOHM, rel=1e-3)
 
 
 @pytest.mark.reference
@@ -34,13 +35,15 @@ def test_loss_of_the_printed_machine():
 def test_loss_is_current_density_squared_times_copper():
     """rho J^2 times the copper volume, end turns included: the same power by another route."""
     rho, j_rms = copper_resistivity(80.0), 6e6
-    peak = sqrt(2) * j_rms * 22 * WIRE
+    hot = replace(PRINTED, resistivity=rho)
+    peak = hot.current_peak(j_rms)
+    assert peak == pytest.approx(sqrt(2) * j_rms * 22 * WIRE)
     volume = 12 * 7 * 22 * WIRE * 2 * (PRINTED.active_length + PRINTED.end_turn_length)
-    assert copper_loss(PRINTED.phase_resistance(rho), 0.0, peak) == pytest.approx(rho * j_rms**2 * volume, rel=1e-12)
+    assert copper_loss(hot.phase_resistance, 0.0, peak) == pytest.approx(rho * j_rms**2 * volume, rel=1e-12)
 
 
 def test_end_turns():
     assert PRINTED.end_turn_length == pytest.approx(16.30 * MILLIMETRE, rel=1e-3)
     assert PRINTED.end_turn_share == pytest.approx(0.2845, rel=1e-3)
-    with pytest.raises(ValueError, match="pitch of 3"):
-        replace(PRINTED, layout=star_of_slots(36, 6, coil_pitch=3)).end_turn_length
+    distributed = replace(PRINTED, coil_pitch=3)
+    assert distributed.end_turn_length == pytest.approx(71.9 * MILLIMETRE, rel=1e-3)

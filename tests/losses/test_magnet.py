@@ -7,8 +7,8 @@ import pytest
 
 from losses.loci import Loci
 from losses.magnet import MagnetLoss, _piece_losses, magnet_loss, skin_depth
-from units import MILLIMETRE
 from tests.losses.conftest import phase
+from units import MILLIMETRE
 
 
 @pytest.mark.physics

@@ -5,13 +5,13 @@ from math import pi
 import numpy as np
 import pytest
 
+from electrical.dq import DriveLimits, operating_map
 from electrical.resistance import copper_resistivity
-from electrical.synchronous_machine import DriveLimits, SynchronousMachine, operating_map
-from geometry.winding import star_of_slots
-from losses.copper import WoundMachine
+from electrical.synchronous_machine import SynchronousMachine
+from electrical.wound_machine import WoundMachine
 from losses.iron import FrequencyTerms, iron_loss
 from losses.loci import HALF_WAVE, rotor_loci, stator_loci
-from losses.map import FieldLosses, current_point, field_losses, grid, loss_map, table_of
+from losses.map import FieldLosses, current_point, field_losses, grid, power_losses, table_of
 from magnetostatics.torque import arkkio_torque
 from materials.iron_loss import iron_loss_law
 from tests.losses.conftest import NOMINAL, PACKING, machine
@@ -20,7 +20,7 @@ from units import MILLIMETRE, RPM
 LAW = iron_loss_law("M235-35A")
 FREQUENCY = 5 * 4000 * RPM / (2 * pi)  # 333 Hz
 LENGTH = 41 * MILLIMETRE
-WOUND = WoundMachine(machine(), star_of_slots(12, 5), 7, 22, pi * (0.5 * MILLIMETRE) ** 2 / 4, LENGTH)
+WOUND = WoundMachine(machine(), 4, 1, 7, 22, pi * (0.5 * MILLIMETRE) ** 2 / 4, LENGTH, copper_resistivity(20.0))
 MOTOR = SynchronousMachine(5, 6.5e-3, 84e-6, 84e-6, 12.5e-3)
 LARGEST = 7 * 125.0
 
@@ -109,8 +109,7 @@ def plane(torque, rpm):
 
 def test_parts_of_the_map():
     """Copper by 3/2 R I^2, iron by length and frequency, at a point that is worked out here by hand."""
-    resistance = WOUND.phase_resistance(copper_resistivity(20.0))
-    found = loss_map(plane(3.0, 2000.0), WOUND, TABLE, resistance)
+    found = power_losses(plane(3.0, 2000.0), WOUND, TABLE)
     current, frequency = 3.0 / (1.5 * 5 * 6.5e-3), 5 * 2000 / 60
     assert found.copper == pytest.approx(1.5 * 12.4807e-3 * current**2, rel=1e-4)
     stator, rotor, magnet = planar(0.0, 7 * current).at(frequency)
@@ -121,15 +120,16 @@ def test_parts_of_the_map():
 
 
 def test_field_weakening_costs_copper():
-    low, high = (loss_map(plane(1.0, rpm), WOUND, TABLE, 12.5e-3) for rpm in (4000.0, 9000.0))
+    low, high = (power_losses(plane(1.0, rpm), WOUND, TABLE) for rpm in (4000.0, 9000.0))
     weakening = plane(1.0, 9000.0).i_d
-    assert weakening < -10 and high.copper - low.copper == pytest.approx(1.5 * 12.5e-3 * weakening**2, rel=1e-6)
-    unreachable = loss_map(plane(6.0, 9000.0), WOUND, TABLE, 12.5e-3)
+    more = 1.5 * WOUND.phase_resistance * weakening**2
+    assert weakening < -10 and high.copper - low.copper == pytest.approx(more, rel=1e-6)
+    unreachable = power_losses(plane(6.0, 9000.0), WOUND, TABLE)
     assert np.isnan(unreachable.total) and np.isnan(unreachable.efficiency)
 
 
 def test_efficiency_in_all_quadrants():
-    found = loss_map(plane(np.array([2.0, -2.0, 0.0, -1e-3]), 3000.0), WOUND, TABLE, 12.5e-3)
+    found = power_losses(plane(np.array([2.0, -2.0, 0.0, -1e-3]), 3000.0), WOUND, TABLE)
     motor, generator, idle, starved = found.efficiency
     assert 0.5 < generator < motor < 1  # the same loss out of the smaller of two powers
     assert np.isnan(idle) and np.isnan(starved)  # nothing comes out

@@ -12,6 +12,8 @@ from magnetostatics.flux_linkage import park
 from magnetostatics.flux_map import (
     CurrentGrid,
     FluxMapError,
+    _blend,
+    _order,
     dq_current,
     flux_and_torque,
     flux_map,
@@ -21,7 +23,6 @@ from magnetostatics.flux_map import (
     mirrored,
     operating_point,
 )
-from magnetostatics.flux_map import _blend, _order
 from magnetostatics.model import FieldModel, MachineMaterials, OperatingPoint
 from magnetostatics.newton import NewtonSettings
 from materials.library import load_steel

@@ -4,10 +4,13 @@ import re
 
 import pytest
 
-from study import convert_linkage, convert_vehicle
+from drivetrain.linkage_choice import SmallestRatio
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
-from study.read import STUDIES, check_study, read_study
+from study.inputs_linkage import installation_space, linkage_search, stated_linkage
+from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
+from study.read import STUDIES, read_study
+from study.usable import check_study
 from units import DEGREE
 from vehicle import thesis
 
@@ -33,29 +36,56 @@ def refusal(path):
 
 
 def test_the_motorcycle_is_that_of_the_thesis():
-    study = read_study("motorcycle")
-    assert convert_vehicle.to_vehicle(study) == thesis.motorcycle()
-    curves = convert_vehicle.to_damping(study)
-    assert [curve.name for curve in curves] == ["maximum", "minimum", "mixed"]
-    assert all(curve.largest_damping <= 40e3 * (1 + 1e-9) for curve in curves)
-    assert len(convert_vehicle.to_overload_scenarios(study)) == 101
+    case = ride_case(read_study("motorcycle"))
+    assert case.vehicle == thesis.motorcycle() and len(case.overload) == 101
+    assert [curve.name for curve in case.damping] == ["maximum", "minimum", "mixed"]
+    assert all(curve.largest_damping <= 40e3 * (1 + 1e-9) for curve in case.damping)
+    assert case.curves == thesis.motorcycle_damping() and case.maximum_damping == 40e3
 
 
 def test_the_quarter_car_is_that_of_the_thesis():
     study = read_study("automotive")
-    assert convert_vehicle.to_vehicle(study) == thesis.quarter_car()
-    assert convert_vehicle.to_overload_scenarios(study) == []
+    case = ride_case(study)
+    assert case.vehicle == thesis.quarter_car() and case.overload == ()
+    assert case.curves[:2] == thesis.quarter_car_damping(), "linear dampers, not the tables of the same name"
     assert drives(study) and not searches_linkage(study)
+
+
+def test_the_stated_requirements_are_those_of_the_thesis():
+    study = read_study("motorcycle")
+    found = stated_requirements(study)
+    assert requirements_beside(study).requirements == found
+    for name, printed in thesis.TABLE_3_7.items():
+        assert getattr(found, name) == pytest.approx(abs(printed), rel=1e-12), name
+
+
+def test_a_study_without_requirements_states_none():
+    study = read_study("automotive")
+    assert requirements_beside(study) is None
+    with pytest.raises(StudyError, match=r"section \[requirements\] is missing"):
+        stated_requirements(study)
+
+
+def test_no_regenerative_damping_may_be_asked_for(tmp_path):
+    old = "[requirements]\nmaximum_damping_kNs_per_m = 40.0"
+    found = stated_requirements(read_study(changed(tmp_path, old, old.replace("40.0", "0.0"))))
+    assert found.maximum_damping == 0 and found.force_peak == 2614
 
 
 def test_the_stated_linkage_has_its_printed_ratio():
     """Table 3.9 with the axle below the pivot: 170 mm/rad."""
     study = read_study("motorcycle")
-    linkage = convert_linkage.to_stated_linkage(study.linkage)
-    assert linkage.motion([0.0]).transmission_ratio[0] == pytest.approx(0.170, abs=5e-4)
-    problem = convert_linkage.to_linkage_problem(study)
-    assert problem.travel.lowest == pytest.approx(-0.020) and problem.limits.angle_window == pytest.approx(50 * DEGREE)
-    assert convert_linkage.to_stated_linkage(read_study("automotive").linkage) is None
+    search = linkage_search(study)
+    assert search.stated.motion([0.0]).transmission_ratio[0] == pytest.approx(0.170, abs=5e-4)
+    assert search.problem.travel.lowest == pytest.approx(-0.020)
+    assert search.problem.limits.angle_window == pytest.approx(50 * DEGREE)
+    assert search.rule == SmallestRatio(1.116) and search.settings.seeds == (1, 2, 3, 4)
+    assert installation_space(study).radius_max == pytest.approx(0.060)
+
+
+def test_ratios_may_be_stated_without_hardpoints():
+    found = stated_linkage(read_study("automotive"))
+    assert (found.ratio_nominal, found.ratio_max, found.envelope_radius_max) == (0.115, 0.115, None)
 
 
 WRONG = {

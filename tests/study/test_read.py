@@ -10,23 +10,16 @@ import pytest
 from drivetrain.planetary import NITRIDED_STEEL
 from geometry.machine import ParallelMagnetisation, RadialMagnetisation
 from study.check import summary
-from study.convert import (
-    to_actuator_requirements,
-    to_copper_loading,
-    to_cost_scales,
-    to_gearbox_design,
-    to_machine,
-    to_match_limits,
-    to_mesh_density,
-    to_winding_limits,
-    to_winding_requirement,
-    to_wire,
-)
 from study.errors import StudyError
-from study.key_units import QUANTITIES, converted, same_quantity, split_unit
-from study.read import STUDIES, check_study, read_study, study_files
+from study.inputs_electrical import winding_inputs
+from study.inputs_field import field_case
+from study.inputs_machine import machine_family
+from study.inputs_match import match_inputs
+from study.inputs_vehicle import stated_requirements
+from study.read import STUDIES, read_study
+from study.schema import Study
 from study.sentences import section_class
-from study.schema import Section, Study
+from study.usable import check_study
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +33,7 @@ def test_every_study_that_is_shipped_is_usable(path):
 
 
 def test_the_reference_machine_in_metres(motorcycle):
-    machine = to_machine(motorcycle.machine)
+    machine = machine_family(motorcycle.machine).reference
     assert machine.tooth_width == pytest.approx(5.5e-3)  # 2 w_bi / (12/10), eq. 3.53
     assert machine.shoe_d1 == machine.shoe_d2 == pytest.approx(1.43e-3)  # 0.52 w_tb / 2, eqs 3.57 and 3.58
     assert machine.stator_outer_radius == pytest.approx(42.5e-3)
@@ -48,20 +41,20 @@ def test_the_reference_machine_in_metres(motorcycle):
 
 
 def test_one_design_of_the_sweep_derives_its_teeth_anew(motorcycle):
-    machine = to_machine(motorcycle.machine, slots=9, back_iron_width=4e-3, stator_outer_radius=50e-3)
+    machine = machine_family(motorcycle.machine).machine(9, 50e-3, 4e-3, 15.7e-3)
     assert machine.tooth_width == pytest.approx(2 * 4e-3 / 0.9)
     assert machine.stator_outer_radius == 50e-3 and machine.airgap == pytest.approx(0.5e-3)
 
 
 def test_a_stated_tooth_width_holds_against_the_derived_one():
     study = read_study("motorcycle", ["machine.tooth_width_mm=4.5", "machine.shoe_d2_mm=1"])
-    machine = to_machine(study.machine, back_iron_width=4e-3)
+    machine = machine_family(study.machine).machine(12, 42.5e-3, 4e-3, 15.7e-3)
     assert machine.tooth_width == pytest.approx(4.5e-3) and machine.shoe_d2 == pytest.approx(1e-3)
 
 
 def test_overrides_take_toml_values_and_bare_words():
     study = read_study("motorcycle", ["machine.magnetisation=radial", "sweep.slots=[12]", "machine.airgap_mm=1"])
-    assert to_machine(study.machine).magnetisation == RadialMagnetisation()
+    assert machine_family(study.machine).reference.magnetisation == RadialMagnetisation()
     assert study.sweep.slots == (12,) and study.machine.airgap_mm == 1.0
 
 
@@ -72,44 +65,33 @@ def test_one_machine_may_have_poles_that_the_sweep_cannot_wind():
 
 
 def test_supply_and_wire_in_si(motorcycle):
-    limits, wire = to_winding_limits(motorcycle), to_wire(motorcycle)
+    inputs = winding_inputs(motorcycle)
+    limits, wire = inputs.limits, inputs.wire
     assert limits.overload_current_density == 20e6 and limits.dc_voltage == 48.0
     assert limits.maximum_speed == pytest.approx(15000 * 2 * math.pi / 60)
     assert wire.area == pytest.approx(math.pi * 0.25e-3**2) and wire.resistivity == pytest.approx(1.68e-8)
-    required = to_winding_requirement(motorcycle, 2.3e-3)
-    assert required.torque == pytest.approx(6.0, abs=0.02)  # text to eq. 3.120: 6 Nm
+    assert inputs.longest == pytest.approx(70e-3) and inputs.nominal_density == 6e6
 
 
 def test_match_and_gearbox_in_si(motorcycle):
-    design = to_gearbox_design(motorcycle)
-    assert design.laws == NITRIDED_STEEL  # the thesis's gears
-    assert design.linkage_ratio == pytest.approx(0.170) and design.stage_count == 2
-    assert to_actuator_requirements(motorcycle.requirements).regenerative_damping == 40e3
-    assert to_copper_loading(motorcycle).nominal_current_density == 6e6
-    assert to_match_limits(motorcycle.match).active_length == pytest.approx(70e-3)
-    assert to_cost_scales(motorcycle.match).stator_radius == pytest.approx(50e-3)
+    inputs = match_inputs(motorcycle)
+    assert inputs.gear_laws == NITRIDED_STEEL  # the thesis's gears
+    assert inputs.gear_stages == 2 and inputs.planets == 3
+    assert stated_requirements(motorcycle).maximum_damping == 40e3
+    assert field_case(motorcycle).nominal_density == pytest.approx(math.sqrt(2) * 6e6)
+    assert inputs.limits.active_length == pytest.approx(70e-3)
+    assert inputs.scales.stator_radius == pytest.approx(50e-3)
 
 
 def test_a_warm_winding_has_more_resistance():
     study = read_study("motorcycle", ["winding_selection.winding_temperature_degC=120"])
-    assert to_wire(study).resistivity == pytest.approx(1.68e-8 * 1.393)
+    assert winding_inputs(study).wire.resistivity == pytest.approx(1.68e-8 * 1.393)
 
 
 def test_mesh_keys_that_are_not_stated_leave_the_default():
-    usual = to_mesh_density(read_study("motorcycle").mesh)
-    finer = to_mesh_density(read_study("motorcycle", ["mesh.gap_edges_per_revolution=1440"]).mesh)
+    usual = field_case(read_study("motorcycle")).density
+    finer = field_case(read_study("motorcycle", ["mesh.gap_edges_per_revolution=1440"])).density
     assert finer.gap_edges == 1440 and finer.gap_layers == usual.gap_layers
-
-
-def test_a_subset_does_not_know_other_sections_nor_the_file(motorcycle):
-    assert set(motorcycle.subset("machine", "sweep")) == {"machine", "sweep"}
-    assert "toml" not in str(motorcycle.subset(*Study.model_fields))
-
-
-def test_a_steel_of_ones_own_is_an_input_file(tmp_path):
-    assert study_files(read_study("motorcycle")) == []
-    study = read_study("motorcycle", ["materials.steel=mine.csv"])
-    assert [path.name for path in study_files(study)] == ["mine.csv"]
 
 
 def test_the_study_cannot_be_changed(motorcycle):
@@ -165,19 +147,3 @@ def test_the_template_states_every_key_that_the_motorcycle_states_but_those_of_i
     data = [tomllib.loads((STUDIES / f"{name}.toml").read_text()) for name in ("motorcycle", "template")]
     keys = [{f"{section}.{key}" for section, table in study.items() for key in table} for study in data]
     assert keys[1] <= keys[0] and all(key.startswith(OF_THE_THESIS_ALONE) for key in keys[0] - keys[1])
-
-
-@pytest.mark.parametrize("row", QUANTITIES, ids=lambda row: next(iter(row)))
-def test_units_of_one_quantity_convert_back(row):
-    for unit in row:
-        for other in row:
-            assert same_quantity(unit, other)
-            if row[unit] is not None:
-                assert converted(converted(3.0, unit, other), other, unit) == pytest.approx(3.0)
-
-
-def test_the_unit_is_the_longest_that_fits():
-    assert split_unit("airgap_mm") == ("airgap", "mm")
-    assert split_unit("ratio_max_mm_per_rad") == ("ratio_max", "mm_per_rad")
-    assert split_unit("packing_factor") == ("packing_factor", "")
-    assert not same_quantity("mm", "kg") and converted(1.0, "degC", "K") is None

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from study.errors import StudyError
-from study.read import STUDIES, check_study, read_study
+from study.read import STUDIES, read_study
+from study.usable import check_study
 
 ROOT = STUDIES.parent
 RIGHT = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")

@@ -24,9 +24,9 @@ from vehicle.quarter_car import (
     spring_negation,
     state_space,
 )
-from vehicle.requirements import runs_of, summaries
 from vehicle.ride import Scenario
 from vehicle.road import IsoRoad, roughness_of_class
+from vehicle.scenarios import runs_of, summaries
 from vehicle.spectral import (
     carpet,
     ensemble_indices,

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from math import floor, isfinite, log10
 
+import units
 from figures.report import number_text
 from workbench.findings import Axis, Estimate
-
-_WRITTEN = {
-    "1": "", "percent": "%", "deg": "°", "degC": "°C", "um": "µm", "uH": "µH", "rpm": "rpm", "kg_m2": "kg m²",
-    "ohm": "Ω", "Ohm": "Ω", "mohm": "mΩ", "mOhm": "mΩ", "kohm": "kΩ",
-}  # fmt: skip
 
 _TAKES_PREFIX = ("m", "s", "V", "A", "N", "H", "Ω", "Nm", "Vs", "W", "T", "rad")
 _PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
@@ -20,8 +16,7 @@ _DIGITS_AT_MOST = 5  # zeros behind the digits that count, rather than an expone
 
 def unit_text(unit: str) -> str:
     """A unit as printed: ``Ns_per_m`` becomes ``Ns/m``."""
-    written = _WRITTEN.get(unit, "/".join(_WRITTEN.get(part, part) for part in unit.split("_per_")))
-    return written.replace("^2", "²").replace("^3", "³")
+    return "" if unit == "1" else units.written(unit).replace("^2", "²").replace("^3", "³")
 
 
 def plain(name: str) -> str:

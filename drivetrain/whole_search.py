@@ -1,0 +1,282 @@
+"""The loop closed: radius, slots, active length, ratio and linkage together, beside the design found stage by stage.
+
+The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
+front are then solved by the field.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import partial
+from math import inf
+
+import numpy as np
+
+from drivetrain.linkage_stage import LinkageFront
+from drivetrain.masses import DrawnParts
+from drivetrain.match import MatchError, SizedSection, damping_constraint
+from drivetrain.matching import Matcher, MatchInputs, MatchOutcome, solved_section
+from drivetrain.requirements import Linkage, Requirements
+from drivetrain.whole_design import (
+    OBJECTIVES,
+    RatedDesign,
+    RoadDemand,
+    RoadSection,
+    WholeDesign,
+    WholeProblem,
+    front,
+    improved,
+    road_loss,
+    spread,
+)
+from geometry.machine import Machine
+from losses.iron import FrequencyTerms
+from losses.map import field_losses
+from magnetostatics.case import FieldCase
+from magnetostatics.model import OperatingPoint
+from materials.iron_loss import IronLossLaw, iron_loss_law
+from optimisation.fits import SectionFits
+from tasks import Workers
+from units import MILLIMETRE
+
+_SHORTEST = 0.1  # active length of a design, as a share of the largest allowed one
+
+
+@dataclass(frozen=True)
+class WholeSearchInputs:
+    """How the search goes.
+
+    loss_grade: whose iron-loss data stand in for the steel's, None where the study names none
+    seed, population, generations: of the front; solved: points of the front that the field solves
+    idle_radii: of each slot count, at which the idle loss is solved
+    """
+
+    loss_grade: str | None
+    seed: int = 1
+    population: int = 120
+    generations: int = 120
+    solved: int = 12
+    idle_radii: int = 5
+
+
+@dataclass(frozen=True)
+class FieldTask:
+    """A machine of a study, with the loss data of its steel."""
+
+    case: FieldCase
+    machine: Machine
+    law: IronLossLaw
+
+
+@dataclass(frozen=True)
+class Question:
+    """Which objective (number in OBJECTIVES) is bettered, in words, and what the others may come to; inf: anything."""
+
+    words: str
+    objective: int
+    allowed: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Bettered:
+    """The answer to a question."""
+
+    question: Question
+    found: RatedDesign
+
+
+@dataclass(frozen=True)
+class SolvedDesign:
+    """A design by the model, and the same with torques, slot area and idle loss of the field (``field``)."""
+
+    name: str
+    model: RatedDesign
+    field: RatedDesign
+
+
+@dataclass(frozen=True)
+class WholeSearch:
+    """What the searches found.
+
+    staged: the design found stage by stage, by the model; bettered: in one objective at a time; front: by the model
+    solved: staged, bettered and some of the front by the field; force_rms: of the road [N]
+    """
+
+    staged: RatedDesign
+    bettered: tuple[Bettered, ...]
+    front: tuple[RatedDesign, ...]
+    solved: tuple[SolvedDesign, ...]
+    force_rms: float
+
+
+def optimise_stage(
+    case: FieldCase,
+    fits: SectionFits,
+    match: MatchOutcome,
+    linkage: Linkage,
+    linkages: LinkageFront | None,
+    requirements: Requirements,
+    match_inputs: MatchInputs,
+    inputs: WholeSearchInputs,
+    workers: Workers,
+) -> WholeSearch:
+    """Search over all stages at once, and solve what is shown by the field.
+
+    match, linkage: the design found stage by stage; linkages: the front it was chosen from, None where it is stated
+    Raises MatchError where no design meets the targets, MaterialError where the steel has no loss data, FitRefused.
+    """
+    drawn = DrawnParts(match_inputs.masses, case.packing)
+    matcher = Matcher(case, fits, requirements, linkage, match_inputs, drawn)
+    law = iron_loss_law(inputs.loss_grade)
+    problem = _problem(matcher, linkages, _idle_sections(matcher, law, inputs.idle_radii, workers))
+    staged = _staged(problem, match, linkage)
+    found = _front(problem, staged, inputs)
+    bettered = tuple(
+        Bettered(one, improved(problem, staged.design, one.objective, one.allowed))
+        for one in questions(staged.values.objectives, requirements.maximum_damping)
+    )
+    shown = _shown(staged, bettered, spread(found, inputs.solved))
+    return WholeSearch(staged, bettered, found, _solved(problem, case, law, shown, workers), requirements.force_rms)
+
+
+def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:
+    """What is asked against the objectives of the stage-by-stage design; damping: required [Ns/m].
+
+    First each objective with the other three no worse; then mass and inertia with the damping that is asked for and a
+    free loss, which is all that the requirements ask for.
+    """
+    mass, inertia, _, _ = before
+    found = [Question(f"{name}, the other three no worse", k, before) for k, name in enumerate(OBJECTIVES)]
+    bare = (mass, inertia, damping, inf)
+    found.append(Question("mass, inertia no worse, damping as required", 0, bare))
+    found.append(Question("equivalent mass, mass no worse, damping as required", 1, bare))
+    return tuple(found)
+
+
+# ---- the problem ----------------------------------------------------------------------------------------------------
+
+
+class _IdleSections:
+    """(slots, stator outer radius [m]) -> ``RoadSection`` from the fits, its idle loss a parabola over the radius."""
+
+    def __init__(self, matcher: Matcher, parabolas: dict[int, np.ndarray]) -> None:
+        self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by slot count
+
+    def __call__(self, slots: int, radius: float) -> RoadSection:
+        section = self._matcher.section(slots, self._matcher.inputs.overload, radius)
+        idle = (float(np.polyval(one, radius)) for one in self._parabolas[slots].T)
+        return RoadSection.of(section, FrequencyTerms(*idle))
+
+
+def _idle_sections(matcher: Matcher, law: IronLossLaw, count: int, workers: Workers) -> _IdleSections:
+    """Idle loss solved at so many radii of each slot count, and the cross-sections that carry it."""
+    inputs = matcher.inputs
+    samples = [(n, float(radius)) for n in inputs.slots for radius in np.linspace(*matcher.fits.range(n), count)]
+    tasks = {
+        f"{n} slots, {2 * radius / MILLIMETRE:.2f} mm": FieldTask(
+            matcher.case, matcher.section(n, inputs.overload, radius).machine, law
+        )
+        for n, radius in samples
+    }
+    found = workers.map("idle loss", solve_idle, tasks)
+    terms = np.array([(one.hysteresis, one.eddy, one.excess) for one in found.values()]).reshape(-1, count, 3)
+    radii = np.array([radius for _, radius in samples]).reshape(-1, count)
+    return _IdleSections(matcher, {n: np.polyfit(x, y, 2) for n, x, y in zip(inputs.slots, radii, terms, strict=True)})
+
+
+def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleSections) -> WholeProblem:
+    inputs, required = matcher.inputs, matcher.requirements
+    demand = RoadDemand(required.force_rms, required.velocity_rms, matcher.loading)
+    longest = inputs.limits.active_length
+    return WholeProblem(
+        section_at=section_at,
+        slots=inputs.slots,
+        radii=tuple(matcher.fits.range(slots) for slots in inputs.slots),
+        lengths=(_SHORTEST * longest, longest),
+        linkage_ratios=_linkage_ratios(matcher.linkage, linkages),
+        constraints_of=matcher.constraints_without_planets,
+        gearbox=matcher.gearbox,
+        masses=matcher.masses,
+        damping_of=lambda section: damping_constraint(section, required, matcher.loading),
+        loss_of=partial(_road_loss, demand),
+        targets=(inputs.scales.mass, inputs.scales.equivalent_mass),
+    )
+
+
+def _road_loss(demand: RoadDemand, section: SizedSection, design: WholeDesign) -> float:
+    assert isinstance(section, RoadSection)  # all sections of this search carry their idle loss
+    return road_loss(section, design, demand)
+
+
+def _linkage_ratios(chosen: Linkage, linkages: LinkageFront | None) -> tuple[float, float]:
+    """Nominal ratios [m/rad] of the front's linkages whose angles are no worse than those of the chosen one."""
+    if linkages is None:
+        return chosen.ratio_nominal, chosen.ratio_nominal
+    return chosen.ratio_nominal, max(chosen.ratio_nominal, float(linkages.nominal_ratios.max()))
+
+
+def _staged(problem: WholeProblem, match: MatchOutcome, linkage: Linkage) -> RatedDesign:
+    """The design of match and linkage."""
+    machine, found = match.machine, match.chosen
+    design = WholeDesign(
+        machine.slots,
+        machine.stator_outer_radius,
+        found.active_length,
+        found.transmission_ratio,
+        linkage.ratio_nominal,
+    )
+    return RatedDesign(design, problem.values(design))
+
+
+def _front(problem: WholeProblem, staged: RatedDesign, inputs: WholeSearchInputs) -> tuple[RatedDesign, ...]:
+    settings = {"seed": inputs.seed, "population": inputs.population, "generations": inputs.generations}
+    found = front(problem, start=staged.design, **settings)
+    if not found:
+        raise MatchError(
+            "no design meets match.mass_max_kg, match.equivalent_mass_max_kg and the required damping together; relax "
+            "one of them"
+        )
+    return found
+
+
+# ---- field solutions ------------------------------------------------------------------------------------------------
+
+
+def solve_idle(task: FieldTask) -> FrequencyTerms:
+    """Idle loss of one machine, magnets included [W/m over the electrical frequency]."""
+    case = task.case
+    found = field_losses(case.model(task.machine), OperatingPoint(0.0, 0.0, 0.0, case.packing), task.law)
+    total = found.stator + found.rotor + found.magnet
+    return FrequencyTerms(*(float(getattr(total, one.name)) for one in fields(FrequencyTerms)))
+
+
+def solve_section(task: FieldTask) -> RoadSection:
+    """The cross-section of one machine with torques, slot area and idle loss from the field."""
+    return RoadSection.of(solved_section(task.case, task.machine), solve_idle(task))
+
+
+def _shown(
+    staged: RatedDesign, bettered: tuple[Bettered, ...], points: tuple[RatedDesign, ...]
+) -> tuple[tuple[str, RatedDesign], ...]:
+    """(name, design) of all that the field solves."""
+    named = [("stage by stage", staged), *((one.question.words, one.found) for one in bettered)]
+    return (*named, *((f"front {k}", one) for k, one in enumerate(points, start=1)))
+
+
+def _solved(
+    problem: WholeProblem,
+    case: FieldCase,
+    law: IronLossLaw,
+    shown: tuple[tuple[str, RatedDesign], ...],
+    workers: Workers,
+) -> tuple[SolvedDesign, ...]:
+    """Every design with its cross-section by the field in the place of the fits."""
+    machines = {
+        name: problem.section_at(one.design.slots, one.design.stator_outer_radius).machine for name, one in shown
+    }
+    tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
+    found = workers.map("designs", solve_section, tasks)
+    return tuple(
+        SolvedDesign(name, one, RatedDesign(one.design, problem.values(one.design, found[name])))
+        for name, one in shown
+    )

@@ -1,0 +1,154 @@
+"""Loss and efficiency map of the wound machine on its flux map, as motor and as generator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
+from electrical.plane import plane_dataset, plane_record
+from electrical.winding_stage import WindingInputs, WindingOutcome
+from geometry.machine import Machine
+from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
+from magnetostatics.case import FieldCase
+from magnetostatics.flux_map_stage import FluxMap, kept_model
+from materials.errors import MaterialError
+from materials.iron_loss import IronLossLaw, iron_loss_law
+from tasks import Workers
+
+_TORQUES, _SPEEDS = 161, 121  # of the motoring half; the generating half has as many torques again
+_LARGEST = 1.02  # of the winding's peak ampere-turns: the corner of the map lies on the current limit
+
+
+class LossError(ValueError):
+    """No loss map can be made from these inputs; the message says which key to change."""
+
+
+@dataclass(frozen=True)
+class LossInputs:
+    """Whose loss data count.
+
+    steel: of the study; loss_grade: grade whose data stand for it, None where the study names none
+    winding_temperature: of the copper [degC], in the resistivity of the wound machine already
+    """
+
+    steel: str
+    loss_grade: str | None
+    winding_temperature: float
+
+
+@dataclass(frozen=True)
+class BestPoint:
+    """The largest efficiency of a quadrant and where it is: torque [Nm], speed [rad/s]."""
+
+    efficiency: float
+    torque: float
+    speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class LossMap:
+    """Losses of the wound machine over torque (first index, negative as a generator) and speed, and what they rest on.
+
+    data: losses [W] over the whole plane, a data set of ``PowerLosses``, NaN out of reach
+    law: iron loss of the sheet; steel: whose name the study gives, another one where the law stands in for it
+    winding_temperature: [degC]; end_turn_share: of the copper loss
+    motor, generator: best points
+    """
+
+    data: xr.Dataset
+    law: IronLossLaw
+    steel: str
+    winding_temperature: float
+    end_turn_share: float
+    motor: BestPoint
+    generator: BestPoint
+
+    @property
+    def losses(self) -> PowerLosses:
+        """Losses over the whole plane."""
+        return plane_record(PowerLosses, self.data)
+
+    @property
+    def law_is_of_another_grade(self) -> bool:
+        """Whether the loss data are those of another sheet than the study's."""
+        return self.law.grade != self.steel
+
+
+@dataclass(frozen=True)
+class LossTask:
+    """Iron and magnet losses at one current: ampere-turns of a coil on the d and the q axis [A peak]."""
+
+    case: FieldCase
+    machine: Machine
+    direct: float
+    quadrature: float
+    law: IronLossLaw
+
+
+def losses_stage(
+    case: FieldCase,
+    flux_map: FluxMap,
+    winding: WindingOutcome,
+    windings: WindingInputs,
+    inputs: LossInputs,
+    workers: Workers,
+) -> LossMap:
+    """Solve the losses over the currents and read them along the operating map; a task is one current.
+
+    Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
+    """
+    law, wound = loss_law(inputs), winding.wound
+    largest = _LARGEST * wound.turns * winding.limits.current_peak
+    tasks = {
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law) for d, q in grid(largest)
+    }
+    found = workers.map("losses", losses_at_current, tasks)
+    operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
+    losses = power_losses(operating, wound, table_of(largest, list(found.values())))
+    return LossMap(
+        plane_dataset(losses),
+        law,
+        inputs.steel,
+        inputs.winding_temperature,
+        wound.end_turn_share,
+        best_point(losses, losses.torque > 0),
+        best_point(losses, losses.torque < 0),
+    )
+
+
+def loss_law(inputs: LossInputs) -> IronLossLaw:
+    """The law of the grade that the study names. Raises LossError without one."""
+    try:
+        return iron_loss_law(inputs.loss_grade)
+    except MaterialError as error:
+        raise LossError(f"no losses for steel {inputs.steel} (materials.loss_grade): {error}") from None
+
+
+def losses_at_current(task: LossTask) -> FieldLosses:
+    """Iron and magnet losses at one current, whole machine per metre."""
+    model = kept_model(task.case, task.machine)
+    return field_losses(model, current_point(model.section, task.direct, task.quadrature, task.case.packing), task.law)
+
+
+def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> OperatingMap:
+    """Least currents on the flux map over torques from generating to motoring and speeds up to the last one reached.
+
+    fastest: [rad/s]
+    """
+    machine = winding.wound.on_map(flux_map.data)
+    envelope = torque_speed_envelope(machine, winding.limits, np.linspace(0.0, fastest, _SPEEDS))
+    top = float(envelope.speed[np.flatnonzero(np.isfinite(envelope.torque))[-1]])
+    torque = np.linspace(-winding.peak_torque, winding.peak_torque, 2 * _TORQUES - 1)
+    return operating_map(machine, winding.limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
+
+
+def best_point(losses: PowerLosses, where: np.ndarray) -> BestPoint:
+    """The largest efficiency among the points of a mask."""
+    efficiency = np.where(where, losses.efficiency, np.nan)
+    if np.isnan(efficiency).all():
+        raise LossError("no point of the plane has an efficiency: speed_max_rpm of winding_selection is too low")
+    best = np.unravel_index(np.nanargmax(efficiency), efficiency.shape)
+    return BestPoint(float(efficiency[best]), float(losses.torque[best]), float(losses.speed[best]))

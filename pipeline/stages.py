@@ -1,0 +1,145 @@
+"""The declared graph: what a study is made of, from what is asked to the report.
+
+Each stage is a function of the room that it speaks of; what it reads and writes stands in its signature. Variants of a
+study are other nodes: requirements that a vehicle gives, that are stated, or those of a drive; a linkage that is
+searched or stated; gears or a direct drive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from drivetrain.four_bar import LinkageError
+from drivetrain.gear_views import direct_drive, gear_demand, stated_loads, transmission
+from drivetrain.linkage_stage import chosen_linkage, linkage_stage
+from drivetrain.match import MatchError
+from drivetrain.matching import match_stage, matched_machine
+from drivetrain.outcome import actuator_limits, outcome_stage
+from drivetrain.planetary import GearboxError
+from drivetrain.whole_search import optimise_stage
+from drivetrain.requirements import shaft_demand
+from electrical.drive_stage import drive_stage
+from electrical.flux_map_machine import FluxMapMachineError
+from electrical.winding_selection import WindingError
+from electrical.winding_stage import winding_stage
+from gearbox.errors import GearError
+from gearbox.stage import gearbox_stage
+from geometry.machine import GeometryError
+from losses.stage import LossError, loss_law, losses_stage
+from magnetostatics.flux_map import FluxMapError
+from magnetostatics.flux_map_stage import flux_map_stage
+from magnetostatics.newton import FieldSolutionError
+from magnetostatics.rotation_stage import rotations_stage
+from materials.errors import MaterialError
+from optimisation.constrained_optimum import NoOptimumError
+from optimisation.fits import fits_stage
+from optimisation.limits import limits_stage
+from optimisation.optima import optima_stage
+from optimisation.polynomial_fits import FitRefused
+from optimisation.sweep import sweep_stage
+from pipeline.graph import Graph, Node, Source, Stage, View
+from report import drive, fields, fits, flux_map, gearbox, linkage, losses, match, optimise, outcome, requirements, ride
+from report import sweep, winding
+from study.chain import drives, searches_linkage
+from study.inputs_drive import output
+from study.inputs_electrical import flux_map_grid, loss_inputs, winding_inputs
+from study.inputs_field import field_case, saturation_limit, sweep_grid
+from study.inputs_gearbox import gear_inputs
+from study.inputs_linkage import installation_space, linkage_search, stated_linkage
+from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_outcome import outcome_inputs
+from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
+from study.schema import Study
+from vehicle.demands import required, requirements_stage
+from vehicle.errors import VehicleError
+from vehicle.gear_loads import road_loads
+from vehicle.ride_again import ride_again_stage
+
+REFUSALS = (
+    FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
+    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, VehicleError, WindingError,
+)  # fmt: skip
+
+_SOURCES = (
+    field_case, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
+    winding_inputs, loss_inputs, gear_inputs, outcome_inputs, output,
+)  # fmt: skip
+_VEHICLE: tuple[Node, ...] = (
+    Source(ride_case),
+    Source(requirements_beside),
+    Stage("requirements", requirements_stage, "the vehicle asks", requirements.files),
+    View(required),
+    View(road_loads),
+    Stage("ride", ride_again_stage, "the vehicle with what was designed", ride.files),
+    View(actuator_limits),
+)
+_STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads))
+_SEARCHED: tuple[Node, ...] = (
+    Source(linkage_search),
+    Source(installation_space),
+    Stage("linkage", linkage_stage, "Pareto front of four-bars", linkage.files),
+    View(chosen_linkage),
+)
+_GEARS: tuple[Node, ...] = (
+    View(gear_demand),
+    Stage("gearbox", gearbox_stage, "all tooth sets, rated", gearbox.files),
+)
+_MACHINE: tuple[Node, ...] = (
+    Stage("sweep", sweep_stage, "designs solved over slots and radii"),
+    Stage("optima", optima_stage, "the best under the limit", sweep.optima_files),
+    Stage("limits", limits_stage, "what the limit costs", sweep.limits_files),
+    Stage("fits", fits_stage, "polynomials over the radius", fits.files),
+    Stage("match", match_stage, "ratio, length and radius", match.files),
+    View(matched_machine),
+    Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
+    View(transmission),
+    View(shaft_demand),
+    Stage("winding", winding_stage, "turns, wires, final length", winding.files),
+    Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
+    Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
+    Stage("outcome", outcome_stage, "what holds, what would help", outcome.files),
+    Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
+)
+
+
+def graph_of(study: Study) -> Graph:
+    """The graph of a study."""
+    driven, searched = drives(study), searches_linkage(study)
+    nodes = (
+        *(Source(function) for function in _SOURCES),
+        *(_VEHICLE if driven else _STATED),
+        *(_SEARCHED if searched else (Source(stated_linkage),)),
+        *_MACHINE,
+        Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
+        *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
+    )
+    return Graph(nodes, _sections(driven, searched), REFUSALS)
+
+
+def _has_loss_data(study: Study) -> bool:
+    """Whether the steel has loss data of its own or a stand-in; without them losses are refused when asked for."""
+    try:
+        loss_law(loss_inputs(study))
+    except LossError:
+        return False
+    return True
+
+
+def _sections(driven: bool, searched: bool) -> tuple[Callable, ...]:
+    """Of the report, in reading order."""
+    return (
+        outcome.section,
+        requirements.section if driven else requirements.stated_section,
+        linkage.section if searched else linkage.stated_section,
+        fields.machine,
+        sweep.section,
+        fits.section,
+        match.section,
+        fields.matched,
+        flux_map.section,
+        gearbox.section,
+        winding.section,
+        drive.section,
+        losses.section,
+        *((ride.section,) if driven else ()),
+    )

@@ -1,0 +1,164 @@
+"""The outcome for people: key numbers, requirements with their margins, remedies, masses and the axial section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pandas as pd
+
+from drivetrain.asked import Check
+from drivetrain.outcome import Features, Outcome
+from drivetrain.output import Output, in_unit, labelled
+from drivetrain.remedies import Remedy
+from figures.files import File, figure_file, picture_name, table_file
+from figures.gearbox import axial_section
+from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table
+from gearbox.stage import SafetyCheck
+from units import FACTORS, MILLIMETRE, written
+
+_REMEDIES = (
+    "Which input would make a failing requirement hold, moved alone; a dash: not within a third to three times its "
+    "value. Fewer turns at the same copper mean more current in the same proportion."
+)
+
+
+def files(found: Outcome, output: Output) -> Iterator[File]:
+    """Requirements, remedies and masses as tables, and the axial section."""
+    yield table_file("outcome_requirements.csv", checks_table(found, output))
+    yield table_file("outcome_remedies.csv", remedies_table(found, output))
+    yield table_file("outcome_features.csv", features_table(found, output))
+    yield table_file("outcome_masses.csv", masses_table(found))
+    title = f"{found.active_length / MILLIMETRE:.1f} mm of active length, {found.features.mass:.1f} kg"
+    yield figure_file("axial_section", axial_section(found.layout, title=title, end=output.end))
+
+
+def section(found: Outcome, output: Output) -> Section:
+    """The actuator on one screen, and which requirements hold."""
+    checks: list[Check | SafetyCheck] = [*found.checks, *found.gear_checks]
+    held = sum(one.holds for one in checks)
+    return Section(
+        "Outcome",
+        (
+            KeyNumbers(_key_numbers(found.features, output)),
+            f"{held} of {len(checks)} requirements hold.",
+            *_failures(found, output),
+            Table(checks_table(found, output), f"What is asked and what is reached, {output.place}."),
+            *_remedy_table(found, output),
+            Table(features_table(found, output), "Features of the actuator.", headings=_stated_heading(found)),
+            *_load(found),
+            Table(masses_table(found), "What it weighs, and the inertias that the rotor feels."),
+            Picture(picture_name("axial_section"), "Axial section with the envelope."),
+        ),
+    )
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+
+def checks_table(found: Outcome, output: Output) -> pd.DataFrame:
+    """Requirements and safety factors of the gears, one a row, in drawing units."""
+    rows = [_check_row(one, output) for one in found.checks] + [_gear_row(one) for one in found.gear_checks]
+    return pd.DataFrame(rows)
+
+
+def _check_row(one: Check, output: Output) -> dict[str, object]:
+    asked = one.requirement
+    unit = asked.unit(output)
+    sense = "at most" if asked.at_most else "at least"
+    needed, reached = asked.needed / FACTORS[unit], one.reached / FACTORS[unit]
+    return _row(asked.name(output), needed, reached, written(unit), sense, one)
+
+
+def _gear_row(one: SafetyCheck) -> dict[str, object]:
+    return _row(f"gears, safety {one.kind.replace('_', ' ')}", one.wanted, one.reached, "", "at least", one)
+
+
+def _row(
+    name: str, needed: float, reached: float, unit: str, sense: str, check: Check | SafetyCheck
+) -> dict[str, object]:
+    return {
+        "requirement": name,
+        "needed": needed,
+        "reached": reached,
+        "unit": unit,
+        "sense": sense,
+        "margin_percent": 100 * check.margin,
+        "holds": "yes" if check.holds else "NO",
+    }
+
+
+def remedies_table(found: Outcome, output: Output) -> pd.DataFrame:
+    """What would make the failing requirements hold, one lever a row, in drawing units."""
+    columns = ["requirement", "input", "unit", "now", "needed", "change_percent", "then fails"]
+    return pd.DataFrame([_remedy_row(one, output) for one in found.remedies], columns=columns)
+
+
+def _remedy_row(one: Remedy, output: Output) -> dict[str, object]:
+    unit = one.lever.unit(output)
+    row = {"requirement": one.requirement.name(output), "input": one.lever.name(), "unit": written(unit),
+           "now": in_unit(one.now, unit)}  # fmt: skip
+    if one.value is None:
+        return {**row, "needed": None, "change_percent": None, "then fails": ""}
+    fails = ", ".join(other.name(output) for other in one.fails_then) or "nothing else"
+    change = 100 * (one.value / one.now - 1)
+    return {**row, "needed": in_unit(one.value, unit), "change_percent": change, "then fails": fails}
+
+
+def features_table(found: Outcome, output: Output) -> pd.DataFrame:
+    """Rows of thesis Table 3.12: ours and, where there is one, the stated actuator's."""
+    stated = None if found.stated is None else found.stated.features
+    rows = []
+    for attribute, words, unit in output.features:
+        row: dict[str, object] = {"feature": labelled(words, unit), "ours": _drawn(found.features, attribute, unit)}
+        rows.append(row if stated is None else {**row, "stated": _drawn(stated, attribute, unit)})
+    return pd.DataFrame(rows)
+
+
+def _drawn(features: Features, attribute: str, unit: str) -> float:
+    return float(in_unit(getattr(features, attribute), unit))
+
+
+def masses_table(found: Outcome) -> pd.DataFrame:
+    """Masses of all parts, and inertias of those that turn, as the rotor feels them."""
+    rows = [{"part": name, "mass_kg": mass, "inertia_kg_m2": inertia} for name, mass, inertia in found.masses.rows]
+    if found.gearbox_mass:
+        rows.append({"part": "gears", "mass_kg": found.gearbox_mass, "inertia_kg_m2": found.gearbox_inertia})
+    rows.append({"part": "casing, bearings, shafts", "mass_kg": found.casing_mass, "inertia_kg_m2": 0.0})
+    inertia = found.masses.rotor_inertia + found.gearbox_inertia
+    return pd.DataFrame([*rows, {"part": "whole", "mass_kg": found.features.mass, "inertia_kg_m2": inertia}])
+
+
+# ---- parts of the section -------------------------------------------------------------------------------------------
+
+
+def _key_numbers(features: Features, output: Output) -> tuple[KeyNumber, ...]:
+    return tuple(
+        KeyNumber(words, float(f"{_drawn(features, attribute, unit):.4g}"), written(unit))
+        for attribute, words, unit in output.features
+    )
+
+
+def _failures(found: Outcome, output: Output) -> tuple[Remark, ...]:
+    table = checks_table(found, output)
+    return tuple(
+        Remark(
+            f"{row.requirement} does not hold: {row.reached:.4g} {row.unit} reached, {row.sense} {row.needed:.4g} "
+            f"{row.unit} asked ({row.margin_percent:.0f} %)."
+        )
+        for row in table[table.holds == "NO"].itertuples()
+    )
+
+
+def _remedy_table(found: Outcome, output: Output) -> tuple[Table, ...]:
+    return (Table(remedies_table(found, output), _REMEDIES),) if found.remedies else ()
+
+
+def _stated_heading(found: Outcome) -> dict[str, str]:
+    return {} if found.stated is None else {"stated": found.stated.source}
+
+
+def _load(found: Outcome) -> tuple[str, ...]:
+    ratio = found.load_inertia_ratio
+    if ratio is None:
+        return ()
+    return (f"The inertia of the load is {ratio:.3g} times that of the drive, both at the shaft.",)

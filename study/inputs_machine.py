@@ -1,0 +1,32 @@
+"""The machines that a study describes, in SI."""
+
+from __future__ import annotations
+
+from geometry.family import MachineFamily
+from geometry.machine import Magnetisation, ParallelMagnetisation, RadialMagnetisation
+from study.schema import MachineSection
+
+_MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
+
+
+def machine_family(section: MachineSection) -> MachineFamily:
+    """The machine of the study and all that differ from it in slots, stator and rotor radius and back iron."""
+    si = section.si
+    return MachineFamily(
+        slots=si.slots,
+        pole_pairs=si.poles // 2,
+        stator_outer_radius=si.stator_outer_radius,
+        rotor_outer_radius=si.rotor_outer_radius,
+        back_iron_width=si.back_iron_width,
+        magnet_length=si.magnet_length,
+        airgap=si.airgap,
+        slot_opening=si.slot_opening,
+        shoe_depth_fraction=si.shoe_depth_fraction,
+        shoe_aspect_ratio=si.shoe_aspect_ratio,
+        shaft_radius=si.shaft_radius,
+        magnet_arc_fraction=si.magnet_arc_fraction,
+        magnetisation=_MAGNETISATIONS[si.magnetisation],
+        tooth_width=si.tooth_width,
+        shoe_d1=si.shoe_d1,
+        shoe_d2=si.shoe_d2,
+    )

@@ -1,0 +1,156 @@
+"""What can be found out about a study before anything is computed: each finding is one sentence.
+
+``study.read`` has checked every number by itself and the machine that the study states; here stands what needs the
+libraries, and what only the sweep and the stages after it need.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import product
+from math import pi
+from typing import Iterator
+
+from drivetrain.four_bar import LinkageError
+from geometry.checks import check_machine
+from geometry.half_cell import MeshDensity
+from geometry.machine import GeometryError, Machine
+from geometry.mesh_size import check_mesh_size
+from materials.errors import MaterialError
+from materials.library import load_steel
+from study.chain import drives, searches_linkage
+from study.errors import StudyError
+from study.inputs_linkage import linkage_search, stated_hardpoints
+from study.inputs_machine import machine_family
+from study.inputs_vehicle import ride_case
+from study.read import MESH_NAMES, check_winding, sentence_part, with_keys
+from study.schema import Study
+from units import MILLIMETRE, SQUARE_MILLIMETRE
+from vehicle.errors import VehicleError
+
+FEWEST_DIAMETERS = 4  # a quadratic through three points has no residual, so that nobody would see a wrong one
+
+
+def check_study(study: Study) -> None:
+    """Raise StudyError with one sentence for the first thing that would stop a run of the whole study."""
+    for check in (check_diameters, check_windings, check_steel, check_sweep, check_libraries):
+        check(study)
+
+
+def check_diameters(study: Study) -> None:
+    """The torque of a slot count is fitted over the diameters."""
+    diameters = study.sweep.stator_diameters_mm
+    if len(diameters) < FEWEST_DIAMETERS:
+        raise StudyError(
+            f"{study.path}: sweep.stator_diameters_mm names {len(diameters)}, but the polynomials over the diameter "
+            f"need {FEWEST_DIAMETERS}; add {FEWEST_DIAMETERS - len(diameters)} or more."
+        )
+
+
+def check_windings(study: Study) -> None:
+    """Every slot count of the sweep must have a balanced winding."""
+    for slots in study.sweep.slots:
+        check_winding(study, "sweep.slots", slots, str(study.path))
+
+
+def check_steel(study: Study) -> None:
+    """The steel must exist and its curve be usable."""
+    key = f'{study.path}: materials.steel = "{study.materials.steel}"'
+    try:
+        load_steel(study.materials.steel, study.path.parent)
+    except MaterialError as error:
+        raise StudyError(f"{key} cannot be used, {sentence_part(error)}.") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError(f"{key} cannot be read ({error}); give a readable csv file or a known grade.") from error
+
+
+def check_sweep(study: Study) -> None:
+    """Every slot count and diameter must have a design that can be built and meshed; one of all must take the wire."""
+    largest = 0.0
+    for slots, diameter in product(study.sweep.slots, study.sweep.stator_diameters_mm):
+        machines = _buildable(study, slots, diameter)
+        for machine in machines:
+            check_mesh(study, machine, mesh_density(study), f"a design of the sweep ({slots} slots, {diameter:g} mm)")
+        largest = max(largest, *(machine.half_slot_area for machine in machines))
+    _check_wire(study, largest)
+
+
+def check_mesh(study: Study, machine: Machine, density: MeshDensity, what: str = "[machine]") -> None:
+    """The machine must not need a mesh that nobody can solve."""
+    try:
+        check_mesh_size(machine, density, machine.sectors)
+    except GeometryError as error:
+        raise StudyError(f"{study.path}: {what} cannot be meshed, {with_keys(study, error)}.") from error
+
+
+def mesh_density(study: Study) -> MeshDensity:
+    """Resolution of the mesh of the sweep; what the study does not state has its default."""
+    stated = {name: getattr(study.mesh, key) for name, key in MESH_NAMES.items()}
+    return MeshDensity(**{name: value for name, value in stated.items() if value is not None})
+
+
+def _buildable(study: Study, slots: int, diameter: float) -> list[Machine]:
+    """The machines of the sweep with these slots and this stator diameter [mm]; StudyError when there is none."""
+    found, refused = [], Counter[str]()
+    for machine in _designs(study, slots, diameter * MILLIMETRE / 2):
+        try:
+            check_machine(machine)
+            found.append(machine)
+        except GeometryError as error:
+            refused[_rule(error)] += 1
+    if not found:
+        raise StudyError(
+            f"{study.path}: no design of the sweep with sweep.slots = {slots} and sweep.stator_diameters_mm = "
+            f"{diameter:g} can be built, mostly since {refused.most_common(1)[0][0]}; change the ranges "
+            "sweep.back_iron_fraction_* and sweep.rotor_radius_fraction_*, or leave that number out."
+        )
+    return found
+
+
+def _rule(error: GeometryError) -> str:
+    """The rule that a machine breaks, without its own numbers and advice."""
+    return str(error).partition(":")[0]
+
+
+def _designs(study: Study, slots: int, radius: float) -> Iterator[Machine]:
+    """Every machine of the sweep with this number of slots and stator radius [m]."""
+    s, family = study.sweep, machine_family(study.machine)
+    widths = _steps(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps)
+    radii = _steps(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, s.rotor_radius_steps)
+    for width, rotor in product(widths, radii):
+        yield family.machine(slots, radius, width * radius, rotor * radius)
+
+
+def _steps(low: float, high: float, count: int) -> list[float]:
+    return [low + (high - low) * k / (count - 1) for k in range(count)]
+
+
+def _check_wire(study: Study, area: float) -> None:
+    """One turn of one wire must fit the largest half slot of the sweep [m^2] (thesis eq. 3.119)."""
+    chosen, packing = study.winding_selection.si, study.winding.packing_factor
+    if pi / 4 * chosen.wire_diameter**2 > packing * (1 + chosen.packing_tolerance) * area:
+        raise StudyError(
+            f"{study.path}: winding_selection.wire_diameter_mm = {study.winding_selection.wire_diameter_mm:g} fits no "
+            f"slot of the sweep, a coil side has {area / SQUARE_MILLIMETRE:.3g} mm2 at most and winding.packing_factor "
+            f"= {packing:g} of that is copper; take a thinner wire."
+        )
+
+
+def check_libraries(study: Study) -> None:
+    """Build the vehicle, its dampers and scenarios and the linkage problem, as far as they are used.
+
+    StudyError with the sentence of the package that refuses them.
+    """
+    try:
+        _build(study)
+    except (VehicleError, LinkageError) as error:
+        raise StudyError(f"{study.path}: {sentence_part(error)}.") from error
+
+
+def _build(study: Study) -> None:
+    if drives(study):
+        ride_case(study)
+    if searches_linkage(study):
+        linkage_search(study)
+    if study.linkage is not None:
+        stated_hardpoints(study.linkage)

@@ -1,0 +1,36 @@
+"""A machine whose flux linkages are straight lines, wound, with its closed forms beside it."""
+
+import numpy as np
+import xarray as xr
+
+from electrical.flux_map_machine import FluxMapMachine
+from electrical.resistance import phase_resistance
+from electrical.synchronous_machine import SynchronousMachine
+
+PSI, L_D, L_Q, POLES = 5e-3, 4e-6, 4e-6, 5  # per turn and metre: Wb, H, H; without saliency
+TURNS, STRANDS, AREA, LENGTH, END, RHO = 8, 20, 0.2e-6, 0.04, 0.016, 1.7e-8
+
+
+def flux_map(reach=1500.0):
+    """Per turn and metre over one angle."""
+    i = np.linspace(-reach, reach, 9)
+    d, q = np.meshgrid(i, i, indexing="ij")
+    psi_d, psi_q = PSI + L_D * d, L_Q * q
+    torque = 1.5 * POLES * (psi_d * q - psi_q * d)
+    tables = {"psi_d": (("id", "iq"), psi_d), "psi_q": (("id", "iq"), psi_q), "torque": (("id", "iq"), torque)}
+    return xr.Dataset(tables, {"id": i, "iq": i}, {"pole_pairs": POLES}).expand_dims(angle=[0.0])
+
+
+def per_turn():
+    """One turn, one metre, no resistance."""
+    return FluxMapMachine.from_per_turn(flux_map(), turns=1, active_length=1.0, resistance=0.0)
+
+
+def closed_form(turns=TURNS, strands=STRANDS, length=LENGTH, end=END):
+    """The same machine, wound, with constant parameters."""
+    scale = turns * length
+    resistance = phase_resistance(
+        turns=turns, strands=strands, wire_area=AREA, active_length=length, end_turn_length=end, coils_in_series=4,
+        resistivity=RHO,
+    )  # fmt: skip
+    return SynchronousMachine(POLES, scale * PSI, turns * scale * L_D, turns * scale * L_Q, resistance)

@@ -1,0 +1,172 @@
+"""The outcome of a small machine: numbers that agree with each other, behind gears and as a direct drive."""
+
+import json
+from math import pi
+
+import numpy as np
+import pytest
+from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
+
+from drivetrain.masses import PartMaterials
+from drivetrain.outcome import (
+    Features,
+    OutcomeInputs,
+    StatedActuator,
+    active_masses,
+    actuator_limits,
+    outcome_stage,
+)
+from drivetrain.output import Shaft, Wheel
+from drivetrain.requirements import Linkage, Requirements
+from electrical.winding_stage import WindingOutcome
+from electrical.wound_machine import WoundMachine
+from gearbox.bodies import Construction
+from gearbox.layout import Housing
+from gearbox.planetary_set import planetary_set
+from gearbox.stage import GearboxOutcome, SafetyCheck
+from gearbox.train import DirectDrive, GearTrain, Stage
+from geometry.machine import hanselman_machine
+from magnetostatics.flux_map_stage import FluxMap
+from pipeline.codec import decoded, digest, encoded
+from report.outcome import checks_table, features_table, files, masses_table, remedies_table, section
+
+MM = 1e-3
+BUILD = Construction(bore_fraction=0.45, flange_fraction=0.25, least_flange=1.5 * MM, axial_gap=0.5 * MM)
+NOTHING = Requirements(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+ASKED = Requirements(40e3, 300.0, 0.1, 30.0, 3.4, 2600.0, 1.6, 4250.0, 1340.0, 3.2)
+
+
+@pytest.fixture(scope="module")
+def wound():
+    machine = hanselman_machine(
+        slots=12, pole_pairs=POLES, stator_outer_radius=42.5 * MM, rotor_outer_radius=15.7 * MM,
+        back_iron_width=3.3 * MM, magnet_length=2.5 * MM, airgap=0.5 * MM, slot_opening=2 * MM,
+        shoe_depth_fraction=0.52, shoe_aspect_ratio=1.0, shaft_radius=5 * MM,
+    )  # fmt: skip
+    return WoundMachine(machine, 4, 1, TURNS, STRANDS, AREA, LENGTH, RHO)
+
+
+@pytest.fixture(scope="module")
+def field():
+    return FluxMap(flux_map(), POLES, 4, 1, 1e-4, 1000.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def winding(wound, field):
+    """Only what the outcome reads of it."""
+    torque = float(wound.on_map(field.data).torque(0.0, wound.current_peak(20e6)))
+    rest = {name: None for name in WindingOutcome.__dataclass_fields__} | {"wound": wound, "peak_torque": torque}
+    return WindingOutcome(**rest)
+
+
+@pytest.fixture(scope="module")
+def inputs():
+    return OutcomeInputs(
+        nominal_density=6e6, overload_density=20e6, dc_voltage=48.0, phase_current_max=90.0, rotor_speed_max=2618.0,
+        active_length_max=70 * MM, equivalent_mass_max=15.0,
+        housing=Housing(wall=12.5 * MM, lever_side=55 * MM, bearing_seat=14 * MM, sensor_cover=25 * MM),
+        casing_mass=2.4, materials=PartMaterials(7650.0, 7500.0, 8960.0, 7800.0, 0.95),
+        viscous_friction=250.0, coulomb_friction=3.0,
+        stated=StatedActuator("thesis", Features(2700.0, 459.0, 6.0, 4.9, 2.2e-3, 76.9, 0.17, 4.5, 0.11, 0.197)),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def gears():
+    teeth = planetary_set((14, 46, -109), (0.483, 0.076), 0.75 * MM)
+    train = GearTrain((Stage(teeth, 12 * MM), Stage(teeth, 4.5 * MM)), 85 * MM, BUILD, 7800.0, 0.06)
+    return GearboxOutcome(train, 0.170, (SafetyCheck("static_root", 1.1, 1.0),))
+
+
+@pytest.fixture(scope="module")
+def found(winding, field, gears, inputs):
+    return outcome_stage(winding, field, gears, ASKED, Linkage(0.170, 0.175, 60 * MM), inputs)
+
+
+def test_the_features_agree_with_each_other(found, winding, wound, gears, inputs):
+    one = found.features
+    assert one.machine_torque == pytest.approx(winding.peak_torque)
+    assert one.effort_peak == pytest.approx(one.machine_torque / one.transmission_ratio)
+    assert one.slow_shaft_torque == pytest.approx(one.machine_torque * one.gear_ratio)
+    masses = active_masses(wound, inputs.materials)
+    assert one.mass == pytest.approx(masses.total + gears.train.mass + 2.4)
+    rotor = masses.rotor_inertia / one.transmission_ratio**2
+    assert one.equivalent_mass == pytest.approx(rotor + gears.train.inertia_at_slow_shaft / 0.170**2)
+    assert one.diameter == pytest.approx(110 * MM) and one.length == found.layout.length
+
+
+def test_end_windings_stand_beside_the_stack(found, wound):
+    stack = next(part for part in found.layout.parts if part.kind == "stator")
+    end = next(part for part in found.layout.parts if part.kind == "winding")
+    assert stack.length == LENGTH and end.length == pytest.approx(wound.end_turn_length / pi)
+
+
+def test_the_limits_are_the_envelope_at_the_wheel(found):
+    limits = actuator_limits(found)
+    assert limits.force[0] == pytest.approx(found.features.effort_peak, rel=1e-6)
+    assert limits.speed[-1] == pytest.approx(2618 * found.features.transmission_ratio)
+    assert np.all(np.diff(limits.force) <= 1e-6) and limits.viscous_friction == 250.0
+
+
+def test_a_check_at_speed_is_on_the_limits(found):
+    check = found.checks[1]
+    assert check.reached == pytest.approx(np.interp(1.6, found.limits.speed, found.limits.force), rel=0.01)
+
+
+def test_nothing_asked_for_holds(winding, field, gears, inputs):
+    found = outcome_stage(winding, field, gears, NOTHING, Linkage(0.170, 0.175), inputs)
+    assert all(one.holds for one in found.checks[:6]) and len(found.checks) == 9
+    table = checks_table(found, Wheel())
+    assert list(table.margin_percent[:5]) == [np.inf] * 5
+    assert section(found, Wheel()).title == "Outcome"
+
+
+def test_tables_are_in_drawing_units(found):
+    table = checks_table(found, Wheel()).set_index("requirement")
+    damping = table.loc["regenerative damping at low speed"]
+    assert (damping.needed, damping.unit) == (40.0, "kNs/m")
+    assert table.loc["diameter"].needed == 120.0 and table.loc["rotor speed"].unit == "rpm"
+    assert table.loc["gears, safety static root"].holds == "NO"
+    features = features_table(found, Wheel()).set_index("feature")
+    assert features.loc["overall transmission ratio / (mm/rad)"].stated == pytest.approx(2.2)
+    assert features.loc["diameter of the envelope / mm"].ours == pytest.approx(110)
+    whole = masses_table(found).set_index("part").mass_kg
+    assert whole.whole == pytest.approx(whole["active parts"] + whole.gears + whole["casing, bearings, shafts"])
+    remedies = remedies_table(found, Wheel())
+    assert set(remedies.requirement) == {one.requirement.name(Wheel()) for one in found.checks if not one.holds}
+
+
+def test_a_failing_requirement_is_a_remark(found):
+    said = [part.text for part in section(found, Wheel()).content if type(part).__name__ == "Remark"]
+    assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks))
+    assert all("does not hold" in text for text in said)
+
+
+def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
+    """A torque of the machine itself, no gears, a load on the shaft."""
+    drive = Requirements(0.0, 1.0, 100.0, 100.0, 300.0, 4.0, 100.0, 500.0, 2.0, 250.0)
+    plain = OutcomeInputs(**{**vars(inputs), "stated": None, "load_inertia": 1e-3, "equivalent_mass_max": 1e-2})
+    found = outcome_stage(winding, field, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain)
+    assert found.features.effort_peak == pytest.approx(winding.peak_torque)
+    assert found.load_inertia_ratio == pytest.approx(1e-3 / found.features.equivalent_mass)
+    words = repr([part if isinstance(part, str) else part.frame.to_string() if hasattr(part, "frame") else part
+                  for part in section(found, Shaft()).content])  # fmt: skip
+    for absent in ("wheel", "lever", "force", "m/s", "linkage", "gears"):
+        assert absent not in words
+    assert "peak torque" in words and "rpm" in words and "kg m²" in words
+
+
+def test_the_outcome_is_written_and_read_again(found):
+    again = decoded(json.loads(json.dumps(encoded(found))))
+    assert digest(again) == digest(found) and again.checks == found.checks and again.remedies == found.remedies
+
+
+def test_files_are_written_in_both_kinds_of_words(found, tmp_path):
+    for output in (Wheel(), Shaft()):
+        names = [file.name for file in files(found, output)]
+        assert "outcome_requirements.csv" in names and "figures/axial_section.png" in names
+    for file in files(found, Wheel()):
+        target = tmp_path / file.name
+        target.parent.mkdir(exist_ok=True)
+        file.write(target)
+        assert target.stat().st_size > 0

@@ -1,0 +1,67 @@
+"""Areas of the parts in closed form against the meshed regions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.areas import part_areas
+from geometry.cross_section import mesh_cross_section
+from geometry.half_cell import MeshDensity
+from geometry.machine import hanselman_machine
+from geometry.winding import star_of_slots
+from units import MILLIMETRE
+
+THESIS = hanselman_machine(
+    slots=12, pole_pairs=5, stator_outer_radius=42.5 * MILLIMETRE, rotor_outer_radius=15.7 * MILLIMETRE,
+    back_iron_width=3.3 * MILLIMETRE, magnet_length=2.5 * MILLIMETRE, airgap=0.5 * MILLIMETRE,
+    slot_opening=2.0 * MILLIMETRE, shoe_depth_fraction=0.52, shoe_aspect_ratio=1.0, shaft_radius=5.0 * MILLIMETRE,
+)  # fmt: skip
+
+
+FINE = MeshDensity(gap_edges=720, longest_gap_edge=0.5, across_iron=6)  # so that chords stand for arcs
+
+
+def meshed(machine):
+    """Areas [m^2] of the whole machine by part, from the mesh; those of the shaft and of the rotor core."""
+    section = mesh_cross_section(machine, star_of_slots(machine.slots, machine.pole_pairs, 2), FINE)
+    p, t = section.mesh.p, section.mesh.t
+    (ax, ay), (bx, by), (cx, cy) = (p[:, t[k]] for k in range(3))
+    area = np.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
+    names = section.mesh.subdomains
+
+    def sum_of(start):
+        return section.sectors * sum(area[where].sum() for name, where in names.items() if name.startswith(start))
+
+    return {
+        "stator_laminations": sum_of("stator_iron"),
+        "half_slot": sum_of("slot_") / (2 * machine.slots),
+        "magnets": sum_of("magnet_"),
+    }, sum_of("shaft"), sum_of("rotor_iron")
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        THESIS,
+        replace(THESIS, magnet_arc_fraction=0.8),
+        replace(THESIS, slots=9, tooth_width=7 * MILLIMETRE, stator_outer_radius=30 * MILLIMETRE),
+        replace(THESIS, slot_opening=6 * MILLIMETRE, tooth_width=3 * MILLIMETRE, shoe_d2=0.4 * MILLIMETRE),
+    ],
+    ids=["thesis", "short magnets", "nine slots", "open slots"],
+)
+def test_areas_are_those_of_the_meshed_regions(machine):
+    found, (areas, shaft, core) = part_areas(machine), meshed(machine)
+    for name, area in areas.items():
+        assert getattr(found, name) == pytest.approx(area, rel=2e-3), name
+    assert found.shaft + found.rotor_laminations == pytest.approx(shaft + core, rel=2e-3)
+    assert found.shaft == pytest.approx(shaft, rel=2e-2)  # its circle is few chords
+
+
+def test_the_parts_and_what_is_between_them_fill_the_circle():
+    """Shaft, core and magnets are the rotor; laminations and slots with their openings the stator ring."""
+    found, machine = part_areas(THESIS), THESIS
+    rotor = found.shaft + found.rotor_laminations + found.magnets
+    assert rotor == pytest.approx(np.pi * machine.rotor_outer_radius**2, rel=1e-12)
+    moments = found.shaft_moment + found.rotor_laminations_moment + found.magnets_moment
+    assert moments == pytest.approx(np.pi / 2 * machine.rotor_outer_radius**4, rel=1e-12)

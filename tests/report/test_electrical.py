@@ -1,0 +1,90 @@
+"""What people read of flux map, winding and drive: files under their names, sections with the one peak torque."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from drivetrain.output import Wheel
+from electrical.drive_stage import drive_stage
+from electrical.winding_stage import winding_stage
+from figures.report import render_report
+from report import drive
+from report import flux_map as map_report
+from report import winding as winding_report
+from tests.electrical.analytic_map import (
+    DEMAND,
+    INPUTS,
+    MATCHED,
+    REQUIRED,
+    TRANSMISSION,
+    Saturating,
+    flux_map,
+)
+from units import RPM
+
+MAP = flux_map(Saturating())
+
+
+@pytest.fixture(scope="module")
+def winding():
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+
+
+@pytest.fixture(scope="module")
+def driven(winding):
+    return drive_stage(MAP, winding, INPUTS)
+
+
+def written(files, folder):
+    (folder / "figures").mkdir()
+    for one in files:
+        one.write(folder / one.name)
+    return folder
+
+
+def test_files_of_the_flux_map(winding, tmp_path):
+    written(map_report.files(MAP, winding), tmp_path)
+    with np.load(tmp_path / "flux_map_export.npz") as tables:
+        assert tables["pole_pairs"] == 5 and tables["torque"].max() > 1
+    assert (tmp_path / "flux_map_export.mat").stat().st_size > 1000
+
+
+def test_table_of_windings(winding, tmp_path):
+    table = pd.read_csv(written(winding_report.files(winding), tmp_path) / "windings.csv")
+    chosen = table[table.chosen]
+    assert len(chosen) == 1 and len(table) == len(winding.table)
+    assert chosen.base_speed_rpm.item() == pytest.approx(winding.chosen.base_speed / RPM)
+    assert chosen.phase_to_phase_resistance_mOhm.item() == pytest.approx(2e3 * winding.wound.phase_resistance)
+    assert table.maximum_power_W.notna().sum() == len(winding.near)
+
+
+def test_files_of_the_drive(driven, winding, tmp_path):
+    folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED, Wheel()), tmp_path)
+    envelope = pd.read_csv(folder / "flux_map_envelope.csv")
+    columns = (("torque", "Nm"), ("power", "W"), ("i_d", "A"), ("i_q", "A"), ("voltage", "V"))
+    wanted = [f"{quantity}_{model}_{unit}" for model in ("field", "constant") for quantity, unit in columns]
+    assert list(envelope) == ["speed_rpm", *wanted, "i_d_mtpv_A", "i_q_mtpv_A"]
+    assert envelope.torque_field_Nm[0] == pytest.approx(winding.peak_torque)
+    both = pd.read_csv(folder / "windings_field.csv")
+    assert {"base_speed_field_rpm", "base_speed_constant_rpm", "peak_torque_field_Nm", "chosen"} <= set(both)
+    pictures = "flux_map field_envelope torque_speed force_velocity force_velocity_field".split()
+    assert sorted(path.stem for path in (folder / "figures").iterdir()) == sorted(pictures)
+
+
+def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
+    said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
+    assert said in drive.section(driven, winding, Wheel()).content[0]
+    numbers = winding_report.section(winding, INPUTS, None).content[0].numbers
+    key = next(one for one in numbers if one.name == "peak torque")
+    assert key.value == winding.peak_torque
+    assert winding_report.windings_table(winding).query("chosen").peak_torque_Nm.item() == pytest.approx(key.value)
+    assert drive.windings_table(driven, winding).query("chosen").peak_torque_field_Nm.item() == pytest.approx(key.value)
+
+
+def test_sections_can_be_printed(winding):
+    match = SimpleNamespace(chosen=SimpleNamespace(active_length=0.04))
+    sections = (map_report.section(MAP), winding_report.section(winding, INPUTS, match))
+    page = render_report(sections, title="", subtitle="")
+    assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak torque" in page

@@ -1,0 +1,62 @@
+"""The match for people: names and columns of the files, and what the section says."""
+
+from dataclasses import replace
+
+import pytest
+
+from drivetrain.matching import NamedMatch
+from drivetrain.output import Wheel
+from figures.report import Remark, Table
+from report.match import PARTS, TABLE, files, over_radius, parts_table, section
+from tests.drivetrain.test_matching import STATED, no_field, stage
+
+
+@pytest.fixture(scope="module")
+def found():
+    with no_field():
+        return stage(stated=STATED)
+
+
+def texts(page):
+    return " ".join(getattr(part, "text", part) for part in page.content if isinstance(part, (str, Remark)))
+
+
+def test_files(found):
+    names = {file.name for file in files(found, Wheel())}
+    assert names == {TABLE, PARTS, "figures/match_curves.png", "figures/match_over_radius.png"}
+
+
+def test_table_over_the_radius(found):
+    table = over_radius(found, Wheel())
+    assert list(table.columns) == [
+        "slots", "overload", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm", "cost",
+    ]  # fmt: skip
+    assert set(table.slots) == {9, 12} and set(table.overload) == {"field", "linear"}
+
+
+def test_parts_in_drawing_units(found):
+    table = parts_table(found.parts).set_index("part")
+    assert table.mass_kg["active parts"] == pytest.approx(found.parts.total)
+    assert table.inertia_kg_mm2["active parts"] == pytest.approx(found.parts.rotor_inertia * 1e6)
+    assert table.inertia_kg_mm2["stator laminations"] == 0
+
+
+def test_the_section_says_what_must_not_be_overlooked(found):
+    page = section(found, Wheel())
+    said = texts(page)
+    assert "Decision: chosen in the study file" in said and "sweep.stator_diameters_mm" in said
+    assert f"{found.parts.total:.2f} kg" in said and f"{found.cylinder_mass:.2f} kg" in said
+    assert "40.3 mm" in said and "35.5 mm seem to be enough" in said
+    machines = next(part for part in page.content if isinstance(part, Table) and "beside the machine" in part.caption)
+    assert list(machines.frame.machine) == [
+        "chosen machine", "reference machine, field torque", "reference machine, field torque, cylinder of steel",
+        "reference machine, torque stated by thesis",
+    ]  # fmt: skip
+
+
+def test_the_section_without_matches_beside(found):
+
+    none = NamedMatch("reference machine, field torque", "", None, "the force is too large")
+    stated = NamedMatch("stated values", "", None, "too far")
+    said = texts(section(replace(found, reference=none, reference_cylinder=None, printed=None, stated=stated), Wheel()))
+    assert "no match, the force is too large" in said and "there is no match: too far" in said
