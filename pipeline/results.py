@@ -17,7 +17,7 @@ from typing import Any, Callable, Iterator
 import xarray as xr
 
 from disk import PART, write_atomically
-from pipeline.closure import PROJECT
+from pipeline.modules import PROJECT
 from pipeline.codec import CodecError, decoded, encoded
 from study.schema import Study
 
