@@ -58,6 +58,7 @@ def inertia_at_carrier(bodies: Iterable[Body]) -> Batch:
 def solid_bodies(gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float) -> tuple[Body, ...]:
     """Solid discs of the reference circles and a solid carrier disc through the planet centres: the scaling-law stage.
 
+    face_width, envelope_diameter: [m]; density: [kg/m^3]
     Without profile shift the inertia is pi/256 rho b d_ring^4 i^2/(i - 1)^4 (5 i^2 - 18 i + 26) (thesis eq. 3.111
     with the orbits of the planets).
     """
@@ -82,7 +83,8 @@ class Construction:
 
     bore_fraction: planet bore over root diameter; the pin and its needles fill it, orbit and do not spin
     flange_fraction: thickness of each of the two carrier flanges over the face width, least_flange: not below [m];
-        the pins hold them together; flange_margin: from the pin to the rim of the flange, over the radius of the pin
+        the pins hold them together
+    flange_margin: from the pin to the rim of the flange, relative to the radius of the pin
     axial_gap: flange to teeth [m]
     """
 
@@ -103,7 +105,10 @@ class Construction:
     def bodies(
         self, gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float
     ) -> tuple[Body, ...]:
-        """Sun, bored planets, pins with needles, carrier flanges and ring; teeth solid up to the reference circle."""
+        """Sun, bored planets, pins with needles, carrier flanges and ring; teeth solid up to the reference circle.
+
+        face_width, envelope_diameter: [m]; density: [kg/m^3]
+        """
         pin = self.bore_fraction * gears.planet.root_radius
         room, orbit = self.stage_length(face_width), gears.centre_distance
         rim = orbit + pin * (1 + self.flange_margin)

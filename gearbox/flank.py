@@ -15,7 +15,7 @@ from units import MILLIMETRE
 
 @dataclass(frozen=True)
 class Lubrication:
-    """Oil and surface: viscosity nu_40 [m^2/s], roughness R_z of flanks and roots [m]."""
+    """Oil and surface: viscosity_40 nu_40 [m^2/s], flank_roughness and root_roughness R_z [m]."""
 
     viscosity_40: float
     flank_roughness: float

@@ -25,7 +25,7 @@ _FULL_LINE_LOAD = 100 * LINE_LOAD  # ISO 6336-1: stiffness and relative errors a
 class Quality:
     """Manufacture: accuracy grade of ISO 1328-1, application factor K_A, mesh load factor K_gamma.
 
-    K_gamma is the share of the most loaded planet over the mean.
+    application: K_A, dimensionless; load_sharing: K_gamma, share of the most loaded planet over the mean
     """
 
     grade: int = 6
@@ -35,7 +35,7 @@ class Quality:
 
 @dataclass(frozen=True)
 class LoadFactors:
-    """K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha and the product K_A K_gamma, arrays like the load."""
+    """K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha and external, the product K_A K_gamma, all dimensionless."""
 
     external: float
     dynamic: Batch

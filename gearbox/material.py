@@ -16,6 +16,8 @@ class LifeLine:
     """S-N line in double logarithms: ``strength`` times the endurance limit at ``first`` cycles, 1 at ``knee``, and
     beyond the knee down to ``last_strength`` at ``last`` cycles. Constant before the first and after the last.
 
+    first, knee, last: number of cycles; strength, last_strength: relative to the endurance limit
+
     In ISO 6336 it is Z_NT (flank) or Y_NT (root). A line whose last strength is 1 is horizontal beyond the knee.
     """
 

@@ -43,9 +43,9 @@ GEARS = ("sun", "planet", "ring")
 class Rules:
     """What teeth are rated by.
 
-    alternating: Y_M on the root strength of gears loaded both ways, fatigue; 0.7 for an idler (thesis above eq. 3.123),
-        here for sun and ring too, as the actuator turns back and forth
-    alternating_static: the same on the static root strength; 1 takes the peak as a single load
+    alternating: Y_M, dimensionless, on the root strength of gears loaded both ways, fatigue; 0.7 for an idler (thesis
+        above eq. 3.123), here for sun and ring too, as the actuator turns back and forth
+    alternating_static: the same, dimensionless, on the static root strength; 1 takes the peak as a single load
     """
 
     material: GearMaterial
@@ -57,7 +57,7 @@ class Rules:
 
 @dataclass(frozen=True)
 class StageLoad:
-    """What the carrier of a stage transmits: load spectrum, and the torque [Nm] and speed [rad/s] of the overload."""
+    """What the carrier of a stage transmits: load spectrum, peak_torque [Nm] and peak_speed [rad/s] of the overload."""
 
     spectrum: LoadSpectrum
     peak_torque: float
@@ -71,7 +71,7 @@ class StageLoad:
             )
 
     def behind(self, ratio: float) -> StageLoad:
-        """The load of the next stage: torque over the ratio of this one, speed times it; losses left out."""
+        """The load of the next stage: torque over the ratio of this one, dimensionless, speed times it; no losses."""
         spectrum = self.spectrum.scaled(1 / ratio, ratio)
         return StageLoad(spectrum, self.peak_torque / ratio, self.peak_speed * ratio)
 
@@ -80,7 +80,7 @@ class StageLoad:
 class StageRating:
     """Safety factors by gear ("sun", "planet", "ring"; the planet's are the lower ones of its two meshes).
 
-    flank, root: fatigue under the spectrum; static_flank, static_root: the peak torque, once
+    flank, root: fatigue under the spectrum; static_flank, static_root: the peak torque, once; all dimensionless
     """
 
     flank: dict[str, Batch]
@@ -90,7 +90,7 @@ class StageRating:
 
     @property
     def least(self) -> dict[str, float]:
-        """Smallest safety factor of each kind."""
+        """Smallest safety factor of each kind, dimensionless."""
         return {kind.name: min(np.min(value) for value in getattr(self, kind.name).values()) for kind in fields(self)}
 
 
@@ -98,6 +98,7 @@ class StageRating:
 class PittingBudget:
     """Where the pitting safety of a sun goes: ``safety`` is the product of the other four.
 
+    bare, loads, film, spectrum: dimensionless
     bare: sigma_Hlim Z_N over the stress of the RMS torque all the time, all other factors 1; loads: 1/sqrt(K_V K_Hbeta
     K_Halpha K_A K_gamma) at that torque; film: Z_L Z_V Z_R; spectrum: Miner's sum over the classes in the place of
     their RMS torque
@@ -110,7 +111,7 @@ class PittingBudget:
 
     @property
     def safety(self) -> float:
-        """Pitting safety of the sun under the spectrum."""
+        """Pitting safety of the sun under the spectrum, dimensionless."""
         return self.bare * self.loads * self.film * self.spectrum
 
 
@@ -177,7 +178,10 @@ def static_ratings(
 def survives(
     gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules, safety: tuple[float, float]
 ) -> np.ndarray:
-    """Whether fatigue safety factors (flank, root) are reached, by Miner's sum below 1, (batch)."""
+    """Whether fatigue safety factors (flank, root) are reached, by Miner's sum below 1, (batch).
+
+    safety: wanted of flank and root, dimensionless; face_width: [m]
+    """
     flank, root = endurance_ratios(gears, face_width, load.spectrum, rules)
     cycles, passed = load_cycles(gears, load.spectrum), np.array(True)
     for ratios, line, wanted in (
