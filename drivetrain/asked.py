@@ -205,7 +205,7 @@ class Diameter(Requirement):
 
 @dataclass(frozen=True)
 class Check:
-    """A requirement and the value that a design reaches [in its unit]; reached: [unit of the demand, SI]."""
+    """A requirement and the value that a design reaches; reached: [unit of the demand, SI]."""
 
     requirement: Requirement
     reached: float

@@ -99,7 +99,10 @@ class RegenerativeDamping(Constraint):
     name: str = "regenerative damping"
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
-        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping."""
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping.
+
+        ratio: tau_t [m/rad]
+        """
         if self.damping == 0:
             return super().minimum_length(ratio)
         a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)

@@ -116,7 +116,7 @@ class FourBar:
         return np.abs(self.hardpoint_c - self.hardpoint_b)
 
     def motion(self, travel: ArrayLike) -> Motion:
-        """The linkage at wheel travels [m]; raises LinkageError when it does not close at each of them."""
+        """The linkage at a travel [m], (positions,); raises LinkageError when it does not close at each of them."""
         found = self.try_motion(travel)
         worst = np.unravel_index(np.argmax(found.reach), found.reach.shape)
         if found.reach[worst] > CLOSURE_SLACK:
@@ -131,6 +131,7 @@ class FourBar:
     def try_motion(self, travel: ArrayLike) -> Motion:
         """As ``motion``, with NaN and a positive ``reach`` where a linkage does not close, for a whole population.
 
+        travel: [m], (positions,)
         B is where the circles about A (radius l_AB) and C (radius l_BC) meet, on the side of AC on which it is
         drawn; this is the closed form of the loop A + AB + BC = C (3.37). tau_l = l_OW cos(theta_OW) |cross(B - C, B
         - A) / cross(A, B - A)| with its sign (3.42), from the velocity of B.

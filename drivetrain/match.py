@@ -331,7 +331,7 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
 
 
 def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
-    """Largest of the enforced minimum lengths [m] at these ratios [m/rad]."""
+    """Largest of the enforced minimum lengths [m] at a ratio [m/rad], of its shape."""
     return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
 
 

@@ -40,7 +40,11 @@ def ring_body(
     count: int = 1,
     orbit: Batch = 0.0,
 ) -> Body:
-    """Hollow cylinder of these radii and width [m]."""
+    """Hollow cylinder, or ``count`` of them.
+
+    outer, inner: radii [m]; width: [m]; density: [kg/m^3]; speed: relative to that of the carrier
+    orbit: radius about the axis of the stage [m]
+    """
     mass = density * width * pi * (outer**2 - inner**2)
     return Body(name, count, mass, mass * (outer**2 + inner**2) / 2, speed, orbit)
 
@@ -73,7 +77,7 @@ def solid_bodies(gears: PlanetarySet, face_width: Batch, envelope_diameter: floa
 
 
 def planet_speed(gears: PlanetarySet) -> Batch:
-    """Speed of the planets over that of the carrier, 1 - |z_ring| / z_planet: they roll inside the fixed ring."""
+    """Speed of the planets relative to the carrier's, 1 - |z_ring| / z_planet: they roll inside the fixed ring."""
     return 1 + gears.ring.teeth / gears.planet.teeth
 
 

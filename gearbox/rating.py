@@ -71,7 +71,7 @@ class StageLoad:
             )
 
     def behind(self, ratio: float) -> StageLoad:
-        """The load of the next stage: torque over the ratio of this one, dimensionless, speed times it; no losses."""
+        """The load of the next stage: torque over the ratio of this one, dimensionless, speed times it; lossless."""
         spectrum = self.spectrum.scaled(1 / ratio, ratio)
         return StageLoad(spectrum, self.peak_torque / ratio, self.peak_speed * ratio)
 
@@ -80,7 +80,8 @@ class StageLoad:
 class StageRating:
     """Safety factors by gear ("sun", "planet", "ring"; the planet's are the lower ones of its two meshes).
 
-    flank, root: fatigue under the spectrum; static_flank, static_root: the peak torque, once; all dimensionless
+    flank, root: dimensionless, fatigue under the spectrum
+    static_flank, static_root: dimensionless, the peak torque, once
     """
 
     flank: dict[str, Batch]
@@ -152,7 +153,7 @@ def pitting_budget(gears: PlanetarySet, face_width: float, load: StageLoad, rule
 def static_ratings(
     gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules
 ) -> tuple[dict[str, Batch], dict[str, Batch]]:
-    """(flank, root) safety factors against the peak torque by gear, (batch).
+    """(flank, root) safety factors, dimensionless, against the peak torque by gear, (batch).
 
     The film plays no part in the static strength of the flank: Z_L Z_V Z_R = 1 (ISO 6336-2).
     """
@@ -195,7 +196,7 @@ def survives(
 
 
 def load_cycles(gears: PlanetarySet, spectrum: LoadSpectrum) -> dict[str, Batch]:
-    """Load cycles of a tooth of each gear in each class over the life, (classes, ...), with eq. 3.123."""
+    """Number of load cycles of a tooth of each gear in each class over the life, (classes, ...), with eq. 3.123."""
     turns = {"sun": gears.ratio - 1, "planet": -gears.ring.teeth / gears.planet.teeth}
     turns["ring"] = np.ones_like(gears.ratio)
     contacts = {"sun": (gears.planets, 0.5), "planet": (1, 1.0), "ring": (gears.planets, 0.5)}
@@ -214,7 +215,7 @@ def sun_force(gears: PlanetarySet, carrier_torque: Batch) -> Batch:
 def endurance_ratios(
     gears: PlanetarySet, face_width: Batch, spectrum: LoadSpectrum, rules: Rules
 ) -> tuple[dict[str, list[Batch]], dict[str, list[Batch]]]:
-    """(flank, root): stress over endurance limit by gear, a list for its meshes, each (classes, batch)."""
+    """(flank, root): stress relative to the endurance limit by gear, a list for its meshes, each (classes, batch)."""
     torque, speed = (_over_classes(values, gears) for values in (spectrum.torque, spectrum.speed))
     flank: dict[str, list[Batch]] = {name: [] for name in GEARS}
     root: dict[str, list[Batch]] = {name: [] for name in GEARS}

@@ -113,18 +113,19 @@ def largest_swing(angle: ArrayLike) -> float:
 
 
 def cycles_per_revolution(contacts: float, alternation: float, swing: float, speed_ratio: float) -> Batch:
-    """N_j = a_1 a_2 max(1, 2 pi / (swing ratio)): load cycles of a gear per revolution of that gear (3.123).
+    """N_j = a_1 a_2 max(1, 2 pi / (swing ratio)): number of load cycles of a gear per revolution of that gear (3.123).
 
     contacts a_1: number of them per continuous revolution (3 for sun and ring, 1 for a planet)
-    alternation a_2: dimensionless, 0.5 where a
-    full alternation takes two revolutions, there and back (sun, ring), 1 for a planet; swing [rad] of the input
-    shaft of the stage; speed_ratio: number of turns of the gear, against the carrier, per turn of that shaft.
+    alternation a_2: dimensionless, 0.5 where a full alternation takes two revolutions, there and back (sun, ring), 1
+        for a planet
+    swing [rad] of the input shaft of the stage
+    speed_ratio: number of turns of the gear, against the carrier, per turn of that shaft
     """
     return contacts * alternation * np.maximum(1.0, 360 * DEGREE / (swing * speed_ratio))
 
 
 def reversals(history: ArrayLike) -> np.ndarray:
-    """Turning points of a history [its unit], (k,), its first and last value included."""
+    """Turning points (k,) of a history (n,) [any unit, that of the result], its first and last value included."""
     values = np.asarray(history, dtype=float)
     values = values[np.concatenate([[True], np.diff(values) != 0])]
     if values.size < 3:
@@ -136,7 +137,7 @@ def reversals(history: ArrayLike) -> np.ndarray:
 def rainflow(history: ArrayLike) -> np.ndarray:
     """Cycles of a history, (cycles, 3), by the rainflow rule of ASTM E1049-85, 5.4.4.
 
-    rainflow: range and mean [unit of the history], count (1 or 0.5)
+    history: [any unit], (n,); rainflow: range and mean [unit of the history], count (1 or 0.5)
     """
     stack, found = [], []
     for point in reversals(history):

@@ -93,7 +93,7 @@ class DirectDrive(Gears):
 
     @property
     def stage_lengths(self) -> tuple[float, ...]:
-        """None [m]."""
+        """Of no stage [m], empty."""
         return ()
 
     @property

@@ -49,7 +49,7 @@ class Topology:
 
     @cached_property
     def iron_unknowns(self) -> tuple[np.ndarray, np.ndarray]:
-        """Index of the free unknown and sign of every degree of freedom of the iron, each (F, E), at every angle."""
+        """Index of the free unknown and sign of every degree of freedom of the iron, each (F, E); of any angle."""
         dofs = self.dofs[:, self.iron]
         return self.unknowns.column[dofs], self.unknowns.sign[dofs]
 

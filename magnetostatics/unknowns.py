@@ -39,7 +39,7 @@ class Unknowns:
     count: int
     free_dofs: np.ndarray  # index of the degree of freedom of every free unknown, (count,)
     stator_slide: np.ndarray  # indices (k,) in the order of angle, without the end of the sector
-    rotor_slide: np.ndarray  # indices (k + 1,) in the order of angle, with the end of the sector
+    rotor_slide: np.ndarray  # indices (k + 1,) in the order of angle, with the end of the sector; (k,) for a whole one
     edge_angle: float  # of one edge of the sliding circle [rad]
     offset: float  # rotor start angle minus stator start angle at rotor angle zero [rad]
     sector_sign: int

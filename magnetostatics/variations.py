@@ -119,7 +119,8 @@ def _with_steels(model: FieldModel, change: Callable[[Reluctivity], Reluctivity]
 class Materials:
     """Anything that changes the materials.
 
-    step, change: [unit of the amount], change: (materials of the solution, amount) -> materials, for example
+    step: [unit of the amount]
+    change: (materials of the solution, amount [any unit]) -> materials, for example
         ``lambda m, d: replace(m, stator_steel=CutEdge(steel, 0.5e-3, 0.3 + d))``
     """
 
@@ -135,7 +136,7 @@ class Dimension:
     """Anything that changes the drawn machine: the nodes of the mesh follow.
 
     morpher: of the cross-section that the solution was made on, or was moved from
-    machine: change [m] -> machine, for example ``lambda d: replace(base, airgap=base.airgap + d)``
+    machine: change [m, or its unit] -> machine, for example ``lambda d: replace(base, airgap=base.airgap + d)``
     """
 
     morpher: Morpher

@@ -79,7 +79,7 @@ class EveryToothAndBackIronOverPeriod(SaturationReading):
     def states(
         self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
     ) -> list[OperatingPoint]:
-        """Of the period; amplitude: of the current density in the copper [A/m^2]."""
+        """Positions of the period; amplitude: of the current density in the copper [A/m^2]."""
         return period_points(machine, layout, amplitude, packing, STEPS_OVER_PERIOD)
 
     def limited(self, aligned: float, tooth: float, back_iron: float) -> float:

@@ -114,7 +114,7 @@ class QuickMeanTorque(TorqueObjective):
         return flux_linkage_torque(solution)
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
-        """That known, scaled [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
+        """The known one, scaled [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
         return float(known[0] * further[1:].mean() / further[0])
 
 
