@@ -8,11 +8,13 @@ from __future__ import annotations
 import ast
 import hashlib
 import sys
+from collections.abc import Callable, Iterator
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
 
 from pipeline.modules import PROJECT, module_file
+
 
 @cache
 def _imported(path: Path) -> frozenset[str]:
