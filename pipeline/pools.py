@@ -21,7 +21,6 @@ from typing import Any, Callable, Mapping
 from tqdm import tqdm
 
 from pipeline.checkpoint import Checkpoint
-from pipeline.codec import decoded, encoded
 
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
 # A solve on two BLAS threads is slower than on one, and the cores are busy with other tasks.
@@ -241,15 +240,6 @@ class PooledWorkers:
                 ) from None
         job.report(title)
         return {name: checkpoint[name] for name in tasks}
-
-
-@dataclass(frozen=True)
-class WorkersHere:
-    """``tasks.Workers`` without a checkpoint: what runs in this process, its results as a checkpoint gives them."""
-
-    def map(self, what: str, function: Callable, tasks: Mapping[str, Any]) -> dict[str, Any]:
-        """See ``tasks.Workers.map``."""
-        return {name: decoded(encoded(function(task))) for name, task in tasks.items()}
 
 
 def _progress(total: int, done: int, description: str) -> tqdm:

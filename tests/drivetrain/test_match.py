@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drivetrain.force_velocity import force_velocity_map
 from drivetrain.match import (
     CostWeights,
     DampingEnforced,
@@ -19,8 +18,6 @@ from drivetrain.match import (
     match_over_radius,
     planet_clearance,
 )
-from electrical.dq import DriveLimits, operating_map
-from electrical.synchronous_machine import SynchronousMachine
 from units import MILLIMETRE
 
 
@@ -281,16 +278,6 @@ def test_radius_sweep_wants_rising_radii(thesis):
 def test_inertia_weight_outside_its_range_is_refused():
     with pytest.raises(ValueError, match="between 0 and 1"):
         CostWeights(inertia=1.5, stator_radius=0.2)
-
-
-def test_force_velocity_plane_is_the_torque_speed_plane_through_the_ratio():
-    machine = SynchronousMachine(5, 6.547e-3, 84e-6, 84e-6, 13.7e-3)
-    limits = DriveLimits.from_dc_bus(122.2, 48.0)
-    force, velocity = np.meshgrid([-1000.0, 500.0, 2000.0], [0.2, 0.8])
-    plane = force_velocity_map(machine, limits, 2.3 * MILLIMETRE, force, velocity)
-    direct = operating_map(machine, limits, force * 2.3e-3, velocity / 2.3e-3)
-    assert plane.current_peak == pytest.approx(direct.current_peak, nan_ok=True)
-    assert plane.voltage_peak == pytest.approx(direct.voltage_peak, nan_ok=True)
 
 
 def curves_of(thesis, ratio):

@@ -11,7 +11,7 @@ import pytest
 
 from pipeline.checkpoint import Checkpoint
 from pipeline.modules import PROJECT
-from pipeline.pools import DaskCluster, PooledWorkers, Processes, TaskError, WorkersHere
+from pipeline.pools import DaskCluster, PooledWorkers, Processes, TaskError
 
 HERE = Path(__file__).parent
 EXIT_INTERRUPTED = 130
@@ -65,7 +65,6 @@ def test_records_come_back_as_they_were(pool, path):
     from worker_tasks import design
 
     assert workers(pool, path).map("designs", design, {"a": 2.0})["a"] == design(2.0)
-    assert WorkersHere().map("designs", design, {"a": 2.0})["a"] == design(2.0)
 
 
 def test_workers_use_one_blas_thread(pool, path):

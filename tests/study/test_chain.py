@@ -12,7 +12,7 @@ from study.inputs_vehicle import requirements_beside, ride_case, stated_requirem
 from study.read import STUDIES, read_study
 from study.usable import check_study
 from units import DEGREE
-from vehicle import thesis
+from tests.vehicle import thesis
 
 FULL = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
 

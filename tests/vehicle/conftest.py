@@ -9,7 +9,7 @@ from vehicle.damping import linear_damper
 from vehicle.demands import RideCase, requirements_stage
 from vehicle.road import roughness_of_class
 from vehicle.scenarios import obstacle_scenarios, road_scenarios
-from vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
+from tests.vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
 
 
 @dataclass

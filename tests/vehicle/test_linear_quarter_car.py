@@ -35,7 +35,7 @@ from vehicle.spectral import (
     ride_of,
     stationary_indices,
 )
-from vehicle.thesis import (
+from tests.vehicle.thesis import (
     COMFORT,
     CRUISE_SPEED,
     HANDLING,

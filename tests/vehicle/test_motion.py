@@ -15,7 +15,7 @@ from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyr
 from vehicle.motion import Motion
 from vehicle.ride import Run, Scenario, simulate
 from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
-from vehicle.thesis import (
+from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
     motorcycle,

@@ -18,7 +18,7 @@ from vehicle.scenarios import (
     summaries,
 )
 from vehicle.spectral import mean_power_theorem
-from vehicle.thesis import (
+from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
     MAXIMUM_REGENERATIVE_DAMPING,
