@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
-from typing import Iterator
 
 import numpy as np
 import pandas as pd
@@ -129,10 +129,10 @@ def _closest(maps: DesignMaps, case: FieldCase) -> tuple[int, float]:
 
 def _what(maps: DesignMaps) -> str:
     return (
-        f"Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux density "
-        f"of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs for every "
-        f"slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined with further "
-        "field solutions until the limit is met to 0.02 %."
+        "Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux "
+        f"density of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs "
+        f"for every slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined "
+        "with further field solutions until the limit is met to 0.02 %."
     )
 
 
@@ -151,7 +151,7 @@ def _readings(limits: LimitComparison | None) -> tuple[str | Picture, ...]:
         return ()
     text = (
         "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles "
-        "count; the torque is the same mean over the period in all of them. Points of this figure are read off a map by "
-        "interpolation."
+        "count; the torque is the same mean over the period in all of them. Points of this figure are read off a map "
+        "by interpolation."
     )
     return text, Picture(picture_name("limits"), "Optimum against the flux-density limit, for each reading of it.")
