@@ -22,11 +22,14 @@ Reader = Callable[[FieldSolution], np.ndarray]
 
 
 class Variation(Protocol):
-    """A parameter: ``step`` is a small length in its own unit, ``at(model, point, change)`` the changed problem."""
+    """A parameter that the field depends on."""
 
-    step: float
+    @property
+    def step(self) -> float:
+        """A small change, in the parameter's own unit."""
 
-    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]: ...
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The problem with the parameter changed by this much."""
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
