@@ -22,7 +22,7 @@ ALLOWED = {
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
     "study": _DESIGN,
-    "figures": _DESIGN - {"optimisation", "gearbox", "materials"},
+    "figures": _DESIGN - {"optimisation", "materials"},
     "report": {*_DESIGN, "figures"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "report", "effects", "workbench"},
 }
