@@ -8,10 +8,11 @@ from __future__ import annotations
 import ast
 import hashlib
 import sys
+from collections.abc import Callable
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
-from typing import Callable
+from typing import Any
 
 PROJECT = Path(__file__).resolve().parent.parent
 
@@ -29,8 +30,9 @@ def module_file(name: str) -> Path | None:
 def _file_of_package_without_init(place: Path, name: str) -> Path | None:
     """A module that is loaded from a folder outside the project's root, such as one of its tests."""
     loaded = getattr(sys.modules.get(name), "__file__", None)
-    own = loaded is not None and Path(loaded).resolve().is_relative_to(PROJECT)
-    return Path(loaded) if own and ".venv" not in loaded else None
+    if not isinstance(loaded, str) or ".venv" in loaded:
+        return None
+    return Path(loaded) if Path(loaded).resolve().is_relative_to(PROJECT) else None
 
 
 @cache
@@ -72,14 +74,14 @@ def _file_hash(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def code_digest(*functions: Callable) -> str:
+def code_digest(*functions: Callable[..., Any]) -> str:
     """Hash of the names and contents of all files that the functions depend on."""
     files = sorted(frozenset().union(*(files_of(function.__module__) for function in functions)))
     lines = (f"{path.relative_to(PROJECT).as_posix()} {_file_hash(path)}" for path in files)
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def packages_of(*functions: Callable) -> dict[str, str]:
+def packages_of(*functions: Callable[..., Any]) -> dict[str, str]:
     """Installed version of every package that the code of the functions imports, and of Python."""
     files = frozenset().union(*(files_of(function.__module__) for function in functions))
     names = {name.partition(".")[0] for path in files if path.suffix == ".py" for name in _imported(path)}

@@ -50,8 +50,9 @@ def limits_files(limits: LimitComparison) -> Iterator[File]:
     """Table and figure of the optimum over the limit."""
     table = limits_table(limits)
     yield table_file("limits.csv", table)
-    chosen = {"chosen_reading": limits.chosen.reading.name, "chosen_limit_T": limits.chosen.limit}
-    yield figure_file("limits", limits_figure(table, **chosen))
+    chosen = limits.chosen
+    drawn = limits_figure(table, chosen_reading=chosen.reading.name, chosen_limit_T=chosen.limit)
+    yield figure_file("limits", drawn)
 
 
 def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
