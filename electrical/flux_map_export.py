@@ -42,8 +42,8 @@ class FluxTables:
     """Fields of the export, each under its name in the file, SI.
 
     id_index (n,), iq_index (m,): currents [A]; lambda_d, lambda_q, torque (n, m): at them [Wb, Wb, Nm]
-    flux_d (k,), flux_q (l,): flux linkages [Wb]; id, iq (k, l): currents at them [A]; inside (k, l): 1 where the map was
-        solved, 0 where it is continued
+    flux_d (k,), flux_q (l,): flux linkages [Wb]; id, iq (k, l): currents at them [A]; inside (k, l): 1 where
+        the map was solved, 0 where it is continued
     """
 
     id_index: np.ndarray

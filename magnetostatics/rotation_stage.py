@@ -210,7 +210,7 @@ def solve_null_states(wanted: NullStates) -> SolvedNullStates:
     for number, elements in enumerate(model.section.mesh.subdomains.values()):
         region[elements] = number
     return SolvedNullStates(
-        torque_error=torque_errors(case.model(machine), [points[STATES.index("nominal")]])[0],
+        torque_error=torque_errors([case.model(machine).solve(points[STATES.index("nominal")])])[0],
         sectors=model.section.sectors,
         antiperiodic=model.section.antiperiodic,
         rest=float(model.unknowns.turn(points[0].angle).rest),

@@ -224,7 +224,7 @@ def _torques(case: FieldCase, machine: Machine) -> _Torques:
     """Mean torques at both current densities and their mesh errors in the first position, all on one mesh."""
     model = case.model(machine)
     nominal, overload = (_over_period(case, model, density) for density in _densities(case))
-    errors = torque_errors(model, [nominal[0].point, overload[0].point])
+    errors = torque_errors([nominal[0], overload[0]])
     return _Torques(
         _mean([maxwell_torque(solution) for solution in nominal]),
         _mean([arkkio_torque(solution) for solution in nominal]),
