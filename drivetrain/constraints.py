@@ -35,7 +35,10 @@ class Constraint:
         return 0.0
 
     def violation(self, ratio: float, length: float) -> str | None:
-        """Sentence on what is missing and what it would take, or None when the constraint is met."""
+        """Sentence on what is missing and what it would take, or None when the constraint is met.
+
+        ratio: tau_t [m/rad]; length: l_em [m]
+        """
         raise NotImplementedError
 
 
@@ -49,7 +52,7 @@ class _Force(Constraint):
         return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Force at the wheel, r_Tl l_em / tau_t [N]."""
+        """Force at the wheel, r_Tl l_em / tau_t [N]; ratio: tau_t [m/rad]."""
         return self.torque_per_length * length / ratio
 
     def violation(self, ratio: float, length: float) -> str | None:
@@ -65,7 +68,7 @@ class _Force(Constraint):
 
 @dataclass(frozen=True)
 class NominalForce(_Force):
-    """RMS force at the nominal current density (3.67, 3.95): force [N], torque per length [Nm/m]."""
+    """RMS force at the nominal current density (3.67, 3.95): force [N], torque_per_length [Nm/m]."""
 
     force: float
     torque_per_length: float
@@ -74,7 +77,7 @@ class NominalForce(_Force):
 
 @dataclass(frozen=True)
 class OverloadForce(_Force):
-    """Peak force at the overload current density (3.69, 3.96): force [N], torque per length there [Nm/m]."""
+    """Peak force at the overload current density (3.69, 3.96): force [N], torque_per_length [Nm/m] there."""
 
     force: float
     torque_per_length: float
@@ -96,17 +99,21 @@ class RegenerativeDamping(Constraint):
     name: str = "regenerative damping"
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
-        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping."""
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping.
+
+        ratio: tau_t [m/rad]
+        """
         if self.damping == 0:
             return super().minimum_length(ratio)
         a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)
         return ((1 + np.sqrt(1 + 4 * self.end_turn_length * a)) / (2 * a))[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Largest damping coefficient at the wheel [Ns/m] (3.92)."""
+        """Largest damping coefficient at the wheel [Ns/m] (3.92); ratio: tau_t [m/rad]."""
         return self.alpha * length**2 / (length + self.end_turn_length) / ratio**2
 
     def violation(self, ratio: float, length: float) -> str | None:
+        """See ``Constraint``; ratio: tau_t [m/rad]."""
         reached = self.capability(ratio, length)
         if reached >= self.damping * (1 - CAPABILITY_SLACK):
             return None
@@ -128,9 +135,11 @@ class SpeedLimit(Constraint):
     name: str = "rotor speed"
 
     def minimum_ratio(self) -> float:
+        """v_max / omega_max [m/rad]."""
         return abs(self.velocity) / self.speed
 
     def violation(self, ratio: float, length: float) -> str | None:
+        """See ``Constraint``; ratio: tau_t [m/rad]."""
         if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
             return None
         return (
@@ -150,13 +159,16 @@ class LengthLimit(Constraint):
         return self.length
 
     def violation(self, ratio: float, length: float) -> str | None:
+        """See ``Constraint``; ratio: tau_t [m/rad]."""
         if length <= self.length * (1 + CAPABILITY_SLACK):
             return None
         return f"{self.name} {length / MILLIMETRE:.1f} mm is above the limit of {self.length / MILLIMETRE:.1f} mm"
 
 
 def largest_stage_ratio(planets: int) -> float:
-    """Stage ratio i at which the pitch circles of neighbouring planets touch, 2 / (1 - sin(pi/n)); 14.93 for three.
+    """Stage ratio i (dimensionless) at which the pitch circles of neighbouring planets touch; 14.93 for three planets.
+
+    i = 2 / (1 - sin(pi/n))
 
     d_carrier sin(pi/n) > d_planet with d_carrier = d_ring i / (2 (i - 1)), d_planet = d_ring (i - 2) / (2 (i - 1))
     planets: n, two or more; two clear each other at any ratio
@@ -178,12 +190,14 @@ class PlanetClearance(Constraint):
     name: str = "planet clearance"
 
     def minimum_ratio(self) -> float:
+        """tau_l / i_max^N [m/rad], 0 for a direct drive."""
         if self.stage_count == 0:
             return 0.0
         touching = self.linkage_ratio / largest_stage_ratio(self.planets) ** self.stage_count
         return touching * (1 + CAPABILITY_SLACK)
 
     def violation(self, ratio: float, length: float) -> str | None:
+        """See ``Constraint``; ratio: tau_t [m/rad]."""
         if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
             return None
         stage_ratio = (self.linkage_ratio / ratio) ** (1 / self.stage_count)

@@ -76,7 +76,10 @@ class SizedSection:
 
 @dataclass(frozen=True)
 class CopperLoading:
-    """Nominal RMS current density [A/m^2], packing factor k_cp, copper resistivity [ohm m] of the damping demand."""
+    """Copper of the damping demand.
+
+    nominal_current_density: RMS [A/m^2]; packing: factor k_cp; resistivity [ohm m]
+    """
 
     nominal_current_density: float
     packing: float
@@ -85,7 +88,7 @@ class CopperLoading:
 
 @dataclass(frozen=True)
 class MatchLimits:
-    """Bounds of the match: active length [m] (3.62) and rotor speed [rad/s] (3.63)."""
+    """Bounds of the match: active_length [m] (3.62) and rotor_speed [rad/s] (3.63)."""
 
     active_length: float
     rotor_speed: float
@@ -131,7 +134,7 @@ class Constraints:
 
 @dataclass(frozen=True)
 class Cost:
-    """Masses [kg] and the three dimensionless terms of the cost (3.98)."""
+    """Masses [kg] and the terms of the cost (3.98); radius_term, inertia_term, mass_term: dimensionless."""
 
     motor_mass: float
     gearbox_mass: float
@@ -143,7 +146,7 @@ class Cost:
 
     @property
     def total(self) -> float:
-        """F_cost."""
+        """F_cost, dimensionless."""
         return self.radius_term + self.inertia_term + self.mass_term
 
     @property
@@ -172,13 +175,13 @@ class Match:
     cost: Cost
     gearbox: Gearbox
     binding: Constraint
-    ratio_bounds: tuple[float, float]  # m/rad
+    ratio_bounds: tuple[float, float]  # [m/rad]
     bound: str | None
     notes: tuple[str, ...]
 
     @property
     def total_cost(self) -> float:
-        """F_cost."""
+        """F_cost, dimensionless."""
         return self.cost.total
 
 
@@ -186,17 +189,17 @@ class Match:
 class MatchCurves:
     """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio``."""
 
-    ratio: np.ndarray  # m/rad
-    minimum_length: dict[str, np.ndarray]  # m, by name of the constraint, enforced and reported
-    active_length: np.ndarray  # m, the largest of the enforced ones
-    feasible: np.ndarray  # bool, inside ratio and length bounds
-    radius_term: np.ndarray
-    inertia_term: np.ndarray
-    mass_term: np.ndarray
+    ratio: np.ndarray  # [m/rad], (n,)
+    minimum_length: dict[str, np.ndarray]  # [m], (n,), by name of the constraint, enforced and reported
+    active_length: np.ndarray  # [m], (n,), the largest of the enforced ones
+    feasible: np.ndarray  # whether inside ratio and length bounds, (n,)
+    radius_term: np.ndarray  # dimensionless, (n,)
+    inertia_term: np.ndarray  # dimensionless, (n,)
+    mass_term: np.ndarray  # dimensionless, (n,)
 
     @property
     def cost(self) -> np.ndarray:
-        """F_cost."""
+        """F_cost, dimensionless, (n,)."""
         return self.radius_term + self.inertia_term + self.mass_term
 
 
@@ -204,7 +207,8 @@ class MatchCurves:
 class RadiusMatches:
     """Matches over the stator outer radius (thesis Fig. 3.26).
 
-    radii [m], transmission_ratio [m/rad], active_length [m], cost: arrays over the radius, NaN where infeasible
+    radii [m], (n,); transmission_ratio [m/rad], (n,), active_length [m], (n,), cost: dimensionless, (n,), all three NaN
+        where infeasible
     refusals: the reasons, None where feasible
     best: the match of least cost over the continuous radius; at_edge: sentence when that is an end of the range
     """
@@ -227,7 +231,8 @@ def linear_overload(
     where the field solution gives 146, more than a fifth too much (27 %), because the teeth saturate. Use the field
     solution unless the assumption itself is the subject.
 
-    Torque per length [Nm/m]; current densities in one unit, both RMS or both peak.
+    torque_per_length_nominal, linear_overload: [Nm/m]
+    nominal_current_density, overload_current_density: [A/m^2], both RMS or both peak
     """
     return torque_per_length_nominal * overload_current_density / nominal_current_density
 
@@ -326,7 +331,7 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
 
 
 def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
-    """Largest of the enforced minimum lengths [m] at these ratios [m/rad]."""
+    """Largest of the enforced minimum lengths [m] at a ratio [m/rad], of its shape."""
     return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
 
 
@@ -397,7 +402,9 @@ def match_curves(
     gearbox: GearboxDesign,
     model: CostModel,
 ) -> MatchCurves:
-    """Length curves of all constraints and cost terms over an array of transmission ratios [m/rad] (Fig. 3.25).
+    """Length curves of all constraints and cost terms over transmission ratios (Fig. 3.25).
+
+    ratio: [m/rad], (n,)
 
     The cost is given outside the bounds too, for the curve; ``feasible`` tells where it counts. Constraints without
     a length curve (speed, length) are left out of ``minimum_length``.
@@ -426,10 +433,10 @@ def match_over_radius(
     gearbox: GearboxDesign,
     model: CostModel,
 ) -> RadiusMatches:
-    """Matches over an array of stator outer radii [m], and the best over the continuous radius between them.
+    """Matches over stator outer radii [m], and the best over the continuous radius between them.
 
     section_at: stator outer radius [m] -> cross-section, for example from the polynomial fits
-    radii: two or more, rising
+    radii: [m], (n,), two or more, rising
     constraints_of: cross-section -> constraints, for example of a ``DampingReading``
     Raises MatchError when no radius has a match.
     Source: thesis, "Optimization output" of the match, Fig. 3.26.

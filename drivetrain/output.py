@@ -99,6 +99,7 @@ class Wheel(Output):
     )
 
     def overall_ratio(self, ratio: float) -> str:
+        """ratio: tau_t [m/rad]."""
         return f"Overall ratio {ratio / FACTORS[self.ratio_unit]:.3f} {written(self.ratio_unit)}"
 
 
@@ -137,4 +138,5 @@ class Shaft(Output):
     )
 
     def overall_ratio(self, ratio: float) -> str:
+        """ratio: of output over rotor speed, dimensionless."""
         return f"The rotor turns {1 / ratio:.3f} times as fast as the shaft"

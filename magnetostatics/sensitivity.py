@@ -22,18 +22,18 @@ Reader = Callable[[FieldSolution], np.ndarray]
 
 
 class Variation(Protocol):
-    """A parameter that the field depends on."""
+    """A parameter and the problem with it changed."""
 
     @property
     def step(self) -> float:
-        """A small change, in the parameter's own unit."""
+        """A small change [unit of the parameter]."""
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
-        """The problem with the parameter changed by this much."""
+        """The problem with the parameter changed; change: any [unit of the parameter]."""
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
-    """Derivative of ``read(solution)`` (k,) with respect to each parameter, in the unit of the result per its own unit.
+    """Derivative of ``read(solution)`` (k,) with respect to each parameter [unit of the result per its own].
 
     variations: parameters by name; their models must share the triangles of the solution (``FieldModel.like``)
     read: results of a solution as a vector, for example torque and flux densities

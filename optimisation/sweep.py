@@ -114,7 +114,7 @@ class DesignMaps:
 
 @dataclass(frozen=True)
 class SweepBlock:
-    """All back-iron widths [m] at some rotor radii [m] of one slot count and stator radius [m]."""
+    """All back_iron_widths [m] at some rotor_outer_radii [m] of one slot count and stator radius [m]."""
 
     case: FieldCase
     reading: SaturationReading
@@ -141,7 +141,7 @@ def sweep_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, worker
 
 
 def solve_block(block: SweepBlock) -> np.ndarray:
-    """``VARIABLES`` of a block's designs (radii, widths, variables), NaN where no machine can be built."""
+    """``VARIABLES`` of a block's designs [Nm/m, T], (radii, widths, variables), NaN where no machine can be built."""
     machines = {}
     for place in product(block.rotor_outer_radii, block.back_iron_widths):
         with suppress(GeometryError):

@@ -14,7 +14,7 @@ import pandas as pd
 from disk import write_atomically
 from magnetostatics.model import OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from pipeline.closure import PROJECT
+from pipeline.modules import PROJECT
 from study.inputs_field import field_case
 from study.read import read_study
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE

@@ -18,8 +18,8 @@ from typing import Any, TextIO
 import xarray as xr
 
 from disk import PART, write_atomically
-from pipeline.closure import PROJECT
 from pipeline.codec import CodecError, decoded, encoded
+from pipeline.modules import PROJECT
 from study.schema import Study
 
 if sys.platform != "win32":  # which has no advisory locks of this kind

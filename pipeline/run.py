@@ -19,9 +19,10 @@ from typing import Any
 from figures.files import File
 from figures.report import Section
 from pipeline.checkpoint import Checkpoint
-from pipeline.closure import PROJECT, code_digest, packages_of
+from pipeline.closure import code_digest, packages_of
 from pipeline.codec import digest
 from pipeline.graph import Export, Function, Graph, Source, Stage, Step, View, parameters, takes_workers
+from pipeline.modules import PROJECT
 from pipeline.pools import Pool, PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
 from study.errors import StudyError

@@ -13,6 +13,7 @@ import pytest
 from toy_graph import GRAPH, SQUARES, SUMMARY, Extra, Largest, NoFit, Squares, StudyOfToys, Summary, inputs, largest
 
 import pipeline.closure
+import pipeline.modules
 import pipeline.run
 from figures.files import text_file
 from pipeline.graph import Graph, Source, Stage, View
@@ -126,7 +127,7 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
     go(tmp_path)
     capsys.readouterr()
     hashed = pipeline.closure._file_hash
-    changed = pipeline.closure.PROJECT / "figures" / "style.py"  # which figures.files imports
+    changed = pipeline.modules.PROJECT / "figures" / "style.py"  # which figures.files imports
     monkeypatch.setattr(pipeline.closure, "_file_hash", lambda p: "other" if p == changed else hashed(p))
     go(tmp_path)
     assert said(capsys)[0] == "squares: code changed"
@@ -134,7 +135,7 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
 
 def test_the_closure_finds_what_no_list_names():
     found = pipeline.closure.files_of("magnetostatics.case")
-    names = {path.relative_to(pipeline.closure.PROJECT).as_posix() for path in found}
+    names = {path.relative_to(pipeline.modules.PROJECT).as_posix() for path in found}
     assert {"magnetostatics/assembly.py", "geometry/plane_mesh.py", "units.py"} <= names
     assert "materials/steels/35PN270_bh.csv" in names
     assert not any(name.startswith(("workbench", "vehicle", "tests")) for name in names)
@@ -202,7 +203,7 @@ def test_a_second_run_on_one_folder_ends_in_a_sentence(tmp_path):
     with Results(tmp_path).held():
         imports = "from pathlib import Path; from pipeline.results import Results"
         code = f"{imports}\nwith Results(Path({str(tmp_path)!r})).held(): pass"
-        command, project = [sys.executable, "-c", code], pipeline.closure.PROJECT
+        command, project = [sys.executable, "-c", code], pipeline.modules.PROJECT
         done = subprocess.run(command, capture_output=True, text=True, cwd=project)
     assert done.returncode == 1 and "another run is at work in" in done.stderr.splitlines()[-1]
 
