@@ -33,8 +33,8 @@ from geometry.half_cell import MeshDensity
 from magnetostatics.cholesky import one_thread
 from magnetostatics.flux_map import CurrentGrid, map_angles, solve_angle
 from magnetostatics.model import FieldModel, OperatingPoint
-from magnetostatics.torque import arkkio_torque
 from magnetostatics.positions import null_angle, null_current_angle
+from magnetostatics.torque import arkkio_torque
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.design import Judge
 from optimisation.gradient_optimum import find_optimum_by_gradients
@@ -172,7 +172,10 @@ def sweep(processes: int = 2) -> list[Row]:
 
 
 def solve_optimum(slots: int, radius: float, guess: tuple[float, float]) -> float:
-    """Torque of one constrained optimum by gradients, NaN where the search does not settle; guess: shares of the radius."""
+    """Torque of one constrained optimum by gradients, NaN where the search does not settle.
+
+    guess: shares of the radius
+    """
     study = read_study(STUDY)
     case, limit = field_case(study), saturation_limit(study)
     judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())

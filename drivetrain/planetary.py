@@ -1,7 +1,8 @@
 """Planetary gearbox from its ratio and envelope: diameters, face width against pitting, mass, inertia.
 
 Equal planets in each stage (three in the thesis), ring fixed, sun on the fast side, carrier on the slow side; stage 1
-is the slow one, driven by the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118, corrected where noted.
+is the slow one, driven by the linkage. Scaling laws after Saerens et al., thesis eqs 3.103-3.118,
+corrected where noted.
 """
 
 from __future__ import annotations

@@ -12,9 +12,10 @@ Speeds are mechanical [rad/s]. Iron loss and mechanical loss are left out, so th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any, Callable, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 

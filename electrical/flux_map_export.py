@@ -22,7 +22,9 @@ Field names: MathWorks "Generate Parameters for Flux-Based Blocks"; motulator 0.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.io import savemat
@@ -35,49 +37,64 @@ DESCRIPTION = (
 )
 
 
-def flux_tables(machine: FluxMapMachine, points: int = 41) -> dict:
+@dataclass(frozen=True, eq=False)
+class FluxTables:
+    """Fields of the export, each under its name in the file, SI.
+
+    id_index (n,), iq_index (m,): currents [A]; lambda_d, lambda_q, torque (n, m): at them [Wb, Wb, Nm]
+    flux_d (k,), flux_q (l,): flux linkages [Wb]; id, iq (k, l): currents at them [A]; inside (k, l): 1 where
+        the map was solved, 0 where it is continued
+    """
+
+    id_index: np.ndarray
+    iq_index: np.ndarray
+    lambda_d: np.ndarray
+    lambda_q: np.ndarray
+    torque: np.ndarray
+    flux_d: np.ndarray
+    flux_q: np.ndarray
+    id: np.ndarray
+    iq: np.ndarray
+    inside: np.ndarray
+    pole_pairs: int
+    resistance: float
+    description: str = DESCRIPTION
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Everything that the file holds, with the names that motulator has for the same tables."""
+        current_d, current_q = np.meshgrid(self.id_index, self.iq_index, indexing="ij")
+        complex_tables = {"i_s_dq": current_d + 1j * current_q, "psi_s_dq": self.lambda_d + 1j * self.lambda_q}
+        return {**vars(self), **complex_tables, "tau_M": self.torque}
+
+
+def flux_tables(machine: FluxMapMachine, points: int = 41) -> FluxTables:
     """Fields of the export over regular currents and over regular flux linkages.
 
     points: along each axis of either table. The flux linkages span those of all currents in the map.
     """
     i_d, i_q = (np.linspace(axis[0], axis[-1], points) for axis in (machine.i_d, machine.i_q))
-    current_d, current_q = np.meshgrid(i_d, i_q, indexing="ij")
-    psi_d, psi_q, torque = machine(current_d, current_q)
-    return {
-        "id_index": i_d,
-        "iq_index": i_q,
-        "lambda_d": psi_d,
-        "lambda_q": psi_q,
-        "torque": torque,
-        "i_s_dq": current_d + 1j * current_q,
-        "psi_s_dq": psi_d + 1j * psi_q,
-        "tau_M": torque,
-        "pole_pairs": machine.pole_pairs,
-        "resistance": machine.resistance,
-        "description": DESCRIPTION,
-    } | _current_tables(machine, points)
-
-
-def _current_tables(machine: FluxMapMachine, points: int) -> dict:
     flux_d, flux_q = (np.linspace(psi.min(), psi.max(), points) for psi in (machine.psi_d, machine.psi_q))
-    i_d, i_q, inside = machine.continued_currents(*np.meshgrid(flux_d, flux_q, indexing="ij"))
-    return {"flux_d": flux_d, "flux_q": flux_q, "id": i_d, "iq": i_q, "inside": inside.astype(float)}
+    by_current = machine(*np.meshgrid(i_d, i_q, indexing="ij"))
+    current_d, current_q, inside = machine.continued_currents(*np.meshgrid(flux_d, flux_q, indexing="ij"))
+    by_flux = (flux_d, flux_q, current_d, current_q, inside.astype(float))
+    return FluxTables(i_d, i_q, *by_current, *by_flux, machine.pole_pairs, machine.resistance)
 
 
-def syre_structure(tables: dict) -> dict:
+def syre_structure(tables: FluxTables) -> dict[str, dict[str, np.ndarray]]:
     """``motorModel`` as SyR-e stores it, i_q >= 0: our q axis along the columns, our negative d axis along the rows."""
-    half = tables["iq_index"] >= 0
-    names = (("Fd", "lambda_q"), ("Fq", "lambda_d"), ("T", "torque"))
-    turned = {name: tables[ours][::-1, half] for name, ours in names}
-    i_d, i_q = np.meshgrid(tables["iq_index"][half], -tables["id_index"][::-1])
-    return {"FluxMap_dq": {**turned, "Fq": -turned["Fq"], "Id": i_d, "Iq": i_q}}
+    half = tables.iq_index >= 0
+    names = (("Fd", tables.lambda_q), ("Fq", -tables.lambda_d), ("T", tables.torque))
+    turned = {name: table[::-1, half] for name, table in names}
+    i_d, i_q = np.meshgrid(tables.iq_index[half], -tables.id_index[::-1])
+    return {"FluxMap_dq": {**turned, "Id": i_d, "Iq": i_q}}
 
 
-def write_mat(path: Path, tables: dict) -> None:
-    """Write the fields of ``flux_tables`` as a MATLAB file, with SyR-e's structure."""
-    savemat(path, {**tables, "motorModel": syre_structure(tables)}, oned_as="column")
+def write_mat(path: Path, tables: FluxTables) -> None:
+    """Write ``FluxTables`` as a MATLAB file, with SyR-e's structure."""
+    savemat(path, {**tables.fields, "motorModel": syre_structure(tables)}, oned_as="column")
 
 
-def write_npz(path: Path, tables: dict) -> None:
-    """Write the fields of ``flux_tables`` for ``numpy.load``."""
-    np.savez_compressed(path, **tables)
+def write_npz(path: Path, tables: FluxTables) -> None:
+    """Write ``FluxTables`` for ``numpy.load``."""
+    np.savez_compressed(path, **tables.fields)

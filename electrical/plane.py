@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Any, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import xarray as xr
 
 AXES = ("torque_level", "speed_level")
 
-Record = TypeVar("Record")
+
+class PlaneRecord(Protocol):
+    """Any dataclass."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
 
 
-def plane_dataset(record: Any) -> xr.Dataset:
+Record = TypeVar("Record", bound=PlaneRecord)
+
+
+def plane_dataset(record: PlaneRecord) -> xr.Dataset:
     """A dataclass whose fields are arrays (torques, speeds), in its own units, such as ``OperatingMap``."""
     return xr.Dataset({one.name: (AXES, getattr(record, one.name)) for one in fields(record)})
 
 
 def plane_record(kind: type[Record], data: xr.Dataset) -> Record:
     """The dataclass of which ``plane_dataset`` made the data."""
-    names = [one.name for one in fields(kind)]  # type: ignore[arg-type]  # a type variable cannot ask for a dataclass
+    names = [one.name for one in fields(kind)]
     return kind(**{name: data[name].transpose(*AXES).values for name in names})

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import Any
 
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from figures.field_map import outlines
+from figures.field_map import draw_outlines
 from figures.style import (
     BLACK,
     PHASE_COLOURS,
@@ -18,6 +21,7 @@ from figures.style import (
     PHASE_NAMES,
     PURPLE,
     YELLOW,
+    Look,
     new_figure,
     styled,
 )
@@ -28,7 +32,8 @@ from units import MILLIMETRE
 
 _IRON, _SHAFT, _MAGNET, _AIR = "#B5B9BD", "#8C9196", "#F3E3B3", "#FFFFFF"
 _ARROWS_PER_MAGNET = 3
-_TO_THE_POINT = {"color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}  # arrows that end where they are told to
+_TO_THE_POINT: Look = {"color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}  # arrows that end where they are told to
+Place = tuple[float, float]  # in the drawing [mm]
 
 
 @styled
@@ -47,9 +52,9 @@ def cross_section(section: CrossSection, angle: float = 0.0) -> Figure:
     return figure
 
 
-def _draw_machine(axes, section: CrossSection, whole: WholeField, angle: float) -> None:
+def _draw_machine(axes: Axes, section: CrossSection, whole: WholeField, angle: float) -> None:
     _fill(axes, section, whole)
-    _draw_borders(axes, whole, 0.6)
+    draw_outlines(axes, whole, "#303030", 0.6)
     _draw_magnetisation(axes, section, angle)
     _draw_probes(axes, section)
     _label_coil_sides(axes, section)
@@ -64,7 +69,7 @@ def _machine_title(m: Machine) -> str:
     return f"{m.slots} slots, {m.poles} poles, Ø {2 * m.stator_outer_radius / MILLIMETRE:.4g} mm"
 
 
-def _legend(section: CrossSection) -> list:
+def _legend(section: CrossSection) -> list[Artist]:
     phases = [
         Patch(color=shades[phase], label=f"{sign}{PHASE_NAMES[phase]}")
         for phase in range(3)
@@ -79,11 +84,12 @@ def _legend(section: CrossSection) -> list:
 # ---- areas ----------------------------------------------------------------------------------------------------------
 
 
-def _fill(axes, section: CrossSection, whole: WholeField) -> None:
+def _fill(axes: Axes, section: CrossSection, whole: WholeField) -> None:
     colours = np.array([region_colour(name, section) for name in whole.region.names])
     corners = whole.points[:, whole.cells[:3]].transpose(2, 1, 0) / MILLIMETRE
-    look = {"facecolors": colours[whole.region.index], "edgecolors": "face", "linewidths": 0.6}
-    axes.add_collection(PolyCollection(corners, **look))
+    look: Look = {"facecolors": colours[whole.region.index], "edgecolors": "face", "linewidths": 0.6}
+    # An array (cells, 3, 2) is taken as one, a list of arrays one by one; matplotlib's annotation knows the list only.
+    axes.add_collection(PolyCollection(corners, **look))  # type: ignore[arg-type]
 
 
 def region_colour(name: str, section: CrossSection) -> str:
@@ -97,15 +103,10 @@ def region_colour(name: str, section: CrossSection) -> str:
     return {"stator_iron": _IRON, "rotor_iron": _IRON, "shaft": _SHAFT}.get(name, _AIR)
 
 
-def _draw_borders(axes, whole: WholeField, width: float) -> None:
-    pieces = outlines(whole.points, whole.cells, whole.region)
-    axes.add_collection(LineCollection(pieces, colors="#303030", linewidths=width, capstyle="round", snap=False))
-
-
 # ---- what is drawn over them ----------------------------------------------------------------------------------------
 
 
-def _draw_magnetisation(axes, section: CrossSection, angle: float) -> None:
+def _draw_magnetisation(axes: Axes, section: CrossSection, angle: float) -> None:
     m = section.machine
     radius = (m.rotor_outer_radius - m.magnet_length / 2) / MILLIMETRE
     length = 0.8 * m.magnet_length / MILLIMETRE
@@ -117,13 +118,13 @@ def _draw_magnetisation(axes, section: CrossSection, angle: float) -> None:
             _arrow(axes, radius * np.exp(1j * place), (-1) ** magnet * length * np.exp(1j * pointing))
 
 
-def _arrow(axes, centre: complex, vector: complex) -> None:
+def _arrow(axes: Axes, centre: complex, vector: complex) -> None:
     tail, head = centre - vector / 2, centre + vector / 2
-    style = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", **_TO_THE_POINT, "lw": 0.8}
+    style: Look = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", **_TO_THE_POINT, "lw": 0.8}
     axes.annotate("", (head.real, head.imag), (tail.real, tail.imag), arrowprops=style)
 
 
-def _draw_probes(axes, section: CrossSection) -> None:
+def _draw_probes(axes: Axes, section: CrossSection) -> None:
     """The segments of the solved sector, with the numbers that their readings carry."""
     m = section.machine
     label_radius = 0.22 * m.shoe_top_radius + 0.78 * m.slot_bottom_radius
@@ -136,29 +137,29 @@ def _draw_probes(axes, section: CrossSection) -> None:
         _write_at(axes, 1.035 * m.stator_outer_radius, (number + 0.5) * m.slot_pitch, str(number))
 
 
-def _draw_segment(axes, points: np.ndarray, colour: str) -> None:
+def _draw_segment(axes: Axes, points: np.ndarray, colour: str) -> None:
     x, y = points[:, [0, -1]] / MILLIMETRE
     axes.plot(x, y, color=BLACK, linewidth=3.6, solid_capstyle="butt")
     axes.plot(x, y, color=colour, linewidth=2.4, solid_capstyle="butt")
 
 
-def _write_at(axes, radius: float, angle: float, text: str, **look) -> None:
+def _write_at(axes: Axes, radius: float, angle: float, text: str, **look: Any) -> None:
     x, y = radius / MILLIMETRE * cos(angle), radius / MILLIMETRE * sin(angle)
     axes.text(x, y, text, **{"ha": "center", "va": "center", "fontsize": 9, **look})
 
 
-def _label_coil_sides(axes, section: CrossSection) -> None:
+def _label_coil_sides(axes: Axes, section: CrossSection) -> None:
     m = section.machine
     radius = 0.45 * m.shoe_top_radius + 0.55 * m.slot_bottom_radius
     for slot in range(m.slots):
         for side, part in (("R", 0.34), ("L", 0.66)):
             phase, sign = section.layout.coil_side(slot, side)
             text = ("+" if sign > 0 else "\N{MINUS SIGN}") + PHASE_NAMES[phase]
-            look = {"fontsize": 8, "color": "white" if sign > 0 else "black"}
+            look: Look = {"fontsize": 8, "color": "white" if sign > 0 else "black"}
             _write_at(axes, radius, (slot + part) * m.slot_pitch, text, **look)
 
 
-def _draw_sector(axes, section: CrossSection) -> None:
+def _draw_sector(axes: Axes, section: CrossSection) -> None:
     """Border of the part that is solved, where it is not the whole machine."""
     if section.sectors == 1:
         return
@@ -171,11 +172,11 @@ def _draw_sector(axes, section: CrossSection) -> None:
 # ---- one slot pitch with dimensions ---------------------------------------------------------------------------------
 
 
-def _draw_detail(axes, section: CrossSection, whole: WholeField) -> None:
+def _draw_detail(axes: Axes, section: CrossSection, whole: WholeField) -> None:
     """Tooth 0 upright with the slots beside it; the turn puts the x axis upwards."""
     turned = _upright(whole)
     _fill(axes, section, turned)
-    _draw_borders(axes, turned, 0.8)
+    draw_outlines(axes, turned, "#303030", 0.8)
     _draw_dimensions(axes, section.machine)
     m = section.machine
     half = 1.25 * m.slot_pitch / 2 * m.stator_outer_radius / MILLIMETRE
@@ -185,7 +186,7 @@ def _draw_detail(axes, section: CrossSection, whole: WholeField) -> None:
     axes.axis("off")
 
 
-def _write_dimensions(axes, m: Machine) -> None:
+def _write_dimensions(axes: Axes, m: Machine) -> None:
     axes.axis("off")
     axes.text(0.0, 1.0, dimension_list(m), transform=axes.transAxes, va="top", fontsize=9, linespacing=1.4)
 
@@ -195,7 +196,7 @@ def _upright(whole: WholeField) -> WholeField:
     return WholeField(np.stack([-y, x]), whole.cells, whole.a, whole.region, whole.description)
 
 
-def _draw_dimensions(axes, m: Machine) -> None:
+def _draw_dimensions(axes: Axes, m: Machine) -> None:
     middle = (m.shoe_top_radius + m.slot_bottom_radius) / 2 / MILLIMETRE
     half_tooth = m.tooth_width / 2 / MILLIMETRE
     _measure(axes, (-half_tooth, middle), (half_tooth, middle), "$w_{tb}$", (0.0, 0.7))
@@ -204,32 +205,38 @@ def _draw_dimensions(axes, m: Machine) -> None:
     opening = m.opening_width / 2
     at = (m.stator_inner_radius + m.shoe_d1 * 0.5) / MILLIMETRE
     along, across = np.array([-sin(slot_axis), cos(slot_axis)]), np.array([cos(slot_axis), sin(slot_axis)])
-    ends = [tuple(at * along + side * opening / MILLIMETRE * across) for side in (-1, 1)]
-    _measure(axes, *ends, "$w_s$", tuple(2.0 * along))
+    left, right = (_place(at * along + side * opening / MILLIMETRE * across) for side in (-1, 1))
+    _measure(axes, left, right, "$w_s$", _place(2.0 * along))
     _measure_radially(axes, m.rotor_core_radius, m.rotor_outer_radius, m.slot_pitch * 0.15, "$l_m$")
     _point_at_gap(axes, m)
 
 
-def _point_at_gap(axes, m: Machine) -> None:
+def _point_at_gap(axes: Axes, m: Machine) -> None:
     """The gap is too thin for a dimension line: a leader from the tooth points at it."""
     x = -0.22 * m.tooth_width / MILLIMETRE
-    style = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
+    style: Look = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
     above = (m.shoe_top_radius + 0.8 * m.tooth_width) / MILLIMETRE
-    look = {"ha": "center", "va": "bottom", "fontsize": 11, "arrowprops": style}
+    look: Look = {"ha": "center", "va": "bottom", "fontsize": 11, "arrowprops": style}
     axes.annotate("$g$", (x, m.mid_gap_radius / MILLIMETRE), (x, above), **look)
 
 
-def _measure_radially(axes, inner: float, outer: float, angle: float, name: str) -> None:
+def _measure_radially(axes: Axes, inner: float, outer: float, angle: float, name: str) -> None:
     along = np.array([-sin(angle), cos(angle)])
     across = np.array([cos(angle), sin(angle)])
-    _measure(axes, tuple(inner / MILLIMETRE * along), tuple(outer / MILLIMETRE * along), name, tuple(1.7 * across))
+    ends = _place(inner / MILLIMETRE * along), _place(outer / MILLIMETRE * along)
+    _measure(axes, *ends, name, _place(1.7 * across))
 
 
-def _measure(axes, start, end, name: str, offset) -> None:
-    style = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
+def _place(vector: np.ndarray) -> Place:
+    x, y = vector
+    return float(x), float(y)
+
+
+def _measure(axes: Axes, start: Place, end: Place, name: str, offset: Place) -> None:
+    style: Look = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
     axes.annotate("", end, start, arrowprops=style)
     middle = (np.array(start) + np.array(end)) / 2 + np.array(offset)
-    axes.text(*middle, name, ha="center", va="center", fontsize=11)
+    axes.text(*_place(middle), name, ha="center", va="center", fontsize=11)
 
 
 def dimension_list(m: Machine) -> str:
@@ -248,7 +255,7 @@ def dimension_list(m: Machine) -> str:
     return "\n".join(f"${symbol}$  {name}: {_in_mm(value)} mm" for symbol, name, value in rows)
 
 
-def _in_mm(value) -> str:
+def _in_mm(value: float | tuple[float, ...]) -> str:
     lengths = value if isinstance(value, tuple) else (value,)
     return ", ".join(f"{length / MILLIMETRE:.2f}" for length in lengths)
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from figures.style import BLACK, DESIGN_MAP, FIELD_MAP, VERMILION, letter, new_figure, styled
+from figures.style import BLACK, DESIGN_MAP, FIELD_MAP, VERMILION, Look, letter, new_figure, styled
 
 # Which maps a reading of the saturation limit looks at (see the study file); the largest of them is limited.
 CONSTRAINED = {
@@ -26,7 +30,7 @@ _PROBE_MAPS = (
 )
 _COLUMNS = 4  # panels side by side in the overview
 _UNBUILDABLE = "#BDBDBD"
-_STAR = {"marker": "*", "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
+_STAR: Look = {"marker": "*", "markerfacecolor": "white", "markeredgecolor": BLACK, "linestyle": ""}
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,9 @@ def design_maps(maps: xr.Dataset, optima: pd.DataFrame, slots: int, reading: str
     return figure
 
 
-def select_optimum(optima: pd.DataFrame, slots: int, stator_diameter_mm: float, reading: str, limit_T: float):
+def select_optimum(
+    optima: pd.DataFrame, slots: int, stator_diameter_mm: float, reading: str, limit_T: float
+) -> pd.Series | None:
     """The row of the optimum, or None where no feasible machine was found."""
     same = (optima.slots == slots) & np.isclose(optima.stator_diameter_mm, stator_diameter_mm)
     rows = optima[same & (optima.reading == reading) & np.isclose(optima.limit_T, limit_T)]
@@ -118,13 +124,13 @@ def constrained_flux_density(one: xr.Dataset, reading: str) -> xr.DataArray:
     return one[list(CONSTRAINED[reading])].to_array().max("variable", skipna=False)
 
 
-def in_millimetres(one: xr.Dataset, reading: str, limit_T: float, optimum=None) -> Design:
+def in_millimetres(one: xr.Dataset, reading: str, limit_T: float, optimum: pd.Series | None = None) -> Design:
     """One slot count and diameter as a panel with axes in mm."""
     place = None if optimum is None else (optimum.back_iron_width_mm, optimum.rotor_outer_radius_mm)
     return _design(one, one.back_iron_width_mm.values, one.rotor_outer_radius_mm.values, reading, limit_T, place)
 
 
-def _as_shares(one: xr.Dataset, reading: str, limit_T: float, optimum) -> Design:
+def _as_shares(one: xr.Dataset, reading: str, limit_T: float, optimum: pd.Series | None) -> Design:
     """Axes as shares of the stator radius, torque as a share of that at the optimum."""
     radius = float(one.stator_diameter_mm) / 2
     place = None if optimum is None else (optimum.back_iron_width_mm / radius, optimum.rotor_outer_radius_mm / radius)
@@ -132,7 +138,9 @@ def _as_shares(one: xr.Dataset, reading: str, limit_T: float, optimum) -> Design
     return replace(design, torque=design.torque / _reference_torque(design, optimum))
 
 
-def _design(one, x, y, reading, limit_T, place) -> Design:
+def _design(
+    one: xr.Dataset, x: np.ndarray, y: np.ndarray, reading: str, limit_T: float, place: tuple[float, float] | None
+) -> Design:
     order = ("rotor_radius", "back_iron")
     torque = one.torque_Nm_per_m.transpose(*order).values
     return Design(x, y, torque, constrained_flux_density(one, reading).transpose(*order).values, limit_T, place)
@@ -141,7 +149,7 @@ def _design(one, x, y, reading, limit_T, place) -> Design:
 # ---- panels ---------------------------------------------------------------------------------------------------------
 
 
-def _torque_panel(figure, axes, design: Design, optimum) -> None:
+def _torque_panel(figure: Figure, axes: Axes, design: Design, optimum: pd.Series | None) -> None:
     axes.set_facecolor(_UNBUILDABLE)
     colours = axes.contourf(design.x, design.y, design.torque, levels=14, cmap=DESIGN_MAP)
     _draw_domain(axes, design)
@@ -150,7 +158,7 @@ def _torque_panel(figure, axes, design: Design, optimum) -> None:
     axes.set_title(f"torque per length, {found}", loc="left")
 
 
-def _probe_panel(figure, axes, design: Design, values: np.ndarray, words: str) -> None:
+def _probe_panel(figure: Figure, axes: Axes, design: Design, values: np.ndarray, words: str) -> None:
     axes.set_facecolor(_UNBUILDABLE)
     colours = axes.contourf(design.x, design.y, values, levels=14, cmap=FIELD_MAP)
     _draw_domain(axes, design)
@@ -160,33 +168,33 @@ def _probe_panel(figure, axes, design: Design, values: np.ndarray, words: str) -
     axes.set_title(words, loc="left")
 
 
-def _small_panel(axes, design: Design, levels: np.ndarray):
+def _small_panel(axes: Axes, design: Design, levels: np.ndarray) -> ContourSet:
     axes.set_facecolor(_UNBUILDABLE)
     colours = axes.contourf(design.x, design.y, design.torque, levels=levels, cmap=DESIGN_MAP, extend="both")
     _draw_domain(axes, design)
     return colours
 
 
-def _small_title(diameter: float, optimum) -> str:
+def _small_title(diameter: float, optimum: pd.Series | None) -> str:
     found = "none feasible" if optimum is None else f"{optimum.torque_nominal_Nm_per_m:.1f} Nm/m"
     return f"Ø {diameter:g} mm: {found}"
 
 
-def _share_levels(designs) -> np.ndarray:
+def _share_levels(designs: Iterable[Design]) -> np.ndarray:
     """Steps of 0.05 over the middle 96 % of all values, so that a few odd designs do not take the colours."""
     values = np.concatenate([design.torque[np.isfinite(design.torque)] for design in designs])
     low, high = np.floor(np.quantile(values, 0.02) * 20) / 20, np.ceil(np.quantile(values, 0.98) * 20) / 20
     return np.arange(low, high + 0.051, 0.05)
 
 
-def _reference_torque(design: Design, optimum) -> float:
+def _reference_torque(design: Design, optimum: pd.Series | None) -> float:
     if optimum is not None:
         return optimum.torque_nominal_Nm_per_m
     within = design.torque[design.feasible] if design.feasible.any() else design.torque
     return np.nanmax(within)
 
 
-def _draw_domain(axes, design: Design) -> None:
+def _draw_domain(axes: Axes, design: Design) -> None:
     """Limit line, hatching beyond it, grid points and the optimum."""
     known = design.constrained[np.isfinite(design.constrained)]
     if known.size and known.max() > design.limit:
@@ -201,7 +209,7 @@ def _draw_domain(axes, design: Design) -> None:
         axes.plot(*design.optimum, markersize=15, clip_on=False, zorder=5, **_STAR)
 
 
-def _legend() -> list:
+def _legend() -> list[Artist]:
     return [
         Line2D([], [], color=VERMILION, linewidth=2.0, label="limit of the reading"),
         Line2D([], [], color=BLACK, linestyle="--", linewidth=1.4, label="this probe at the limit"),
@@ -211,7 +219,7 @@ def _legend() -> list:
     ]
 
 
-def _label(axes) -> None:
+def _label(axes: np.ndarray) -> None:
     for axis in axes[2:]:
         axis.set_xlabel("back-iron width / mm")
     for axis in axes[::2]:
@@ -219,7 +227,7 @@ def _label(axes) -> None:
     letter(axes)
 
 
-def _finish_overview(figure, axes, used: int, colours) -> None:
+def _finish_overview(figure: Figure, axes: np.ndarray, used: int, colours: ContourSet) -> None:
     for axis in axes.flat[used:]:
         axis.axis("off")
     for axis in axes.flat[max(used - _COLUMNS, 0) : used]:  # nothing stands below these

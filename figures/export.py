@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from figures.whole_field import Region, WholeField, whole_field
 from magnetostatics.model import FieldSolution
+
+if TYPE_CHECKING:
+    import pyvista
 
 POTENTIAL, FLUX_DENSITY, FLUX_DENSITY_NORM, REGION = "A_Wb_per_m", "B_T", "B_norm_T", "region"
 _REGION_NAMES, _DESCRIPTION = "region_names", "description"
@@ -33,7 +37,7 @@ def write_field(path: Path, field: WholeField) -> None:
     to_grid(field).save(Path(path))
 
 
-def to_grid(field: WholeField):
+def to_grid(field: WholeField) -> pyvista.UnstructuredGrid:
     """The field as a pyvista UnstructuredGrid with the data of ``write_vtu``."""
     import pyvista
 
@@ -59,8 +63,10 @@ def read_vtu(path: Path) -> WholeField:
 
     _check_kind(Path(path))
     grid = pyvista.read(Path(path))
+    if not isinstance(grid, pyvista.UnstructuredGrid):
+        raise FieldFileError(_not_ours(path))
     _check_contents(grid, Path(path))
-    cells = grid.cells_dict[pyvista.CellType.QUADRATIC_TRIANGLE].T
+    cells = np.asarray(grid.cells_dict[np.uint8(pyvista.CellType.QUADRATIC_TRIANGLE)]).T
     region = Region(np.asarray(grid.cell_data[REGION]), tuple(str(name) for name in grid.field_data[_REGION_NAMES]))
     points = np.asarray(grid.points)[:, :2].T.astype(float)
     description = _from_ascii(str(grid.field_data[_DESCRIPTION][0]))
@@ -83,10 +89,14 @@ def _check_kind(path: Path) -> None:
     """Before VTK opens the file: of a wrong one it prints a page of its own errors."""
     with path.open("rb") as file:
         if b'type="UnstructuredGrid"' not in file.read(500):
-            raise FieldFileError(f"{path.name} is not a .vtu file: it was not written by this project")
+            raise FieldFileError(_not_ours(path))
 
 
-def _check_contents(grid, path: Path) -> None:
+def _not_ours(path: Path) -> str:
+    return f"{path.name} is not a .vtu file: it was not written by this project"
+
+
+def _check_contents(grid: pyvista.UnstructuredGrid, path: Path) -> None:
     there = {*grid.point_data.keys(), *grid.cell_data.keys(), *grid.field_data.keys()}
     absent = [name for name in (POTENTIAL, REGION, _REGION_NAMES, _DESCRIPTION) if name not in there]
     if absent:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.collections import LineCollection
+from matplotlib.axes import Axes
+from matplotlib.collections import Collection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from figures.style import FIELD_MAP, new_figure, styled
+from figures.style import FIELD_MAP, Look, new_figure, styled
 from figures.whole_field import Region, SmoothField, WholeField
 from units import MILLIMETRE
 
@@ -44,10 +45,10 @@ def colour_limit(field: WholeField) -> float:
     return float(np.ceil(b[order][np.searchsorted(share, _SHARE_SHOWN)] * 10) / 10)
 
 
-def draw_outlines(axes, field: WholeField, colour: str = "#EFEFEF", width: float = 0.6) -> None:
+def draw_outlines(axes: Axes, field: WholeField, colour: str = "#EFEFEF", width: float = 0.6) -> None:
     """Borders between the regions, and the outside."""
     pieces = outlines(field.points, field.cells, field.region)
-    axes.add_collection(LineCollection(pieces, colors=colour, linewidths=width, capstyle="round", snap=False))
+    axes.add_collection(LineCollection(list(pieces), colors=colour, linewidths=width, capstyle="round", snap=False))
 
 
 def outlines(points: np.ndarray, cells: np.ndarray, region: Region) -> np.ndarray:
@@ -72,21 +73,21 @@ def _kinds(region: Region) -> np.ndarray:
     return np.array([-1 if name.startswith(_AIR) else i for i, name in enumerate(region.names)])
 
 
-def _draw_flux_density(axes, smooth: SmoothField, largest_b: float):
+def _draw_flux_density(axes: Axes, smooth: SmoothField, largest_b: float) -> Collection:
     x, y = smooth.points / MILLIMETRE
     triangulation = Triangulation(x, y, smooth.triangles.T)
     return axes.tripcolor(triangulation, smooth.b, shading="gouraud", cmap=FIELD_MAP, vmin=0.0, vmax=largest_b)
 
 
-def _draw_flux_lines(axes, smooth: SmoothField) -> None:
+def _draw_flux_lines(axes: Axes, smooth: SmoothField) -> None:
     x, y = smooth.points / MILLIMETRE
     triangulation = Triangulation(x, y, smooth.triangles.T)
     levels = np.linspace(smooth.a.min(), smooth.a.max(), FLUX_LINES + 2)[1:-1]
-    look = {"colors": "black", "linewidths": 0.6, "alpha": 0.8, "linestyles": "solid"}
+    look: Look = {"colors": "black", "linewidths": 0.6, "alpha": 0.8, "linestyles": "solid"}
     axes.tricontour(triangulation, smooth.a, levels=levels, **look)
 
 
-def _finish(axes, field: WholeField, title: str) -> None:
+def _finish(axes: Axes, field: WholeField, title: str) -> None:
     reach = np.abs(field.points).max() / MILLIMETRE * 1.02
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x / mm", ylabel="y / mm")
     axes.set_aspect("equal")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from figures.style import letter, new_figure, series_style, show_grid, styled
+from figures.style import Look, letter, new_figure, series_style, show_grid, styled
 
 QUANTITIES = (
     ("torque_nominal_Nm_per_m", "nominal torque per length", "Nm/m"),
@@ -43,12 +46,25 @@ def fits(optima: pd.DataFrame, polynomials: pd.DataFrame) -> Figure:
     return figure
 
 
-def is_refused(refused) -> bool:
+class Fit(Protocol):
+    """A row of the table of polynomials."""
+
+    p2: float
+    p1: float
+    p0: float
+    r_squared: float
+    rms_residual: float
+    refused: object
+
+
+def is_refused(refused: object) -> bool:
     """Whether a fit was refused: a reason or True; empty, False, None and NaN mean that it holds."""
     return not (refused is None or refused is False or refused != refused or str(refused).strip() in ("", "False"))
 
 
-def _panel(axes, optima, polynomials, quantity, unit, style) -> None:
+def _panel(
+    axes: Axes, optima: pd.DataFrame, polynomials: pd.DataFrame, quantity: str, unit: str, style: dict[int, Look]
+) -> None:
     lines = []
     for slots, look in style.items():
         rows = optima[optima.slots == slots].sort_values("stator_diameter_mm")
@@ -62,7 +78,7 @@ def _panel(axes, optima, polynomials, quantity, unit, style) -> None:
     axes.text(0.02, 0.97, "\n".join(lines), transform=axes.transAxes, va="top", fontsize=8.5)
 
 
-def _draw_fit(axes, fit, radius, slots, look) -> None:
+def _draw_fit(axes: Axes, fit: Fit, radius: np.ndarray, slots: int, look: Look) -> None:
     fine = np.linspace(radius.min(), radius.max(), 100)
     refused = is_refused(fit.refused)
     label = f"{slots} slots, fit" + (" (refused)" if refused else "")
@@ -70,7 +86,7 @@ def _draw_fit(axes, fit, radius, slots, look) -> None:
     axes.plot(fine, value, color=look["color"], linestyle=":" if refused else "-", label=label)
 
 
-def _quality(fit, slots, unit) -> str:
+def _quality(fit: Fit, slots: int, unit: str) -> str:
     verdict = ", refused" if is_refused(fit.refused) else ""
     return f"{slots} slots: $R^2$ = {fit.r_squared:.5f}, rms residual {fit.rms_residual:.3g} {unit}{verdict}"
 

@@ -1,11 +1,11 @@
-"""The gearbox: end view of a stage, load spectrum on its S-N line, safety factors, axial section of the actuator.
-
-The functions take the results of the package ``gearbox`` by their attributes and import nothing of it.
-"""
+"""The gearbox: end view of a stage, load spectrum on its S-N line, safety factors, axial section of the actuator."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle
 
@@ -25,6 +25,12 @@ from figures.style import (
     show_grid,
     styled,
 )
+from gearbox.layout import Layout, Part
+from gearbox.material import LifeLine
+from gearbox.outline import StageOutlines
+from gearbox.planetary_set import PlanetarySet
+from gearbox.rating import StageRating
+from gearbox.spectrum import LoadSpectrum
 from units import MILLIMETRE
 
 _LIGHT = {"sun": "#F2B48C", "planet": "#8FC3E3", "ring": "#D9D9D9"}
@@ -37,10 +43,12 @@ _PART_COLOURS = {"casing": LIGHT_GREY, "shaft": GREY, "ring": "#A6A6A6", "sun": 
 
 
 @styled
-def gear_end_view(outlines, gears, *, envelope_diameter: float, title: str) -> Figure:
+def gear_end_view(
+    outlines: StageOutlines, gears: PlanetarySet, *, envelope_diameter: float, title: str
+) -> Figure:
     """A stage seen along its axis, with a close view of its two meshes.
 
-    outlines: sun, planets, ring, centres (``gearbox.outline.StageOutlines``); gears: ``PlanetarySet``
+    outlines: of the teeth of this one set of gears; envelope_diameter: of the casing around them [m]
     """
     figure = new_figure(5.2)
     axes = figure.subplots(1, 2, width_ratios=(1.15, 1))
@@ -55,7 +63,7 @@ def gear_end_view(outlines, gears, *, envelope_diameter: float, title: str) -> F
     return figure
 
 
-def _draw_stage(axis, outlines, gears, envelope_diameter):
+def _draw_stage(axis: Axes, outlines: StageOutlines, gears: PlanetarySet, envelope_diameter: float) -> None:
     ring = outlines.ring / MILLIMETRE
     axis.add_patch(Circle((0, 0), envelope_diameter / 2 / MILLIMETRE, facecolor=_LIGHT["ring"], edgecolor=BLACK))
     axis.fill(ring.real, ring.imag, facecolor="white", edgecolor=BLACK, linewidth=0.6)
@@ -70,11 +78,11 @@ def _draw_stage(axis, outlines, gears, envelope_diameter):
         )
 
 
-def _xy(points):
+def _xy(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return points.real / MILLIMETRE, points.imag / MILLIMETRE
 
 
-def _close_view(axis, gears):
+def _close_view(axis: Axes, gears: PlanetarySet) -> None:
     """The sun with the beginning of a planet: six sun pitches wide."""
     x = gears.sun.reference_radius / MILLIMETRE
     half = 6 * gears.sun.module / MILLIMETRE
@@ -84,11 +92,13 @@ def _close_view(axis, gears):
 
 
 @styled
-def load_spectrum(spectrum, lines) -> Figure:
+def load_spectrum(
+    spectrum: LoadSpectrum, lines: Sequence[tuple[str, LifeLine, np.ndarray, np.ndarray]]
+) -> Figure:
     """Torque classes with their share of the time, and the stress of each class on the S-N line.
 
-    spectrum: torque [Nm], share, speed [rad/s] (``LoadSpectrum``); lines: (name, life line with ``cycles``, stress over
-    endurance limit, cycles endured in each class); the classes are stacked from the highest stress downwards
+    lines: (name, life line, stress over endurance limit, cycles endured in each class); the classes are
+        stacked from the highest stress downwards
     """
     figure = new_figure(4.6)
     axes = figure.subplots(1, 2)
@@ -113,7 +123,9 @@ def load_spectrum(spectrum, lines) -> Figure:
     return figure
 
 
-def _draw_life(axis, name, line, ratio, cycles, colour):
+def _draw_life(
+    axis: Axes, name: str, line: LifeLine, ratio: np.ndarray, cycles: np.ndarray, colour: str
+) -> None:
     stress = np.geomspace(min(0.8, max(ratio.min(), 0.2)), line.strength, 400)
     life = line.cycles(stress)
     known = np.isfinite(life)
@@ -124,10 +136,10 @@ def _draw_life(axis, name, line, ratio, cycles, colour):
 
 
 @styled
-def safety_factors(trains: dict, wanted: dict) -> Figure:
+def safety_factors(trains: Mapping[str, Sequence[StageRating]], wanted: Mapping[str, float]) -> Figure:
     """Safety factors of each stage, gear and check as bars, with the wanted ones as lines.
 
-    trains: ratings of the stages (``StageRating``) by the name of the gearbox; wanted: by kind ("flank", "root",
+    trains: ratings of the stages by the name of the gearbox; wanted: by kind ("flank", "root",
     "static_flank", "static_root"), 0 where a check is only reported
     """
     stages = max(len(ratings) for ratings in trains.values())
@@ -145,7 +157,7 @@ def safety_factors(trains: dict, wanted: dict) -> Figure:
     return figure
 
 
-def _draw_bars(axis, rating, wanted):
+def _draw_bars(axis: Axes, rating: StageRating, wanted: Mapping[str, float]) -> None:
     for place, (kind, _) in enumerate(_KINDS):
         for offset, (gear, colour) in enumerate(_GEAR_COLOURS.items()):
             value = float(getattr(rating, kind)[gear])
@@ -160,10 +172,9 @@ def _draw_bars(axis, rating, wanted):
 
 
 @styled
-def axial_section(layout, *, title: str, end: str = "lever side") -> Figure:
+def axial_section(layout: Layout, *, title: str, end: str = "lever side") -> Figure:
     """Half section of the actuator along its axis, mirrored, with its outer dimensions.
 
-    layout: parts with kind, start, length, inner_radius, outer_radius [m]; length, diameter (``gearbox.layout.Layout``)
     end: what the side is called that faces what is moved
     """
     figure = new_figure(4.8)
@@ -184,13 +195,13 @@ def axial_section(layout, *, title: str, end: str = "lever side") -> Figure:
     return figure
 
 
-def _draw_part(axis, part, side):
+def _draw_part(axis: Axes, part: Part, side: int) -> None:
     low, high = sorted((side * part.inner_radius, side * part.outer_radius))
     box = (part.start / MILLIMETRE, low / MILLIMETRE), part.length / MILLIMETRE, (high - low) / MILLIMETRE
     axis.add_patch(Rectangle(*box, facecolor=_PART_COLOURS[part.kind], edgecolor=BLACK, linewidth=0.5))
 
 
-def _dimension(axis, start, end, text):
+def _dimension(axis: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
     axis.annotate("", start, end, arrowprops={"arrowstyle": "<->", "linewidth": 0.8})
     vertical = start[0] == end[0]
     place = ((start[0] + end[0]) / 2 + (2 if vertical else 0), (start[1] + end[1]) / 2 + (0 if vertical else 2))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from figures.style import GREY, MARKERS, SERIES, letter, new_figure, show_grid, styled
+from figures.style import GREY, MARKERS, SERIES, Look, letter, new_figure, show_grid, styled
 
 _PANELS = (
     ("torque_nominal_Nm_per_m", "torque per length", "torque per length / (Nm/m)"),
@@ -26,7 +27,7 @@ def limits(table: pd.DataFrame, *, chosen_reading: str | None = None, chosen_lim
     figure = new_figure(4.6)
     axes = figure.subplots(1, 3)
     for axis, (column, title, label) in zip(axes, _PANELS, strict=True):
-        for number, (reading, rows) in enumerate(table.groupby("reading", sort=False)):
+        for number, (_, rows) in enumerate(table.groupby("reading", sort=False)):
             _draw_reading(axis, rows, column, number)
         _draw_infeasible(axis, table, column)
         _ring(axis, table, column, chosen_reading, chosen_limit_T)
@@ -39,19 +40,19 @@ def limits(table: pd.DataFrame, *, chosen_reading: str | None = None, chosen_lim
     return figure
 
 
-def _draw_reading(axes, rows: pd.DataFrame, column: str, number: int) -> None:
+def _draw_reading(axes: Axes, rows: pd.DataFrame, column: str, number: int) -> None:
     rows = rows.sort_values("limit_T")
-    look = {"color": SERIES[number % len(SERIES)], "marker": MARKERS[number % len(MARKERS)], "markersize": 5}
+    look: Look = {"color": SERIES[number % len(SERIES)], "marker": MARKERS[number % len(MARKERS)], "markersize": 5}
     axes.plot(rows.limit_T, rows[column], label=_in_words(rows), **look)
 
 
-def _draw_infeasible(axes, table: pd.DataFrame, column: str) -> None:
+def _draw_infeasible(axes: Axes, table: pd.DataFrame, column: str) -> None:
     """Crosses on the lower edge, one row for each reading that some limits leave without a machine."""
     row = 0
     for number, (_, rows) in enumerate(table.groupby("reading", sort=False)):
         none = rows.limit_T[~np.isfinite(rows[column])]
         if len(none):
-            look = {"color": SERIES[number % len(SERIES)], "marker": "x", "markeredgewidth": 2, "linestyle": ""}
+            look: Look = {"color": SERIES[number % len(SERIES)], "marker": "x", "markeredgewidth": 2, "linestyle": ""}
             label = f"{_in_words(rows)}: no machine keeps the limit"
             height = np.full(len(none), 0.04 * row)
             axes.plot(none, height, transform=axes.get_xaxis_transform(), clip_on=False, label=label, **look)
@@ -62,9 +63,10 @@ def _in_words(rows: pd.DataFrame) -> str:
     return rows.reading.iloc[0].replace("_", " ")
 
 
-def _ring(axes, table: pd.DataFrame, column: str, reading: str | None, limit: float | None) -> None:
+def _ring(axes: Axes, table: pd.DataFrame, column: str, reading: str | None, limit: float | None) -> None:
     if reading is None or limit is None:
         return
     rows = table[(table.reading == reading) & np.isclose(table.limit_T, limit)]
-    look = {"marker": "o", "markersize": 14, "markerfacecolor": "none", "markeredgecolor": GREY, "markeredgewidth": 1.6}
-    axes.plot(rows.limit_T, rows[column], linestyle="", label="choice of the study", **look)
+    look: Look = {"marker": "o", "markersize": 14, "markerfacecolor": "none", "linestyle": ""}
+    look |= {"markeredgecolor": GREY, "markeredgewidth": 1.6}
+    axes.plot(rows.limit_T, rows[column], label="choice of the study", **look)

@@ -125,7 +125,8 @@ def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame
     """Transmission ratio, active length and cost of the match over the stator radius, for each slot count.
 
     table: columns slots, overload ("field" or "linear", drawn solid and dashed), stator_outer_radius_mm,
-        transmission_ratio in the unit of the output, active_length_mm, cost; NaN where there is no match. See ``radius_table``
+        transmission_ratio in the unit of the output, active_length_mm, cost; NaN where there is no match. See
+        ``radius_table``
     best: rows of the same columns to mark with a star, usually the chosen machine
     """
     panels = (

@@ -7,7 +7,7 @@ from base64 import b64encode
 from dataclasses import dataclass, field
 from math import floor, isinf, log10
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, SupportsFloat
 
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -123,7 +123,8 @@ def write_report(
 ) -> None:
     """Write the page.
 
-    sections: in reading order; folder: from which the paths of pictures count; provenance: name -> value for the foot of the page, such as versions and input hashes
+    sections: in reading order; folder: from which the paths of pictures count
+    provenance: name -> value for the foot of the page, such as versions and input hashes
     """
     html = render_report(sections, folder, title=title, subtitle=subtitle, provenance=provenance)
     Path(path).write_text(html, encoding="utf-8")
@@ -165,13 +166,13 @@ def _holds_text(column: pd.Series) -> bool:
     return any(isinstance(value, str) for value in column)
 
 
-def number_text(value, digits: int = SIGNIFICANT_DIGITS) -> str:
+def number_text(value: object, digits: int = SIGNIFICANT_DIGITS) -> str:
     """A value as a table shows it: significant digits without an exponent where that is readable, a dash for NaN."""
     if isinstance(value, bool) or hasattr(value, "dtype") and value.dtype == bool:
         return "yes" if value else "no"
     if value is None or value != value:
         return "–"
-    if not hasattr(value, "__float__"):
+    if not isinstance(value, SupportsFloat):
         return str(value)
     return _digits(float(value), digits).replace("-", "\N{MINUS SIGN}")
 

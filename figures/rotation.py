@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from figures.style import BLACK, BLUE, GREY, ORANGE, SERIES, VERMILION, degrees, letter, new_figure, show_grid, styled
+from figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    SERIES,
+    VERMILION,
+    Look,
+    degrees,
+    letter,
+    new_figure,
+    show_grid,
+    styled,
+)
 
-TORQUES = (
+TORQUES: tuple[tuple[str, str, Look], ...] = (
     ("torque_arkkio_Nm_per_m", "ring average (Arkkio)", {"color": BLUE, "linestyle": "-"}),
     ("torque_maxwell_Nm_per_m", "Maxwell stress at mid gap", {"color": ORANGE, "linestyle": "--"}),
 )
@@ -60,7 +74,7 @@ def _is_even(span: np.ndarray) -> bool:
     return bool(np.allclose(np.diff(span), span[1], rtol=1e-6))
 
 
-def _draw_torque(axes, table: pd.DataFrame) -> None:
+def _draw_torque(axes: Axes, table: pd.DataFrame) -> None:
     for column, name, look in TORQUES:
         if column not in table:
             continue
@@ -73,7 +87,7 @@ def _draw_torque(axes, table: pd.DataFrame) -> None:
     axes.set_title("torque per length at the nominal current", loc="left")
 
 
-def _draw_no_current(axes, table: pd.DataFrame) -> None:
+def _draw_no_current(axes: Axes, table: pd.DataFrame) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     if NO_CURRENT in table:
         axes.plot(table.angle_mech_deg, table[NO_CURRENT], color=BLACK)
@@ -81,10 +95,10 @@ def _draw_no_current(axes, table: pd.DataFrame) -> None:
     axes.set_title("torque per length without current (cogging)", loc="left")
 
 
-def _draw_probes(axes, table: pd.DataFrame, prefix: str, where: str) -> None:
+def _draw_probes(axes: Axes, table: pd.DataFrame, prefix: str, where: str) -> None:
     columns = probe_columns(table, prefix)
     for number, column in enumerate(columns):
-        look = {"color": SERIES[number % len(SERIES)], "linestyle": "-" if number < len(SERIES) else "--"}
+        look: Look = {"color": SERIES[number % len(SERIES)], "linestyle": "-" if number < len(SERIES) else "--"}
         axes.plot(table.angle_mech_deg, table[column], linewidth=1.2, label=column[len(prefix) : -2], **look)
     if columns:
         worst = table[columns].to_numpy().max()
@@ -95,7 +109,7 @@ def _draw_probes(axes, table: pd.DataFrame, prefix: str, where: str) -> None:
     axes.set_ylim(bottom=0.0)
 
 
-def _mark_angles(axes, null_angle: float | None, q_axis_angle: float | None) -> None:
+def _mark_angles(axes: Axes, null_angle: float | None, q_axis_angle: float | None) -> None:
     for angle, name, style in ((null_angle, "null angle", "--"), (q_axis_angle, "q-axis angle", "-.")):
         if angle is not None:
             axes.axvline(angle, color=BLACK, linestyle=style, linewidth=1.0, label=f"{name} {degrees(angle)}")

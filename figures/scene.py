@@ -40,7 +40,7 @@ def render_scene(fields: dict[str, WholeField], title: str) -> str:
     return template.render(title=title, data=_inside_script(data), colours=_colours(), flux_lines=FLUX_LINES)
 
 
-def _packed(name: str, field: WholeField) -> dict:
+def _packed(name: str, field: WholeField) -> dict[str, object]:
     smooth = field.smooth
     return {
         "name": name,
@@ -56,7 +56,7 @@ def _packed(name: str, field: WholeField) -> dict:
     }
 
 
-def _base64(array: np.ndarray, kind) -> str:
+def _base64(array: np.ndarray, kind: type[np.generic]) -> str:
     return b64encode(np.ascontiguousarray(array, dtype=np.dtype(kind).newbyteorder("<")).tobytes()).decode("ascii")
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from functools import wraps
 from io import BytesIO
 from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
 
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.typing import RcKeyType
 
 WIDTH = 9.0  # inches; 900 px wide at 100 px an inch, where 10 pt letters are 14 px high
 DPI = 150  # of saved pictures: sharp on dense screens when shown 900 px wide
@@ -27,7 +31,12 @@ PHASE_LIGHT = ("#F2B48C", "#8FD8BF", "#8FC3E3")  # negative sides
 FIELD_MAP = "viridis"  # flux density
 DESIGN_MAP = "cividis"  # torque over a design space
 
-_STYLE = {
+Look = dict[str, Any]  # how something is drawn, as matplotlib's functions take it
+Key = TypeVar("Key", int, float, str)
+Arguments = ParamSpec("Arguments")
+Drawn = TypeVar("Drawn")
+
+_STYLE: dict[RcKeyType, Any] = {
     "font.size": 10.0,
     "axes.titlesize": 10.5,
     "axes.labelsize": 10.0,
@@ -45,11 +54,11 @@ _STYLE = {
 }
 
 
-def styled(draw):
+def styled(draw: Callable[Arguments, Drawn]) -> Callable[Arguments, Drawn]:
     """Decorator: the figure is drawn in the style of the project, whatever the caller's settings are."""
 
     @wraps(draw)
-    def wrapper(*arguments, **named):
+    def wrapper(*arguments: Arguments.args, **named: Arguments.kwargs) -> Drawn:
         with rc_context(_STYLE):
             return draw(*arguments, **named)
 
@@ -63,21 +72,21 @@ def new_figure(height: float, width: float = WIDTH) -> Figure:
     return figure
 
 
-def series_style(values) -> dict:
+def series_style(values: Iterable[Key]) -> dict[Key, Look]:
     """Colour and marker for each of the values, in their sorted order: ``style[9]["color"]``."""
     ordered = sorted(set(values))
     looks = ({"color": SERIES[i % len(SERIES)], "marker": MARKERS[i % len(MARKERS)]} for i in range(len(ordered)))
     return dict(zip(ordered, looks, strict=True))
 
 
-def show_grid(*axes) -> None:
+def show_grid(*axes: Axes) -> None:
     """Thin grid behind the data."""
     for axis in axes:
         axis.grid(True, color=_STYLE["grid.color"], linewidth=_STYLE["grid.linewidth"])
         axis.set_axisbelow(True)
 
 
-def letter(axes) -> None:
+def letter(axes: Iterable[Axes]) -> None:
     """(a), (b), ... in front of the titles."""
     for number, axis in enumerate(axes):
         axis.set_title(f"({chr(ord('a') + number)}) {axis.get_title(loc='left')}", loc="left")

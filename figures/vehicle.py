@@ -5,7 +5,8 @@ Of what they are given the functions read attributes only.
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,7 +31,7 @@ def time_histories(
 
     histories: ``RideHistory`` by label, of one scenario; span: first and last time shown [s], all of it when None
     """
-    panels = (
+    panels: tuple[tuple[str, Callable[[Trace | RideHistory], np.ndarray]], ...] = (
         ("road / mm", lambda h: h.road.T / MILLIMETRE),
         ("stroke / mm", lambda h: h.stroke / MILLIMETRE),
         ("force / N", lambda h: h.actuator_force),

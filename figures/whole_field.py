@@ -83,7 +83,7 @@ class WholeField:
         return _smooth(self)
 
     @property
-    def _edges(self):
+    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
         a, b, c = self.points[:, self.cells[:3]].transpose(1, 0, 2)
         return b - a, c - a
 

@@ -22,14 +22,14 @@ Reader = Callable[[FieldSolution], np.ndarray]
 
 
 class Variation(Protocol):
-    """A parameter and the problem with it changed, ``at(model, point, change)``.
+    """A parameter and the problem with it changed."""
 
-    step, change: small and any [unit of the parameter]
-    """
+    @property
+    def step(self) -> float:
+        """A small change [unit of the parameter]."""
 
-    step: float
-
-    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]: ...
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The problem with the parameter changed; change: any [unit of the parameter]."""
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:

@@ -2,15 +2,16 @@
 
 Around the current point both torque and limited flux density are fitted by quadratics in (back-iron width, rotor
 radius) to nine field solutions in a trust box; the constrained maximum of the quadratics is the next point; the box
-moves when the maximum lies on its edge and shrinks otherwise. The nine designs move one mesh, so that they differ by their dimensions
-alone. At the end the machine is meshed anew and a last step in the width puts the limit to its tolerance.
+moves when the maximum lies on its edge and shrinks otherwise. The nine designs move one mesh, so that they differ by
+their dimensions alone. At the end the machine is meshed anew and a last step in the width puts the limit to its
+tolerance.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import nan
-from typing import Sequence
 
 import numpy as np
 from scipy.optimize import minimize
@@ -143,7 +144,10 @@ def _quadratic(offsets: np.ndarray, values: list[float]) -> np.ndarray:
 def _maximise(torque: np.ndarray, limited: np.ndarray, limit: float) -> np.ndarray:
     """argmax of one quadratic under another one's limit in the unit box; nearest approach when nothing is feasible."""
     scale = abs(torque[0])
-    room = lambda x: (limit - _terms(x) @ limited) / limit  # noqa: E731
+
+    def room(x: np.ndarray) -> float:
+        return (limit - _terms(x) @ limited) / limit
+
     allowed = {"type": "ineq", "fun": room}
     results = [
         minimize(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
-from typing import Callable, Sequence
 
 import numpy as np
 
@@ -231,7 +231,10 @@ def _torque_slope(torque: TorqueObjective, states: _ValuesAndSlopes, further: _V
     known, count = states.values[:, 0], len(states.values)
     others = further.values[:, 0] if len(further.values) else np.empty(0)
     slopes = [*states.slopes[:, :, 0], *(further.slopes[:, :, 0] if len(others) else ())]  # of each state (k,)
-    combined = lambda x: torque.combined(x[:count], x[count:])  # noqa: E731
+
+    def combined(x: np.ndarray) -> float:
+        return torque.combined(x[:count], x[count:])
+
     return np.array([_directional(combined, np.concatenate([known, others]), slope) for slope in np.transpose(slopes)])
 
 

@@ -85,8 +85,9 @@ class GridEdge:
         """Where the optimum lies and what to widen."""
         way = "lower" if self.key.endswith("_min") else "raise"
         return (
-            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at {self.found:.4f} "
-            f"of the stator radius, on or beyond the edge of the sweep at {self.edge:g}: {way} {self.key}"
+            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at "
+            f"{self.found:.4f} of the stator radius, on or beyond the edge of the sweep at {self.edge:g}: "
+            f"{way} {self.key}"
         )
 
 

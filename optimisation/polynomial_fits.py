@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Sequence
 
 import numpy as np
 
@@ -102,6 +102,6 @@ def _reason_to_refuse(where: float, relative: float, r_squared: float) -> str:
         return ""
     return (
         f"the point at {where / MILLIMETRE:g} mm is {relative:.1%} of the mean away from the curve "
-        f"(R^2 = {r_squared:.4f}), more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit a narrower range "
-        "(sweep.stator_diameters_mm)"
+        f"(R^2 = {r_squared:.4f}), more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit "
+        "a narrower range (sweep.stator_diameters_mm)"
     )

@@ -6,8 +6,8 @@ afford less than an optimum. The thesis's torque in its null position is another
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Sequence
 
 import numpy as np
 
@@ -86,7 +86,7 @@ class MeanTorque(TorqueObjective):
 
 @dataclass(frozen=True)
 class QuickMeanTorque(TorqueObjective):
-    """The same mean from one solved state: its flux-linkage torque, times how much more linear elements say the mean is.
+    """The same mean from one solved state: its flux-linkage torque, times what linear elements say the mean is to it.
 
         T = tau(state) mean_k tau_1(position k) / tau_1(state),  tau = 1.5 p (psi_d i_q - psi_q i_d)
 

@@ -46,7 +46,7 @@ class Checkpoint:
         self.path.unlink(missing_ok=True)
         self._results, self._good_bytes = {}, 0
 
-    def _append(self, line: dict) -> None:
+    def _append(self, line: dict[str, Any]) -> None:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         lines = [line] if self._good_bytes else [{"inputs": self.inputs}, line]
         with open(self.path, "ab") as file:
@@ -73,7 +73,7 @@ class Checkpoint:
         return results, good_bytes
 
 
-def _entry(line: bytes) -> dict | None:
+def _entry(line: bytes) -> dict[str, Any] | None:
     """The JSON object of one whole line, None for a line that was cut or is something else."""
     if not line.endswith(b"\n"):
         return None
@@ -84,7 +84,7 @@ def _entry(line: bytes) -> dict | None:
     return found if isinstance(found, dict) else None
 
 
-def _is_point(entry: dict) -> bool:
+def _is_point(entry: dict[str, Any]) -> bool:
     """Whether an entry is one that ``add`` wrote."""
     if entry.keys() != {"point", "result"} or not isinstance(entry["point"], str):
         return False

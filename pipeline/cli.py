@@ -1,4 +1,4 @@
-"""The command ``airgap``: one table of commands; what a command needs is loaded when it is the one that is asked for."""
+"""The command ``airgap``: one table of commands; what a command needs is loaded when it is asked for."""
 
 from __future__ import annotations
 
@@ -53,7 +53,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 def _parser(given: list[str]) -> argparse.ArgumentParser:
     """The parser of all commands; only the one that is asked for has its arguments."""
-    parser = argparse.ArgumentParser(prog="airgap", description="Design electric machines, test the design, meet the bench.")
+    parser = argparse.ArgumentParser(
+        prog="airgap", description="Design electric machines, test the design, meet the bench."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, command in COMMANDS.items():
         own = commands.add_parser(name, help=command.help)
@@ -63,4 +65,4 @@ def _parser(given: list[str]) -> argparse.ArgumentParser:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

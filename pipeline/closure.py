@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
+from typing import Any
 
 from pipeline.modules import PROJECT, module_file
 
@@ -29,7 +30,10 @@ def _imported(path: Path) -> frozenset[str]:
 
 
 def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """Every statement, inside functions, classes and branches too; expressions hold no imports and take most of the time."""
+    """Every statement, inside functions, classes and branches too.
+
+    Expressions hold no imports and would take most of the time.
+    """
     for node in body:
         yield node
         for inner in ("body", "orelse", "finalbody"):
@@ -65,14 +69,14 @@ def _file_hash(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def code_digest(*functions: Callable) -> str:
+def code_digest(*functions: Callable[..., Any]) -> str:
     """Hash of the names and contents of all files that the functions depend on."""
     files = sorted(frozenset().union(*(files_of(function.__module__) for function in functions)))
     lines = (f"{path.relative_to(PROJECT).as_posix()} {_file_hash(path)}" for path in files)
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def packages_of(*functions: Callable) -> dict[str, str]:
+def packages_of(*functions: Callable[..., Any]) -> dict[str, str]:
     """Installed version of every package that the code of the functions imports, and of Python."""
     files = frozenset().union(*(files_of(function.__module__) for function in functions))
     names = {name.partition(".")[0] for path in files if path.suffix == ".py" for name in _imported(path)}

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from importlib import import_module
 from math import isfinite
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
@@ -24,6 +25,13 @@ _PLAIN = (str, int, bool, type(None))
 
 class CodecError(ValueError):
     """A value that cannot be written, or a text that is not one that was written."""
+
+
+class Datasets(Protocol):
+    """The datasets that stand beside a text, by number."""
+
+    def __getitem__(self, number: int, /) -> xr.Dataset:
+        """The dataset of a number; IndexError or OSError where there is none."""
 
 
 def encoded(value: Any, datasets: list[xr.Dataset] | None = None) -> Any:
@@ -45,7 +53,7 @@ def encoded(value: Any, datasets: list[xr.Dataset] | None = None) -> Any:
     return _encoded_container(value, datasets)
 
 
-def _encoded_record(value: Any, datasets: list[xr.Dataset] | None) -> dict:
+def _encoded_record(value: Any, datasets: list[xr.Dataset] | None) -> dict[str, Any]:
     kind = type(value)
     content = {f.name: encoded(getattr(value, f.name), datasets) for f in fields(value) if f.init}
     return {"dataclass": f"{kind.__module__}:{kind.__qualname__}", "fields": content}
@@ -68,7 +76,7 @@ def _encoded_container(value: Any, datasets: list[xr.Dataset] | None) -> Any:
     )
 
 
-def decoded(content: Any, datasets: list[xr.Dataset] | None = None) -> Any:
+def decoded(content: Any, datasets: Datasets | None = None) -> Any:
     """The value that ``encoded`` made this of. Raises CodecError for anything else."""
     if isinstance(content, list):
         return [decoded(one, datasets) for one in content]
@@ -84,7 +92,7 @@ def decoded(content: Any, datasets: list[xr.Dataset] | None = None) -> Any:
         raise CodecError(f"{str(content)[:60]} does not hold what it says ({error})") from error
 
 
-def _decoded_record(content: dict, datasets: list[xr.Dataset] | None) -> Any:
+def _decoded_record(content: dict[str, Any], datasets: Datasets | None) -> Any:
     module, _, name = content["dataclass"].partition(":")
     found: Any = import_module(_own(module))
     for part in name.split("."):
@@ -101,13 +109,13 @@ def _own(module: str) -> str:
     return module
 
 
-def _decoded_dataset(content: dict, datasets: list[xr.Dataset] | None) -> xr.Dataset:
+def _decoded_dataset(content: dict[str, Any], datasets: Datasets | None) -> xr.Dataset:
     if datasets is None:
         raise CodecError("a dataset is named where none is stored")
     return datasets[content["dataset"]]
 
 
-_READERS = {
+_READERS: dict[str, Callable[[dict[str, Any], Datasets | None], Any]] = {
     "float": lambda content, _: float(content["float"]),
     "complex": lambda content, _: complex(*content["complex"]),
     "array": lambda content, _: np.array(decoded(content["array"]), dtype=np.dtype(content["dtype"])),

@@ -8,13 +8,16 @@ each type has one maker. ``X | None`` reads what may be absent; ``Workers`` is w
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from types import NoneType, UnionType
-from typing import Any, Callable, Iterable, Iterator, Union, get_args, get_origin, get_type_hints
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from tasks import Workers
+
+Function = Callable[..., Any]  # of a source, view, stage, export or section; what it takes is read off its signature
 
 
 class GraphError(TypeError):
@@ -31,7 +34,7 @@ class Parameter:
 
 
 @cache
-def parameters(function: Callable) -> tuple[Parameter, ...]:
+def parameters(function: Function) -> tuple[Parameter, ...]:
     """What a function reads, without its workers."""
     hints = get_type_hints(function)
     names = [name for name in inspect.signature(function).parameters if hints.get(name) is not Workers]
@@ -39,19 +42,19 @@ def parameters(function: Callable) -> tuple[Parameter, ...]:
 
 
 @cache
-def takes_workers(function: Callable) -> str | None:
+def takes_workers(function: Function) -> str | None:
     """The name of the parameter that takes whoever runs tasks, None where there is none."""
     hints = get_type_hints(function)
     return next((name for name in inspect.signature(function).parameters if hints.get(name) is Workers), None)
 
 
 @cache
-def product(function: Callable) -> type:
+def product(function: Function) -> type:
     """What a function makes."""
     return _kind(get_type_hints(function), function, "return")[0]
 
 
-def _kind(hints: dict[str, Any], function: Callable, name: str) -> tuple[type, bool]:
+def _kind(hints: dict[str, Any], function: Function, name: str) -> tuple[type, bool]:
     if name not in hints:
         raise GraphError(f"{function.__module__}.{function.__qualname__} does not say what {name} is; annotate it")
     hint = hints[name]
@@ -68,14 +71,14 @@ def _kind(hints: dict[str, Any], function: Callable, name: str) -> tuple[type, b
 class Source:
     """Makes an input from the study. ``function``: (study) -> input."""
 
-    function: Callable
+    function: Function
 
 
 @dataclass(frozen=True)
 class View:
     """Derives a value from others in no time; not kept."""
 
-    function: Callable
+    function: Function
 
 
 @dataclass(frozen=True)
@@ -88,9 +91,9 @@ class Stage:
     """
 
     name: str
-    function: Callable
+    function: Function
     says: str
-    files: Callable | None = None
+    files: Function | None = None
     on_request: bool = False
 
 
@@ -102,7 +105,7 @@ class Export:
     """
 
     name: str
-    function: Callable
+    function: Function
 
 
 Node = Source | View | Stage
@@ -118,7 +121,7 @@ class Graph:
     """
 
     nodes: tuple[Node, ...]
-    sections: tuple[Callable, ...] = ()
+    sections: tuple[Function, ...] = ()
     refusals: tuple[type[Exception], ...] = ()
 
     def __post_init__(self) -> None:
@@ -158,7 +161,7 @@ class Graph:
             waiting = [pair for pair in waiting if pair not in ready]
         return tuple(found)
 
-    def parents(self, function: Callable) -> tuple[Stage, ...]:
+    def parents(self, function: Function) -> tuple[Stage, ...]:
         """The stages whose artefacts a function reads, directly or through views."""
         return tuple(dict.fromkeys(_parents(self, function)))
 
@@ -185,7 +188,7 @@ def _ordered(graph: Graph) -> tuple[Stage, ...]:
     return tuple(stages[name] for name in _in_order(sorter, list(stages)))
 
 
-def _in_order(sorter: TopologicalSorter, declared: list[str]) -> Iterator[str]:
+def _in_order(sorter: TopologicalSorter[str], declared: list[str]) -> Iterator[str]:
     """Of the stages that are ready always the one declared first."""
     ready: list[str] = []
     while sorter.is_active():
@@ -195,7 +198,7 @@ def _in_order(sorter: TopologicalSorter, declared: list[str]) -> Iterator[str]:
         sorter.done(first)
 
 
-def _parents(graph: Graph, function: Callable) -> Iterator[Stage]:
+def _parents(graph: Graph, function: Function) -> Iterator[Stage]:
     for parameter in parameters(function):
         node = graph.maker(parameter.kind)
         if node is None and not parameter.optional:

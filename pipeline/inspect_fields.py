@@ -10,21 +10,28 @@ import argparse
 import os
 import subprocess
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from figures.export import FieldFileError, read_vtu
 from figures.field_map import FLUX_LINES, colour_limit, field_map, outlines
 from figures.scene import write_scene
-from figures.style import FIELD_MAP, save_png
+from figures.style import FIELD_MAP, Look, save_png
+from figures.whole_field import WholeField
 from pipeline.results import ResultsError, results_of
 from pipeline.sentences import sentences
 from study.read import read_study
 from units import MILLIMETRE
 
+if TYPE_CHECKING:
+    import pyvista
+    from pyvista.plotting._typing import ScalarBarArgs
+
 SYSTEM_LIBRARIES = "libglu1-mesa libgl1 libxft2 libxcursor1 libxinerama1 libgomp1 libegl1"
+Fields = dict[str, WholeField]  # by the name of their file
 _WINDOW_PROBE = """
 import pyvista
 plotter = pyvista.Plotter(window_size=(80, 80))
@@ -56,7 +63,7 @@ def inspect(chosen: argparse.Namespace) -> None:
             write_files(fields, chosen.out or folder / "inspect", study.study.title)
 
 
-def read_fields(folder: Path) -> dict:
+def read_fields(folder: Path) -> Fields:
     """Name -> field of every .vtu file in the folder; ResultsError when there is none or one cannot be read."""
     paths = sorted(path for path in folder.glob("*.vtu") if not path.name.startswith("."))
     if not paths:
@@ -97,7 +104,7 @@ def window_opens() -> bool:
     return probe.returncode == 0
 
 
-def write_files(fields: dict, folder: Path, title: str) -> list[Path]:
+def write_files(fields: Fields, folder: Path, title: str) -> list[Path]:
     """A PNG of every field and one page with all of them; returns what was written."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.png" for name in fields] + [folder / "scene.html"]
@@ -109,32 +116,41 @@ def write_files(fields: dict, folder: Path, title: str) -> list[Path]:
     return paths
 
 
-def show(fields: dict) -> None:
+def show(fields: Fields) -> None:
     """A window with |B| and flux lines; a slider chooses the field."""
     import pyvista  # noqa: PLC0415
 
-    plotter = pyvista.Plotter(title="flux density and flux lines", window_size=(1000, 1000))
+    plotter = pyvista.Plotter(title="flux density and flux lines", window_size=[1000, 1000])
     add_field(plotter, next(iter(fields.values())))
     if len(fields) > 1:
         place = {"pointa": (0.62, 0.94), "pointb": (0.97, 0.94)}
-        plotter.add_text_slider_widget(lambda name: add_field(plotter, fields[name]), list(fields), value=0, **place)
-    plotter.view_xy()
+        chosen = partial(_add_named, plotter, fields)
+        plotter.add_text_slider_widget(chosen, list(fields), value=0, **place)  # type: ignore[arg-type]  # as below
+    # pyvista's decorator hides from the type checker that these are methods.
+    plotter.view_xy()  # type: ignore[call-arg]
     plotter.show()
 
 
-def add_field(plotter, field) -> None:
+def _add_named(plotter: pyvista.Plotter, fields: Fields, name: str) -> None:
+    add_field(plotter, fields[name])
+
+
+def add_field(plotter: pyvista.Plotter, field: WholeField) -> None:
     """Put a field into the window, in place of the one before."""
     surface = surface_of(field)
-    colours = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
-    bar = {"title": "flux density / T", "vertical": True, "position_x": 0.88, "position_y": 0.25, "height": 0.5}
-    plotter.add_mesh(surface, scalars="B", name="surface", lighting=False, scalar_bar_args=bar, **colours)
+    colours: Look = {"cmap": FIELD_MAP, "clim": (0.0, colour_limit(field)), "copy_mesh": True}
+    plotter.add_mesh(surface, scalars="B", name="surface", lighting=False, scalar_bar_args=_bar(), **colours)
     lines = surface.contour(FLUX_LINES, scalars="A")
     plotter.add_mesh(lines, color="black", line_width=1, name="flux lines", show_scalar_bar=False)
     plotter.add_mesh(pieces_of(outlines(field.points, field.cells, field.region)), color="white", name="outlines")
     plotter.add_text(field.description.replace("²", "^2"), font_size=10, name="description")
 
 
-def surface_of(field):
+def _bar() -> ScalarBarArgs:
+    return {"title": "flux density / T", "vertical": True, "position_x": 0.88, "position_y": 0.25, "height": 0.5}
+
+
+def surface_of(field: WholeField) -> pyvista.PolyData:
     """The field as triangles [mm] with |B| [T] and A [Wb/m] at their corners."""
     import pyvista  # noqa: PLC0415 - a second of start-up that only this command needs
 
@@ -145,7 +161,7 @@ def surface_of(field):
     return surface
 
 
-def pieces_of(pieces):
+def pieces_of(pieces: np.ndarray) -> pyvista.PolyData:
     """Straight pieces (k, 2, 2) as lines in the plane."""
     import pyvista  # noqa: PLC0415
 

@@ -22,5 +22,6 @@ def module_file(name: str) -> Path | None:
 def _file_of_package_without_init(place: Path, name: str) -> Path | None:
     """A module that is loaded from a folder outside the project's root, such as one of its tests."""
     loaded = getattr(sys.modules.get(name), "__file__", None)
-    own = loaded is not None and Path(loaded).resolve().is_relative_to(PROJECT)
-    return Path(loaded) if own and ".venv" not in loaded else None
+    if not isinstance(loaded, str) or ".venv" in loaded:
+        return None
+    return Path(loaded) if Path(loaded).resolve().is_relative_to(PROJECT) else None

@@ -1,4 +1,4 @@
-"""Tasks on any ``concurrent.futures.Executor``: progress with remaining time, finished tasks kept, lost workers replaced.
+"""Tasks on any ``concurrent.futures.Executor``: remaining time, finished tasks kept, lost workers replaced.
 
 ``Processes`` of this machine are the default, ``DaskCluster`` is a cluster of any size. A pool lives as long as a run;
 its workers keep what they have imported from one stage to the next.
@@ -12,20 +12,27 @@ import signal
 import sys
 import threading
 from collections import Counter
+from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from multiprocessing.process import BaseProcess
 from tempfile import TemporaryDirectory
-from typing import Any, Callable, Mapping
+from types import ModuleType
+from typing import Any, ParamSpec, TypeVar
 
 from tqdm import tqdm
 
 from pipeline.checkpoint import Checkpoint
 
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
-# A solve on two BLAS threads is slower than on one, and the cores are busy with other tasks.
 SCHEDULER_TIMEOUT = "20s"  # to find a dask scheduler
+# A solve on two BLAS threads is slower than on one, and the cores are busy with other tasks.
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+Arguments = ParamSpec("Arguments")
 
 
 class TaskError(RuntimeError):
@@ -45,11 +52,11 @@ class Pool:
 
     size: int
 
-    def submit(self, function: Callable, task: Any) -> Future:
+    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
         """Start a task; LostWorker where the pool has just lost a worker."""
         raise NotImplementedError
 
-    def result(self, future: Future) -> Any:
+    def result(self, future: Future[Result]) -> Result:
         """Its result, or the exception that the function raised; LostWorker where its worker is gone."""
         raise NotImplementedError
 
@@ -74,16 +81,16 @@ class Processes(Pool):
     def __init__(self, size: int | None = None, preload: tuple[str, ...] = ()):
         self.size, self.preload = size or default_workers(), preload
         self._executor: Executor | None = None
-        self._children: set = set()
+        self._children: set[BaseProcess] = set()
 
-    def submit(self, function: Callable, task: Any) -> Future:
+    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
         """See ``Pool.submit``."""
         try:
             return self._started().submit(function, task)
         except BrokenProcessPool as error:
             raise LostWorker from error
 
-    def result(self, future: Future) -> Any:
+    def result(self, future: Future[Result]) -> Result:
         """See ``Pool.result``."""
         try:
             return future.result()
@@ -108,20 +115,24 @@ class Processes(Pool):
             context = multiprocessing.get_context("spawn" if sys.platform == "win32" else "forkserver")
             if hasattr(context, "set_forkserver_preload"):
                 context.set_forkserver_preload(list(self.preload))
-            self._executor = _TrackingExecutor(self._children, self.size, mp_context=context, initializer=_prepare_worker)
+            self._executor = _TrackingExecutor(
+                self._children, self.size, mp_context=context, initializer=_prepare_worker
+            )
         return self._executor
 
 
 class _TrackingExecutor(ProcessPoolExecutor):
     """Knows its processes, so that they can be ended at once."""
 
-    def __init__(self, children: set, *arguments: Any, **named: Any):
+    def __init__(self, children: set[BaseProcess], *arguments: Any, **named: Any):
         super().__init__(*arguments, **named)
         self._ours = children
 
-    def submit(self, *arguments: Any, **named: Any) -> Future:
+    def submit(
+        self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
+    ) -> Future[Result]:
         before = set(multiprocessing.active_children())
-        future = super().submit(*arguments, **named)
+        future = super().submit(fn, *args, **kwargs)
         self._ours |= set(multiprocessing.active_children()) - before
         return future
 
@@ -162,11 +173,11 @@ class DaskCluster(Pool):
         self.client.wait_for_workers(1, timeout=60)
         self.size = max(1, 2 * sum(self.client.nthreads().values()))  # one task runs, the next is on its way
 
-    def submit(self, function: Callable, task: Any) -> Future:
+    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
         """See ``Pool.submit``."""
         return self.client.get_executor(pure=False).submit(function, task)
 
-    def result(self, future: Future) -> Any:
+    def result(self, future: Future[Result]) -> Result:
         """See ``Pool.result``; a task that was given up raises RuntimeError."""
         try:
             return future.result()
@@ -181,7 +192,7 @@ class DaskCluster(Pool):
         self._scratch.cleanup()
 
 
-def _local_cluster(distributed: Any, size: int, scratch: str) -> Any:
+def _local_cluster(distributed: ModuleType, size: int, scratch: str) -> Any:
     for variable in ONE_THREAD:
         os.environ[variable] = "1"
     return distributed.LocalCluster(
@@ -194,14 +205,14 @@ def _local_cluster(distributed: Any, size: int, scratch: str) -> Any:
     )
 
 
-def _client(distributed: Any, where: Any) -> Any:
+def _client(distributed: ModuleType, where: Any) -> Any:
     try:
         return distributed.Client(where, timeout=SCHEDULER_TIMEOUT)
     except OSError as error:
         raise TaskError(f"no dask scheduler answers at {where} ({error}); start one with `dask scheduler`") from None
 
 
-# ---- tasks with checkpoints ---------------------------------------------------------------------------------------------
+# ---- tasks with checkpoints ------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -215,7 +226,7 @@ class PooledWorkers:
     pool: Pool
     checkpoint_of: Callable[[str], Checkpoint]
 
-    def map(self, what: str, function: Callable, tasks: Mapping[str, Any]) -> dict[str, Any]:
+    def map(self, what: str, function: Callable[[Task], Result], tasks: Mapping[str, Task]) -> dict[str, Result]:
         """See ``tasks.Workers.map``.
 
         Raises TaskError naming the tasks that raised an exception or ended their worker three times, after all other
@@ -225,7 +236,7 @@ class PooledWorkers:
         todo = [name for name in tasks if name not in checkpoint]
         with _progress(len(tasks), len(tasks) - len(todo), title) as bar:
 
-            def keep(name: str, result: Any) -> None:
+            def keep(name: str, result: object) -> None:
                 checkpoint.add(name, result)
                 bar.update()
 
@@ -236,7 +247,8 @@ class PooledWorkers:
                 self.pool.end(now=True)
                 done = sum(name in checkpoint for name in tasks)
                 raise Interrupted(
-                    f"{title}: stopped; {done} of {len(tasks)} are finished and kept, the same command goes on from there."
+                    f"{title}: stopped; {done} of {len(tasks)} are finished and kept, the same command goes on from "
+                    "there."
                 ) from None
         job.report(title)
         return {name: checkpoint[name] for name in tasks}
@@ -250,9 +262,15 @@ def _progress(total: int, done: int, description: str) -> tqdm:
 class _Job:
     """The tasks of one call, with what became of them."""
 
-    def __init__(self, function: Callable, tasks: Mapping[str, Any], pool: Pool, keep: Callable[[str, Any], None]):
+    def __init__(
+        self,
+        function: Callable[[Any], object],
+        tasks: Mapping[str, Any],
+        pool: Pool,
+        keep: Callable[[str, object], None],
+    ) -> None:
         self.function, self.tasks, self.pool, self.keep = function, tasks, pool, keep
-        self.lost: Counter = Counter()  # workers lost while they ran a task
+        self.lost: Counter[str] = Counter()  # workers lost while they ran a task
         self.errors: dict[str, BaseException] = {}
 
     def finish(self, names: list[str]) -> None:
@@ -282,7 +300,7 @@ class _Job:
 
     def _run_together(self, waiting: list[str], most: int) -> list[str]:
         """Take tasks from ``waiting`` until it is empty or a worker is lost; then return those to be tried again."""
-        running: dict[Future, str] = {}
+        running: dict[Future[object], str] = {}
         try:
             while waiting or running:
                 while waiting and len(running) < most:  # no more than can start: those in flight are known
@@ -296,7 +314,7 @@ class _Job:
             return self._struck(list(running.values()))
         return []
 
-    def _take(self, name: str, future: Future) -> None:
+    def _take(self, name: str, future: Future[object]) -> None:
         try:
             found = self.pool.result(future)
         except LostWorker:

@@ -1,17 +1,19 @@
 """The table of torque-to-length values that the regression test guards: ``python -m pipeline.reference_torques``.
 
-Writes ``results/reference/torque_per_length.csv``. Run it only when a value is meant to move, and say in the commit why.
+Writes ``results/reference/torque_per_length.csv``. Run it only when a value is meant to move, and say in the
+commit why.
 """
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from math import sqrt
 
 import pandas as pd
 
+from disk import write_atomically
 from magnetostatics.model import OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from disk import write_atomically
 from pipeline.modules import PROJECT
 from study.inputs_field import field_case
 from study.read import read_study
@@ -34,28 +36,38 @@ _MACHINES = (
 _POINTS = ((-21.0, 6.0, 0.0), (-21.0, 20.0, 0.0), (-24.0, 6.0, 15.0), (-13.3, 6.0, -20.0))  # deg, A/mm2 RMS, deg
 
 
-def cases() -> list[dict]:
-    """Overrides of the study and operating points of the table."""
+@dataclass(frozen=True)
+class Case:
+    """One row of the table: overrides of the study and the operating point."""
+
+    overrides: str
+    angle_deg: float
+    j_rms_A_per_mm2: float
+    current_angle_deg: float
+
+
+def cases() -> list[Case]:
+    """Every operating point of every machine."""
     return [
-        {"overrides": " ".join(machine), "angle_deg": angle, "j_rms_A_per_mm2": density, "current_angle_deg": gamma}
+        Case(" ".join(machine), angle, density, gamma)
         for machine in _MACHINES
         for angle, density, gamma in _POINTS
     ]
 
 
-def solve(row: dict) -> dict[str, float]:
+def solve(row: Case) -> dict[str, float]:
     """Torque per length by both routes at the mesh of the sweep."""
-    case = field_case(read_study(STUDY, row["overrides"].split()))
+    case = field_case(read_study(STUDY, row.overrides.split()))
     model = case.model(case.family.reference)
-    amplitude = sqrt(2) * row["j_rms_A_per_mm2"] * AMPERE_PER_SQUARE_MILLIMETRE
-    angles = row["angle_deg"] * DEGREE, row["current_angle_deg"] * DEGREE
+    amplitude = sqrt(2) * row.j_rms_A_per_mm2 * AMPERE_PER_SQUARE_MILLIMETRE
+    angles = row.angle_deg * DEGREE, row.current_angle_deg * DEGREE
     solution = model.solve(OperatingPoint(angles[0], amplitude, angles[1], case.packing))
     return {"torque_arkkio_Nm_per_m": arkkio_torque(solution), "torque_maxwell_Nm_per_m": maxwell_torque(solution)}
 
 
 def main() -> None:
     """Solve every case and write the table."""
-    table = pd.DataFrame([{**case, **solve(case)} for case in cases()])
+    table = pd.DataFrame([{**asdict(case), **solve(case)} for case in cases()])
     write_atomically(TABLE, lambda path: table.to_csv(path, index=False, float_format="%.6f"))
     print(f"{len(table)} values in {TABLE.relative_to(PROJECT)}")
 

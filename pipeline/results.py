@@ -8,23 +8,23 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Iterator
+from typing import Any, TextIO
 
 import xarray as xr
 
 from disk import PART, write_atomically
-from pipeline.modules import PROJECT
 from pipeline.codec import CodecError, decoded, encoded
+from pipeline.modules import PROJECT
 from study.schema import Study
 
-try:
+if sys.platform != "win32":  # which has no advisory locks of this kind
     import fcntl
-except ImportError:  # pragma: no cover - Windows has no advisory locks of this kind
-    fcntl = None  # type: ignore[assignment]
+
 
 class ResultsError(RuntimeError):
     """A results folder that cannot be used; one sentence says why and what to do."""
@@ -40,13 +40,12 @@ class Results:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Hold the folder against other runs; ResultsError where one is at work in it, or where it cannot be written."""
+        """Hold the folder against other runs; ResultsError where one is at work in it, or it cannot be written."""
         with said_of(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             lock = open(self.folder / ".lock", "a", encoding="utf-8")
         with lock:
-            if fcntl is not None:
-                _take(lock, self.folder)
+            _take(lock, self.folder)
             self._sweep_up()
             yield
 
@@ -58,7 +57,7 @@ class Results:
 
     # ---- what is there ----------------------------------------------------------------------------------------------
 
-    def record(self, name: str) -> dict | None:
+    def record(self, name: str) -> dict[str, Any] | None:
         """The provenance of a result, None where it is absent, malformed, or does not fit what lies in the folder."""
         try:
             found = json.loads(self._provenance(name).read_text(encoding="utf-8"))
@@ -93,7 +92,7 @@ class Results:
         with said_of(self._provenance(name)):
             self._provenance(name).unlink(missing_ok=True)
 
-    def keep(self, name: str, outputs: list[str], record: dict) -> None:
+    def keep(self, name: str, outputs: list[str], record: dict[str, Any]) -> None:
         """Write the provenance of a finished result; outputs: the files it consists of."""
         hashes = {one: {"sha256": self._hash(one), "bytes": (self.folder / one).stat().st_size} for one in outputs}
         text = json.dumps({**record, "outputs": hashes}, indent=2, default=str) + "\n"
@@ -103,7 +102,7 @@ class Results:
     # ---- artefacts --------------------------------------------------------------------------------------------------
 
     def save(self, name: str, artefact: Any) -> list[str]:
-        """Write an artefact as ``<name>.json`` and its datasets as ``<name>.nc``, ``<name>_2.nc``; returns the names."""
+        """Write an artefact as ``<name>.json``, its datasets as ``<name>.nc``, ``<name>_2.nc``; returns the names."""
         datasets: list[xr.Dataset] = []
         content = encoded(artefact, datasets)
         text = json.dumps(content, indent=1, allow_nan=False) + "\n"
@@ -126,15 +125,15 @@ def results_of(study: Study) -> Results:
     return Results(PROJECT / "results" / study.study.id)
 
 
-class _Datasets(list):
+@dataclass(frozen=True)
+class _Datasets:
     """The datasets of an artefact, opened when asked for."""
 
-    def __init__(self, folder: Path, name: str):
-        super().__init__()
-        self._folder, self._name = folder, name
+    folder: Path
+    name: str
 
-    def __getitem__(self, number: Any) -> Any:
-        with xr.open_dataset(self._folder / _dataset_file(self._name, number)) as data:
+    def __getitem__(self, number: int, /) -> xr.Dataset:
+        with xr.open_dataset(self.folder / _dataset_file(self.name, number)) as data:
             return data.load()
 
 
@@ -142,7 +141,9 @@ def _dataset_file(name: str, number: int) -> str:
     return f"{name}.nc" if number == 0 else f"{name}_{number + 1}.nc"
 
 
-def _take(lock: Any, folder: Path) -> None:
+def _take(lock: TextIO, folder: Path) -> None:
+    if sys.platform == "win32":
+        return
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
@@ -158,6 +159,6 @@ def said_of(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise ResultsError(
-            f"{path} cannot be written ({error.strerror or error}); free space or rights there and run the same command "
-            "again, what was finished is kept"
+            f"{path} cannot be written ({error.strerror or error}); free space or rights there and run the same "
+            "command again, what was finished is kept"
         ) from error

@@ -1,4 +1,4 @@
-"""One process runs the graph of a study: what is current stays, what failed is said, the report is written at every end.
+"""One process runs the graph of a study: what is current stays, what failed is said, every end has its report.
 
     outcome = run(graph, study, Results(folder), pool, to="match")
 """
@@ -10,18 +10,19 @@ import subprocess
 import sys
 import time
 import traceback
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
-from datetime import datetime, timezone
-from typing import Any, Callable, Iterator
+from datetime import UTC, datetime
+from typing import Any
 
 from figures.files import File
 from figures.report import Section
 from pipeline.checkpoint import Checkpoint
 from pipeline.closure import code_digest, packages_of
-from pipeline.modules import PROJECT
 from pipeline.codec import digest
-from pipeline.graph import Export, Graph, Source, Stage, Step, View, parameters, takes_workers
+from pipeline.graph import Export, Function, Graph, Source, Stage, Step, View, parameters, takes_workers
+from pipeline.modules import PROJECT
 from pipeline.pools import Pool, PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
 from study.errors import StudyError
@@ -100,7 +101,7 @@ class Run:
         record = self.results.record(node.name) or {"outputs": {}}
         return digest({name: one["sha256"] for name, one in record["outputs"].items()})
 
-    def arguments(self, function: Callable) -> dict[str, Any]:
+    def arguments(self, function: Function) -> dict[str, Any]:
         """What a function of the graph is called with, without workers; Missing where something is not there."""
         found = {}
         for one in parameters(function):
@@ -112,7 +113,7 @@ class Run:
                 found[one.name] = None
         return found
 
-    def inputs(self, *functions: Callable) -> dict[str, str]:
+    def inputs(self, *functions: Function) -> dict[str, str]:
         """Hash of everything that functions depend on, by its name: values, code, packages."""
         found = {}
         for one in (parameter for function in functions for parameter in parameters(function)):
@@ -129,8 +130,11 @@ class Run:
 
     def step(self, step: Step) -> None:
         """Make the artefact of a stage, or the files of an export, where something that it reads changed."""
-        make = self._make if isinstance(step, Stage) else self._write_files
-        made = self._current(step.name, self.inputs(step.function), lambda: make(step))
+
+        def make() -> list[str]:
+            return self._make(step) if isinstance(step, Stage) else self._write_files(step)
+
+        made = self._current(step.name, self.inputs(step.function), make)
         if isinstance(step, Stage):
             self._done.add(step.name)
             if not made:
@@ -245,7 +249,7 @@ def _listed(reasons: list[str], most: int = 3) -> str:
 
 def _circumstances() -> dict[str, Any]:
     return {
-        "created": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "platform": f"{platform.system()} {platform.machine()}",
         "commit": git_commit(),
     }

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Iterator
 
 from figures.files import File
 from figures.report import Remark, Section, write_report
@@ -16,10 +16,10 @@ from pipeline.results import results_of
 from pipeline.run import Failure, Run, git_commit
 from pipeline.sentences import EXIT_FAILED, sentences
 from pipeline.stages import graph_of
-from study.check import check_study
 from study.errors import StudyError
 from study.read import read_study
 from study.schema import Study
+from study.usable import check_study
 
 REPORT = "report.html"
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import asdict, dataclass
 from math import sqrt
 from pathlib import Path
-
-from study.inputs_field import field_case
 
 from figures.export import write_vtu
 from figures.field_map import field_map
 from figures.whole_field import whole_field
+from magnetostatics.case import FieldCase
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.mesh_error import refined_solution, torque_error
 from magnetostatics.model import FieldSolution, OperatingPoint
@@ -19,7 +19,8 @@ from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from pipeline.arguments import add_overrides
 from study.errors import StudyError
-from study.operating_point import AskedPoint, asked_point
+from study.inputs_field import field_case
+from study.operating_point import asked_point
 from study.read import read_study
 from study.schema import Study
 from study.usable import check_mesh, check_steel
@@ -52,8 +53,10 @@ def solve(options: argparse.Namespace) -> None:
     study = read_study(options.study, options.set)
     asked = asked_point(options.angle_deg, _amplitude(options), options.current_angle_deg)
     check_steel(study)
-    solution = _field(study, asked, options.sweep_mesh)
-    result = _result(solution)
+    case = field_case(study)
+    point = OperatingPoint(asked.angle, asked.amplitude, asked.current_angle, case.packing)
+    solution = _field(study, case, point, options.sweep_mesh)
+    result = _result(solution, point)
     _print(result, options.json)
     if options.vtu:
         write_vtu(_writable(options.vtu), solution)
@@ -61,12 +64,11 @@ def solve(options: argparse.Namespace) -> None:
         field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
 
 
-def _field(study: Study, asked: AskedPoint, sweep_mesh: bool) -> FieldSolution:
-    case = field_case(study)
+def _field(study: Study, case: FieldCase, point: OperatingPoint, sweep_mesh: bool) -> FieldSolution:
     machine = case.family.reference
     check_mesh(study, machine, case.density if sweep_mesh else case.detail)
     model = (case.model if sweep_mesh else case.detailed_model)(machine)
-    return model.solve(OperatingPoint(asked.angle, asked.amplitude, asked.current_angle, case.packing))
+    return model.solve(point)
 
 
 def _amplitude(options: argparse.Namespace) -> float:
@@ -76,51 +78,67 @@ def _amplitude(options: argparse.Namespace) -> float:
     return options.j_amplitude or 0.0
 
 
-def _result(solution: FieldSolution) -> dict:
-    """Everything a user may want to know of one solved state, units in the keys."""
-    model, point = solution.model, solution.point
+@dataclass(frozen=True)
+class _Result:
+    """Everything a user may want to know of one solved state; the names are the keys of the JSON, with their units."""
+
+    torque_per_length_Nm_per_m: dict[str, float]
+    torque_error_Nm_per_m: float
+    flux_linkage_Wb_per_turn_per_m: dict[str, float]
+    flux_linkage_dq_Wb_per_turn_per_m: dict[str, float]
+    probes_T: dict[str, float]
+    operating_point: dict[str, float | dict[str, float]]
+    half_slot_area_mm2: float
+    sectors: int
+    unknowns: int
+    newton: dict[str, list[float]]
+    cpu_seconds: float
+
+
+def _result(solution: FieldSolution, point: OperatingPoint) -> _Result:
+    model = solution.model
     section = model.section
     linkage = phase_flux_linkage(solution)
     dq = park(linkage, section.machine.pole_pairs * point.angle, section.layout.phase_axis)
     densities = point.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
-    return {
-        "torque_per_length_Nm_per_m": {"arkkio": arkkio_torque(solution), "maxwell": maxwell_torque(solution)},
-        "torque_error_Nm_per_m": torque_error(solution, refined_solution(solution)),
-        "flux_linkage_Wb_per_turn_per_m": dict(zip("abc", linkage.tolist())),
-        "flux_linkage_dq_Wb_per_turn_per_m": dict(zip("dq", dq.tolist())),
-        "probes_T": probe_reader(model).read(solution),
-        "operating_point": {
+    return _Result(
+        torque_per_length_Nm_per_m={"arkkio": arkkio_torque(solution), "maxwell": maxwell_torque(solution)},
+        torque_error_Nm_per_m=torque_error(solution, refined_solution(solution)),
+        flux_linkage_Wb_per_turn_per_m=dict(zip("abc", linkage.tolist())),
+        flux_linkage_dq_Wb_per_turn_per_m=dict(zip("dq", dq.tolist())),
+        probes_T=probe_reader(model).read(solution),
+        operating_point={
             "angle_deg": point.angle / DEGREE,
             "current_angle_deg": point.current_angle / DEGREE,
             "j_phase_A_per_mm2": dict(zip("abc", (densities / AMPERE_PER_SQUARE_MILLIMETRE).tolist())),
         },
-        "half_slot_area_mm2": section.half_slot_area / SQUARE_MILLIMETRE,
-        "sectors": section.sectors,
-        "unknowns": model.unknowns.count,
-        "newton": {"residuals": list(solution.newton.residuals), "steps": list(solution.newton.steps)},
-        "cpu_seconds": solution.cpu_seconds,
-    }
+        half_slot_area_mm2=section.half_slot_area / SQUARE_MILLIMETRE,
+        sectors=section.sectors,
+        unknowns=model.unknowns.count,
+        newton={"residuals": list(solution.newton.residuals), "steps": list(solution.newton.steps)},
+        cpu_seconds=solution.cpu_seconds,
+    )
 
 
-def _print(result: dict, target: str | None) -> None:
-    text = json.dumps(result, indent=2)
+def _print(result: _Result, target: str | None) -> None:
+    text = json.dumps(asdict(result), indent=2)
     if target == "-":
         print(text)
         return
     if target:
         _writable(target).write_text(text + "\n", encoding="utf-8")
-    torque = result["torque_per_length_Nm_per_m"]
+    torque = result.torque_per_length_Nm_per_m
     print(
-        f"torque per length   {torque['arkkio']:.3f} ± {result['torque_error_Nm_per_m']:.3f} Nm/m (ring average; ± bounds the "
-        f"error of the mesh), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
+        f"torque per length   {torque['arkkio']:.3f} ± {result.torque_error_Nm_per_m:.3f} Nm/m (ring average; ± bounds "
+        f"the error of the mesh), {torque['maxwell']:.3f} Nm/m (mid-gap contour)"
     )
-    linkage = result["flux_linkage_Wb_per_turn_per_m"]
+    linkage = result.flux_linkage_Wb_per_turn_per_m
     print(
         "flux linkage        " + ", ".join(f"{k} {1e3 * v:.4f}" for k, v in linkage.items()) + " mWb per turn and metre"
     )
-    worst = sorted(result["probes_T"].items(), key=lambda item: -item[1])[:3]
+    worst = sorted(result.probes_T.items(), key=lambda item: -item[1])[:3]
     print("highest probes      " + ", ".join(f"{name} {value:.3f} T" for name, value in worst))
-    print(f"unknowns            {result['unknowns']}, Newton iterations {len(result['newton']['residuals'])}")
+    print(f"unknowns            {result.unknowns}, Newton iterations {len(result.newton['residuals'])}")
 
 
 def _writable(target: str) -> Path:

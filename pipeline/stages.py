@@ -7,8 +7,6 @@ searched or stated; gears or a direct drive.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import direct_drive, gear_demand, stated_loads, transmission
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
@@ -16,8 +14,8 @@ from drivetrain.match import MatchError
 from drivetrain.matching import match_stage, matched_machine
 from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
-from drivetrain.whole_search import optimise_stage
 from drivetrain.requirements import shaft_demand
+from drivetrain.whole_search import optimise_stage
 from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.winding_selection import WindingError
@@ -37,9 +35,23 @@ from optimisation.limits import limits_stage
 from optimisation.optima import optima_stage
 from optimisation.polynomial_fits import FitRefused
 from optimisation.sweep import sweep_stage
-from pipeline.graph import Graph, Node, Source, Stage, View
-from report import drive, fields, fits, flux_map, gearbox, linkage, losses, match, optimise, outcome, requirements, ride
-from report import sweep, winding
+from pipeline.graph import Function, Graph, Node, Source, Stage, View
+from report import (
+    drive,
+    fields,
+    fits,
+    flux_map,
+    gearbox,
+    linkage,
+    losses,
+    match,
+    optimise,
+    outcome,
+    requirements,
+    ride,
+    sweep,
+    winding,
+)
 from study.chain import drives, searches_linkage
 from study.inputs_drive import output
 from study.inputs_electrical import flux_map_grid, loss_inputs, winding_inputs
@@ -125,7 +137,7 @@ def _has_loss_data(study: Study) -> bool:
     return True
 
 
-def _sections(driven: bool, searched: bool) -> tuple[Callable, ...]:
+def _sections(driven: bool, searched: bool) -> tuple[Function, ...]:
     """Of the report, in reading order."""
     return (
         outcome.section,

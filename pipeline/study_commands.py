@@ -7,8 +7,9 @@ import argparse
 from pipeline.arguments import add_overrides
 from pipeline.graph import drawing
 from pipeline.stages import graph_of
-from study.check import check_study, summary
+from study.check import summary
 from study.read import read_study
+from study.usable import check_study
 
 
 def add_check(parser: argparse.ArgumentParser) -> None:

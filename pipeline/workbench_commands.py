@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from inspect import cleandoc
 from pathlib import Path
 
 from tqdm import tqdm
 
-from effects.library import effects_of_file, library
+from effects.base import Effect
+from effects.library import Library, effects_of_file, library
 from effects.parameter import parameters_of
 from workbench.as_json import comparison_json, diagnosis_json
 from workbench.base_models import nominal_model
@@ -19,13 +21,18 @@ from workbench.comparison import compare
 from workbench.diagnosis import SEED, diagnose
 from workbench.draft import write_draft
 from workbench.errors import WorkbenchError
+from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
+from workbench.model import Model
 from workbench.model_file import NAME, with_effects_of
 from workbench.report import write_comparison_report, write_diagnosis_report, write_ledger_report
 from workbench.report.sentences import conclusions, readings, verdict_sentence
 from workbench.skeleton import write_new
+from workbench.table import Campaign
 from workbench.walk import add_effect, skeleton_for, walk
 
 EXIT_WRONG_INPUT = 2
+
+Run = Callable[[argparse.Namespace], None]  # a command
 
 
 def add_compare(parser: argparse.ArgumentParser) -> None:
@@ -68,7 +75,7 @@ def add_import(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_import)
 
 
-def _bench(parser: argparse.ArgumentParser, run, positional: bool = True) -> None:
+def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -> None:
     if positional:
         parser.add_argument("campaign", help="folder with campaign.toml and its tables")
     else:
@@ -79,7 +86,7 @@ def _bench(parser: argparse.ArgumentParser, run, positional: bool = True) -> Non
     parser.set_defaults(run=run)
 
 
-def _diagnose_parser(parser: argparse.ArgumentParser, run) -> None:
+def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
 
@@ -95,7 +102,7 @@ def _own_effects(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def exit_on_wrong_campaign():
+def exit_on_wrong_campaign() -> Iterator[None]:
     """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
     try:
         yield
@@ -104,7 +111,7 @@ def exit_on_wrong_campaign():
         raise SystemExit(EXIT_WRONG_INPUT) from None
 
 
-def _library(options):
+def _library(options: argparse.Namespace) -> Library:
     for file in options.effects_from:
         if not Path(file).exists():
             raise WorkbenchError(f"--effects-from {file}: there is no such file.")
@@ -115,7 +122,8 @@ def _library(options):
 
 def _must_hold_an_effect(file: str) -> None:
     """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    path, found = Path(file), {}
+    path = Path(file)
+    found: Library = {}
     for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
         try:
             found |= effects_of_file(own)
@@ -128,7 +136,7 @@ def _must_hold_an_effect(file: str) -> None:
         )
 
 
-def _set_up(options):
+def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
     campaign, effects = read_campaign(options.campaign), _library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
@@ -139,7 +147,7 @@ def _set_up(options):
     return campaign, effects, model, out
 
 
-def _compare(options) -> None:
+def _compare(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
@@ -148,7 +156,7 @@ def _compare(options) -> None:
         _print_comparison(comparison, out)
 
 
-def _diagnose(options) -> None:
+def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
@@ -157,7 +165,7 @@ def _diagnose(options) -> None:
         _print_diagnosis(diagnosis, out)
 
 
-def _add(options) -> None:
+def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
@@ -169,7 +177,7 @@ def _add(options) -> None:
         _print_comparison(added.comparison, out)
 
 
-def _ledger(options) -> None:
+def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
         with _progress() as progress:
@@ -180,7 +188,7 @@ def _ledger(options) -> None:
         _print_diagnosis(diagnosis, out)
 
 
-def _effects(options) -> None:
+def _effects(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         found = _library(options)
         if options.name is None:
@@ -193,13 +201,13 @@ def _effects(options) -> None:
         _print_effect(found[options.name])
 
 
-def _equation(cls) -> str:
+def _equation(cls: type[Effect]) -> str:
     """The first line of the docstring that holds an equation, else its first line."""
     lines = [line.strip() for line in (cls.__doc__ or "").splitlines() if line.strip()]
     return next((line for line in lines if " = " in line or " -> " in line), lines[0] if lines else "")
 
 
-def _print_effect(cls) -> None:
+def _print_effect(cls: type[Effect]) -> None:
     print(f"{cls.name()}: {cls.title}\n\n{cleandoc(cls.__doc__ or '')}\n\n{cls.looks_like}")
     for name, p in parameters_of(cls).items():
         print(f"  {name} [{p.unit}]: null {p.null:g}, from {p.low:g} to {p.high:g}; prior {p.prior}; {p.source}")
@@ -207,7 +215,7 @@ def _print_effect(cls) -> None:
         print(f"  shown by: {line}")
 
 
-def _new_effect(options) -> None:
+def _new_effect(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         path = Path(options.file)
         if options.campaign is None:
@@ -219,33 +227,33 @@ def _new_effect(options) -> None:
         print(f"wrote {path}; use it with --effects-from {path}")
 
 
-def _import(options) -> None:
+def _import(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
 
 
 @contextmanager
-def _progress():
+def _progress() -> Iterator[Callable[[str], None]]:
     """A bar on a terminal, nothing elsewhere."""
     with tqdm(bar_format="{desc} {elapsed}", leave=False, disable=not sys.stderr.isatty()) as bar:
         yield bar.set_description_str
 
 
-def _write_comparison(out: Path, comparison) -> None:
+def _write_comparison(out: Path, comparison: Comparison) -> None:
     (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
     write_comparison_report(out / "comparison.html", comparison)
 
 
-def _write_diagnosis(out: Path, diagnosis) -> None:
+def _write_diagnosis(out: Path, diagnosis: Diagnosis) -> None:
     (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
     write_diagnosis_report(out / "diagnosis.html", diagnosis)
 
 
-def _write_ledger(out: Path, ledger) -> None:
+def _write_ledger(out: Path, ledger: Ledger) -> None:
     write_ledger_report(out / "ledger.html", ledger)
 
 
-def _print_comparison(c, out: Path) -> None:
+def _print_comparison(c: Comparison, out: Path) -> None:
     print(
         f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'held out':>8}"
     )
@@ -262,7 +270,7 @@ def _print_comparison(c, out: Path) -> None:
     print(f"results in {out}")
 
 
-def _print_diagnosis(d, out: Path) -> None:
+def _print_diagnosis(d: Diagnosis, out: Path) -> None:
     print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
     for r in d.ranking[:8]:
         held = (
@@ -280,7 +288,7 @@ def _print_diagnosis(d, out: Path) -> None:
     print("", verdict_sentence(d), *conclusions(d), f"results in {out}", sep="\n")
 
 
-def _print_ledger(ledger) -> None:
+def _print_ledger(ledger: Ledger) -> None:
     print(f"\n{'step':>4} {'effect':28} {'decision':9} {'ln Z gain':>9} {'chi2/n':>9} {'held out':>9}  then")
     for s in ledger.steps:
         held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
@@ -290,6 +298,6 @@ def _print_ledger(ledger) -> None:
         )
 
 
-def _print_step(step) -> None:
+def _print_step(step: LedgerStep) -> None:
     held = "" if step.held_out_chi2_per_n is None else f", held-out chi2/n {step.held_out_chi2_per_n:.3f}"
     print(f"{step.effect}: {step.decision}; {step.reason}{held}")

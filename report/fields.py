@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 import pandas as pd
 
@@ -32,9 +32,10 @@ def machine(found: Rotations) -> Section:
     """The study's own machine and its field."""
     seen = found.reference
     text = (
-        f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one electrical "
-        f"period (± bounds the error of the mesh) with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to "
-        f"peak, cogging up to {seen.cogging:.2f} Nm/m. The two torque routes differ by at most {seen.routes_apart:.2%}."
+        f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one "
+        "electrical period (± bounds the error of the mesh) with the current on the q axis, ripple "
+        f"{seen.ripple:.2f} Nm/m peak to peak, cogging up to {seen.cogging:.2f} Nm/m. "
+        f"The two torque routes differ by at most {seen.routes_apart:.2%}."
     )
     return Section(
         "Reference machine and its field",

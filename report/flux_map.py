@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 from electrical.flux_map_export import flux_tables, write_mat, write_npz
 from electrical.winding_stage import WindingOutcome

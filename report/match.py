@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 import pandas as pd
 
@@ -24,8 +24,8 @@ def files(found: MatchOutcome, output: Output) -> Iterator[File]:
     yield table_file(TABLE, table)
     yield table_file(PARTS, parts_table(found.parts))
     title = f"{machine.slots} slots, Ø {2 * machine.stator_outer_radius / MILLIMETRE:.4g} mm"
-    shown = {"output": output, "title": title, "length_limit": found.length_limit}
-    yield figure_file("match_curves", match_curves(found.curves, chosen, **shown))
+    curves = match_curves(found.curves, chosen, output=output, title=title, length_limit=found.length_limit)
+    yield figure_file("match_curves", curves)
     best = best_row(machine.slots, found.overload.name, machine.stator_outer_radius, chosen, output)
     yield figure_file("match_over_radius", match_over_radius(table, output, best=best))
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
-from typing import Iterator
 
 import numpy as np
 import pandas as pd
@@ -50,8 +50,9 @@ def limits_files(limits: LimitComparison) -> Iterator[File]:
     """Table and figure of the optimum over the limit."""
     table = limits_table(limits)
     yield table_file("limits.csv", table)
-    chosen = {"chosen_reading": limits.chosen.reading.name, "chosen_limit_T": limits.chosen.limit}
-    yield figure_file("limits", limits_figure(table, **chosen))
+    chosen = limits.chosen
+    drawn = limits_figure(table, chosen_reading=chosen.reading.name, chosen_limit_T=chosen.limit)
+    yield figure_file("limits", drawn)
 
 
 def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
@@ -129,10 +130,10 @@ def _closest(maps: DesignMaps, case: FieldCase) -> tuple[int, float]:
 
 def _what(maps: DesignMaps) -> str:
     return (
-        f"Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux density "
-        f"of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs for every "
-        f"slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined with further "
-        "field solutions until the limit is met to 0.02 %."
+        "Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux "
+        f"density of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs "
+        f"for every slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined "
+        "with further field solutions until the limit is met to 0.02 %."
     )
 
 
@@ -151,7 +152,7 @@ def _readings(limits: LimitComparison | None) -> tuple[str | Picture, ...]:
         return ()
     text = (
         "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles "
-        "count; the torque is the same mean over the period in all of them. Points of this figure are read off a map by "
-        "interpolation."
+        "count; the torque is the same mean over the period in all of them. Points of this figure are read off a map "
+        "by interpolation."
     )
     return text, Picture(picture_name("limits"), "Optimum against the flux-density limit, for each reading of it.")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
+from typing import TypeVar
 
 from geometry.family import MachineFamily
 from geometry.half_cell import MeshDensity
@@ -14,6 +16,8 @@ from materials.magnet import Magnet
 from optimisation.states import READINGS
 from optimisation.sweep import SaturationLimit, SweepGrid
 from study.schema import MachineSection, MeshSection, Study
+
+Number = TypeVar("Number", int, float)
 
 _MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 # Twice the resolution of the sweep, for single states that are looked at.
@@ -68,12 +72,17 @@ def machine_materials(study: Study) -> MachineMaterials:
 
 def mesh_density(section: MeshSection) -> MeshDensity:
     """What the study states of the mesh, the rest as it is by itself."""
-    stated = {
-        "gap_edges": section.gap_edges_per_revolution,
-        "gap_layers": section.gap_layers,
-        "across_iron": section.elements_across_tooth,
-    }
-    return MeshDensity(**{name: value for name, value in stated.items() if value is not None})
+    default = MeshDensity()
+    return replace(
+        default,
+        gap_edges=_stated(section.gap_edges_per_revolution, default.gap_edges),
+        gap_layers=_stated(section.gap_layers, default.gap_layers),
+        across_iron=_stated(section.elements_across_tooth, default.across_iron),
+    )
+
+
+def _stated(value: Number | None, otherwise: Number) -> Number:
+    return otherwise if value is None else value
 
 
 def sweep_grid(study: Study) -> SweepGrid:

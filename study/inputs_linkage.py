@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Callable
+from collections.abc import Callable
 
 from drivetrain.four_bar import FourBar, SwingArm, from_lengths
 from drivetrain.linkage_choice import BestAngles, ChoiceRule, Knee, SmallestRatio
@@ -22,7 +22,7 @@ def linkage_search(study: Study) -> LinkageSearch:
         problem=linkage_problem(study),
         settings=GeneticSettings(search.seeds, search.population, search.generations),
         rule=_choice_rule(search),
-        stated=stated_hardpoints(study.linkage),
+        stated=stated_hardpoints(_section(study)),
     )
 
 
@@ -30,20 +30,20 @@ def stated_linkage(study: Study) -> Linkage:
     """The ratios that the study states; 1 for a load on the shaft."""
     if study.drive is not None:
         return drive_linkage(study.drive)
-    section = study.linkage.si
+    section = _section(study).si
     return Linkage(section.ratio_nominal, section.ratio_max, section.envelope_radius_max)
 
 
 def installation_space(study: Study) -> InstallationSpace:
     """The room that the study leaves for the actuator."""
-    return InstallationSpace(study.linkage.si.envelope_radius_max)
+    return InstallationSpace(_section(study).si.envelope_radius_max)
 
 
 def linkage_problem(study: Study) -> LinkageProblem:
     """Swing arm, boxes, travel and limits."""
-    section, search = study.linkage.si, needed(study.linkage_search, "linkage_search").si
+    section, search = _section(study).si, needed(study.linkage_search, "linkage_search").si
     return LinkageProblem(
-        arm=_arm(study.linkage),
+        arm=_arm(_section(study)),
         box_b=Box(complex(*section.hardpoint_b_min), complex(*section.hardpoint_b_max), "B"),
         box_c=Box(complex(*section.hardpoint_c_min), complex(*section.hardpoint_c_max), "C"),
         travel=Travel(-search.travel_rebound, search.travel_bump),
@@ -64,6 +64,10 @@ def stated_hardpoints(section: LinkageSection) -> FourBar | None:
     if None in (one.hardpoint_a, one.wheel_axle, one.hardpoint_c, *lengths):
         return None
     return from_lengths(_arm(section), complex(*one.hardpoint_c), *lengths)
+
+
+def _section(study: Study) -> LinkageSection:
+    return needed(study.linkage, "linkage")
 
 
 def _arm(section: LinkageSection) -> SwingArm:

@@ -19,6 +19,7 @@ from drivetrain.whole_search import WholeSearchInputs
 from materials.conductor import Conductor
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
+from study.needed import needed
 from study.schema import MatchSection, Study
 
 _OVERLOADS: dict[str, OverloadLaw] = {law.name: law for law in (FieldOverload(), LinearOverload())}
@@ -81,7 +82,7 @@ def stated_demands(study: Study) -> StatedDemands | None:
     required = study.requirements
     if required is None or not (drives(study) or searches_linkage(study)):
         return None
-    linkage = study.linkage.si
+    linkage = needed(study.linkage, "linkage").si
     return StatedDemands(
         Requirements(**vars(required.si)),
         Linkage(linkage.ratio_nominal, linkage.ratio_max, linkage.envelope_radius_max),

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -16,7 +17,7 @@ from study.chain import check_chain
 from study.errors import StudyError
 from study.inputs_machine import machine_family
 from study.schema import MachineSection, Study
-from study.sentences import sections_with, sentences
+from study.sentences import Location, sections_with, sentences
 from study.toml_file import parsed, read_table
 from units import split_unit
 
@@ -119,8 +120,8 @@ def _put(data: dict[str, Any], section: str, key: str, value: object) -> None:
         table[key] = value
 
 
-def _validated(data: dict[str, Any], path: Path, overridden: dict[tuple, str]) -> Study:
-    def place(loc: tuple) -> str:
+def _validated(data: dict[str, Any], path: Path, overridden: dict[Location, str]) -> Study:
+    def place(loc: Location) -> str:
         return f"--set {overridden[loc[:2]][:_LONGEST_SHOWN]}" if loc[:2] in overridden else str(path)
 
     try:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Annotated, Any, Literal, Optional, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
@@ -98,9 +98,9 @@ class MachineSection(Section):
     stacking_factor: Annotated[float, Quantity("steel over stack length of the laminations, of their mass", 0.5, 1)]
     magnetisation: Literal["parallel", "radial"]
     # optional: stated instead of derived from the back iron (eqs 3.53, 3.57, 3.58)
-    tooth_width_mm: Annotated[Optional[float], Quantity("tooth width w_tb", 0.3, 200)] = None
-    shoe_d1_mm: Annotated[Optional[float], Quantity("depth of the parallel-sided slot opening d_1", 0.05, 50)] = None
-    shoe_d2_mm: Annotated[Optional[float], Quantity("depth of the shoe's taper d_2", 0.05, 50)] = None
+    tooth_width_mm: Annotated[float | None, Quantity("tooth width w_tb", 0.3, 200)] = None
+    shoe_d1_mm: Annotated[float | None, Quantity("depth of the parallel-sided slot opening d_1", 0.05, 50)] = None
+    shoe_d2_mm: Annotated[float | None, Quantity("depth of the shoe's taper d_2", 0.05, 50)] = None
 
     @field_validator("poles", mode="after")
     @classmethod
@@ -114,7 +114,7 @@ class MaterialsSection(Section):
     """Steel, magnet and copper."""
 
     steel: Annotated[str, Field(min_length=1)]
-    loss_grade: Optional[str] = None  # whose iron-loss data stand in for the steel's: losses, optimise
+    loss_grade: str | None = None  # whose iron-loss data stand in for the steel's: losses, optimise
     remanence_T: Annotated[float, Quantity("remanence of the magnets B_r", 0.05, 2)]
     recoil_permeability: Annotated[float, Quantity("relative recoil permeability of the magnets", 1, 2)]
     copper_resistivity_Ohm_m: Annotated[float, Quantity("copper resistivity at its reference temperature", 1e-8, 1e-7)]
@@ -132,24 +132,24 @@ class WindingSection(Section):
 
     layers: Literal[1, 2]
     packing_factor: Annotated[float, Quantity("copper over slot area k_cp", 0.05, 0.95)]
-    coil_pitch: Annotated[Optional[int], Quantity("coil pitch in slots", 1, 180)] = None
+    coil_pitch: Annotated[int | None, Quantity("coil pitch in slots", 1, 180)] = None
 
 
 class MeshSection(Section):
     """Resolution of the mesh; what is not stated has the default of ``geometry.half_cell.MeshDensity``."""
 
     gap_edges_per_revolution: Annotated[
-        Optional[int], Quantity("least number of mesh edges around the air gap", 60, 14400)
+        int | None, Quantity("least number of mesh edges around the air gap", 60, 14400)
     ] = None
-    gap_layers: Annotated[Optional[int], Quantity("layers of elements in either half of the air gap", 1, 12)] = None
-    elements_across_tooth: Annotated[Optional[float], Quantity("elements across a tooth", 1, 40)] = None
+    gap_layers: Annotated[int | None, Quantity("layers of elements in either half of the air gap", 1, 12)] = None
+    elements_across_tooth: Annotated[float | None, Quantity("elements across a tooth", 1, 40)] = None
 
 
 class FluxMapSection(Section):
     """Resolution of the flux map; what is not stated has the default of ``pipeline.flux_map``."""
 
-    angles: Annotated[Optional[int], Quantity("rotor angles over 60 electrical degrees", 1, 720)] = None
-    currents: Annotated[Optional[int], Quantity("currents along either axis", 5, 101)] = None
+    angles: Annotated[int | None, Quantity("rotor angles over 60 electrical degrees", 1, 720)] = None
+    currents: Annotated[int | None, Quantity("currents along either axis", 5, 101)] = None
 
 
 class SweepSection(Section):
@@ -252,9 +252,9 @@ class DriveSection(Section):
     viscous_friction_Nms_per_rad: Annotated[float, Quantity("viscous friction at the shaft", 0, 1e5)]
     coulomb_friction_Nm: Annotated[float, Quantity("dry friction at the shaft", 0, 1e5)]
     # optional: an inertia that is compared with that of the drive, braking in short circuit, room for the casing
-    load_inertia_kg_m2: Annotated[Optional[float], Quantity("inertia of the load at the shaft", 0, 1e6)] = None
-    damping_Nms_per_rad: Annotated[Optional[float], Quantity("damping in short circuit", 0, 1e6)] = None
-    diameter_max_mm: Annotated[Optional[float], Quantity("largest diameter of the casing", 5, 4000)] = None
+    load_inertia_kg_m2: Annotated[float | None, Quantity("inertia of the load at the shaft", 0, 1e6)] = None
+    damping_Nms_per_rad: Annotated[float | None, Quantity("damping in short circuit", 0, 1e6)] = None
+    diameter_max_mm: Annotated[float | None, Quantity("largest diameter of the casing", 5, 4000)] = None
 
 
 class ChainSection(Section):
@@ -295,7 +295,7 @@ class QuarterCarSection(Section):
     tyre_stiffness_kN_per_m: Annotated[float, Quantity("vertical stiffness of the tyre", 1, 1e5)]
 
 
-DamperTable = Annotated[Optional[str], Field(min_length=1)]
+DamperTable = Annotated[str | None, Field(min_length=1)]
 
 
 class DampersSection(Section):
@@ -304,9 +304,9 @@ class DampersSection(Section):
     front: DamperTable = None
     maximum: DamperTable = None
     minimum: DamperTable = None
-    front_kNs_per_m: Annotated[Optional[float], Quantity("linear damping of the front", 1e-3, 1e4)] = None
-    maximum_kNs_per_m: Annotated[Optional[float], Quantity("largest linear damping", 1e-3, 1e4)] = None
-    minimum_kNs_per_m: Annotated[Optional[float], Quantity("smallest linear damping", 1e-3, 1e4)] = None
+    front_kNs_per_m: Annotated[float | None, Quantity("linear damping of the front", 1e-3, 1e4)] = None
+    maximum_kNs_per_m: Annotated[float | None, Quantity("largest linear damping", 1e-3, 1e4)] = None
+    minimum_kNs_per_m: Annotated[float | None, Quantity("smallest linear damping", 1e-3, 1e4)] = None
 
 
 class RideSection(Section):
@@ -357,16 +357,16 @@ class LinkageSection(Section):
 
     ratio_nominal_mm_per_rad: Annotated[float, Quantity("linkage ratio at the nominal wheel position", 1, 1e4)]
     ratio_max_mm_per_rad: Annotated[float, Quantity("largest linkage ratio along the wheel travel", 1, 1e4)]
-    envelope_radius_max_mm: Annotated[Optional[float], Quantity("largest outer radius of the actuator", 5, 1e3)] = None
-    link_ab_length_mm: Annotated[Optional[float], Quantity("length of link AB", 1, 1e4)] = None
-    link_bc_length_mm: Annotated[Optional[float], Quantity("length of link BC", 1, 1e4)] = None
-    hardpoint_a_mm: Annotated[Optional[Point], _COORDINATE] = None
-    hardpoint_c_mm: Annotated[Optional[Point], _COORDINATE] = None
-    wheel_axle_mm: Annotated[Optional[Point], _COORDINATE] = None
-    hardpoint_b_min_mm: Annotated[Optional[Point], _COORDINATE] = None
-    hardpoint_b_max_mm: Annotated[Optional[Point], _COORDINATE] = None
-    hardpoint_c_min_mm: Annotated[Optional[Point], _COORDINATE] = None
-    hardpoint_c_max_mm: Annotated[Optional[Point], _COORDINATE] = None
+    envelope_radius_max_mm: Annotated[float | None, Quantity("largest outer radius of the actuator", 5, 1e3)] = None
+    link_ab_length_mm: Annotated[float | None, Quantity("length of link AB", 1, 1e4)] = None
+    link_bc_length_mm: Annotated[float | None, Quantity("length of link BC", 1, 1e4)] = None
+    hardpoint_a_mm: Annotated[Point | None, _COORDINATE] = None
+    hardpoint_c_mm: Annotated[Point | None, _COORDINATE] = None
+    wheel_axle_mm: Annotated[Point | None, _COORDINATE] = None
+    hardpoint_b_min_mm: Annotated[Point | None, _COORDINATE] = None
+    hardpoint_b_max_mm: Annotated[Point | None, _COORDINATE] = None
+    hardpoint_c_min_mm: Annotated[Point | None, _COORDINATE] = None
+    hardpoint_c_max_mm: Annotated[Point | None, _COORDINATE] = None
 
     @model_validator(mode="after")
     def _ends_are_in_order(self) -> Self:
@@ -392,10 +392,10 @@ class LinkageSearchSection(Section):
     generations: Annotated[int, Quantity("generations of a run", 1, 100000)]
     choice: Literal["smallest_ratio", "best_angles", "knee"]
     angles_worst_rad2: Annotated[
-        Optional[float], Quantity("worst angle objective f2 that smallest_ratio accepts", 0, 100)
+        float | None, Quantity("worst angle objective f2 that smallest_ratio accepts", 0, 100)
     ] = None
     ratio_max_mm_per_rad: Annotated[
-        Optional[float], Quantity("largest nominal ratio that best_angles accepts", 1, 1e5)
+        float | None, Quantity("largest nominal ratio that best_angles accepts", 1, 1e5)
     ] = None
 
     @model_validator(mode="after")
@@ -414,7 +414,7 @@ class MatchSection(Section):
     mass_max_kg: Annotated[float, Quantity("mass that counts as 1 in the cost", 0.01, 1e4)]
     # optional: only with a wheel; a [drive] states its inertia_max_kg_m2
     equivalent_mass_max_kg: Annotated[
-        Optional[float], Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)
+        float | None, Quantity("equivalent mass that counts as 1 in the cost", 0.01, 1e5)
     ] = None
     weight_inertia: Annotated[float, Quantity("weight of the equivalent inertia against the mass, w_m", 0, 1)]
     weight_radius: Annotated[float, Quantity("weight of the stator radius, w_Rso", 0, 100)]
@@ -422,20 +422,20 @@ class MatchSection(Section):
     overload_torque: Literal["field", "linear"]
     enforce_damping: bool
     # optional: the designer's choice of the machine to go on with; without it the least cost decides
-    chosen_slots: Annotated[Optional[int], Quantity("slot count to go on with", 3, 360)] = None
-    chosen_stator_diameter_mm: Annotated[Optional[float], Quantity("stator diameter to go on with", 10, 2000)] = None
+    chosen_slots: Annotated[int | None, Quantity("slot count to go on with", 3, 360)] = None
+    chosen_stator_diameter_mm: Annotated[float | None, Quantity("stator diameter to go on with", 10, 2000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
     # optional: only with planetary stages
     gear_ring_diameter_fraction: Annotated[
-        Optional[float], Quantity("ring pitch diameter over the outer diameter", 0.3, 1)
+        float | None, Quantity("ring pitch diameter over the outer diameter", 0.3, 1)
     ] = None
-    gear_contact_stress_MPa: Annotated[Optional[float], Quantity("allowable contact stress sigma_H", 50, 5000)] = None
-    gear_overload_factor: Annotated[Optional[float], Quantity("overload factor K_A", 1, 5)] = None
-    gear_contact_ratio_factor: Annotated[Optional[float], Quantity("contact ratio factor Z_eps", 0.3, 1)] = None
-    gear_pressure_angle_deg: Annotated[Optional[float], Quantity("pressure angle", 10, 35)] = None
-    gear_youngs_modulus_GPa: Annotated[Optional[float], Quantity("Young's modulus of the gears", 10, 1000)] = None
-    gear_poisson_ratio: Annotated[Optional[float], Quantity("Poisson's ratio of the gears", 0, 0.49)] = None
+    gear_contact_stress_MPa: Annotated[float | None, Quantity("allowable contact stress sigma_H", 50, 5000)] = None
+    gear_overload_factor: Annotated[float | None, Quantity("overload factor K_A", 1, 5)] = None
+    gear_contact_ratio_factor: Annotated[float | None, Quantity("contact ratio factor Z_eps", 0.3, 1)] = None
+    gear_pressure_angle_deg: Annotated[float | None, Quantity("pressure angle", 10, 35)] = None
+    gear_youngs_modulus_GPa: Annotated[float | None, Quantity("Young's modulus of the gears", 10, 1000)] = None
+    gear_poisson_ratio: Annotated[float | None, Quantity("Poisson's ratio of the gears", 0, 0.49)] = None
 
 
 class GearboxSection(Section):
@@ -446,7 +446,7 @@ class GearboxSection(Section):
     life_h: Annotated[float, Quantity("operating life", 1, 1e6)]
     torque_class_Nm: Annotated[float, Quantity("width of the torque classes at the slow shaft", 0.01, 1e5)]
     swing_deg: Annotated[
-        Optional[float], Quantity("largest turn of the slow shaft between two reversals", 0.01, 3600)
+        float | None, Quantity("largest turn of the slow shaft between two reversals", 0.01, 3600)
     ] = None  # where no vehicle is run
     material: Literal["case_hardened_MQ", "case_hardened_ME"]
     accuracy_grade: Annotated[int, Quantity("accuracy grade of ISO 1328", 1, 12)]
@@ -465,14 +465,14 @@ class GearboxSection(Section):
     axial_gap_mm: Annotated[float, Quantity("gap between flange and teeth", 0.01, 50)]
     # optional: the gear set of somebody else, rated in the same way and shown beside ours
     printed_teeth: Annotated[
-        Optional[tuple[int, int, int]], Listed, Quantity("stated teeth of sun, planet and ring", 4, 2000)
+        tuple[int, int, int] | None, Listed, Quantity("stated teeth of sun, planet and ring", 4, 2000)
     ] = None
-    printed_module_mm: Annotated[Optional[float], Quantity("stated module", 0.1, 50)] = None
+    printed_module_mm: Annotated[float | None, Quantity("stated module", 0.1, 50)] = None
     printed_shifts: Annotated[
-        Optional[tuple[float, float]], Listed, Quantity("stated profile shifts of sun and planet", -2, 2)
+        tuple[float, float] | None, Listed, Quantity("stated profile shifts of sun and planet", -2, 2)
     ] = None
     printed_face_widths_mm: Annotated[
-        Optional[tuple[float, ...]], Listed, Quantity("stated face width of each stage", 0.1, 1000)
+        tuple[float, ...] | None, Listed, Quantity("stated face width of each stage", 0.1, 1000)
     ] = None
 
 
@@ -485,8 +485,8 @@ class AssemblySection(Section):
     sensor_cover_mm: Annotated[float, Quantity("cover with the position sensor", 0, 500)]
     casing_mass_kg: Annotated[float, Quantity("casing, bearings, shafts and lever", 0, 1e4)]
     # optional: only with a wheel; a [drive] states its own
-    viscous_friction_Ns_per_m: Annotated[Optional[float], Quantity("viscous friction at the wheel", 0, 1e6)] = None
-    coulomb_friction_N: Annotated[Optional[float], Quantity("dry friction at the wheel", 0, 1e5)] = None
+    viscous_friction_Ns_per_m: Annotated[float | None, Quantity("viscous friction at the wheel", 0, 1e6)] = None
+    coulomb_friction_N: Annotated[float | None, Quantity("dry friction at the wheel", 0, 1e5)] = None
 
 
 class PrintedActuatorSection(Section):
@@ -536,24 +536,24 @@ class Study(Section):
     mesh: MeshSection = MeshSection()
     sweep: SweepSection
     saturation: SaturationSection
-    chain: Optional[ChainSection] = None  # without it everything is as stated
-    motorcycle: Optional[MotorcycleSection] = None
-    quarter_car: Optional[QuarterCarSection] = None
-    dampers: Optional[DampersSection] = None
-    ride: Optional[RideSection] = None
-    obstacles: Optional[ObstaclesSection] = None
-    acceleration: Optional[AccelerationSection] = None
-    requirements: Optional[RequirementsSection] = None
-    drive: Optional[DriveSection] = None  # in the place of [requirements] and [linkage]
-    linkage: Optional[LinkageSection] = None
-    linkage_search: Optional[LinkageSearchSection] = None
+    chain: ChainSection | None = None  # without it everything is as stated
+    motorcycle: MotorcycleSection | None = None
+    quarter_car: QuarterCarSection | None = None
+    dampers: DampersSection | None = None
+    ride: RideSection | None = None
+    obstacles: ObstaclesSection | None = None
+    acceleration: AccelerationSection | None = None
+    requirements: RequirementsSection | None = None
+    drive: DriveSection | None = None  # in the place of [requirements] and [linkage]
+    linkage: LinkageSection | None = None
+    linkage_search: LinkageSearchSection | None = None
     match: MatchSection
-    printed_machine: Optional[PrintedMachineSection] = None
+    printed_machine: PrintedMachineSection | None = None
     winding_selection: WindingSelectionSection
     flux_map: FluxMapSection = FluxMapSection()
-    gearbox: Optional[GearboxSection] = None  # not for a direct drive
+    gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
-    printed_actuator: Optional[PrintedActuatorSection] = None
+    printed_actuator: PrintedActuatorSection | None = None
 
     _path: Path = PrivateAttr(default=Path("study.toml"))
 

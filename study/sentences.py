@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from difflib import get_close_matches
 from math import isfinite
-from typing import Any, Callable, get_args
+from typing import Literal, get_args, get_origin
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from study.schema import Section, Study
 from units import converted, same_quantity, split_unit
@@ -16,8 +18,10 @@ from units import converted, same_quantity, split_unit
 _TEMPLATE = "studies/template.toml"
 _LONGEST_SHOWN = 60
 
+Location = tuple[str | int, ...]  # section, key, and the position in a list
 
-def sentences(error: ValidationError, place: Callable[[tuple], str]) -> list[str]:
+
+def sentences(error: ValidationError, place: Callable[[Location], str]) -> list[str]:
     """The problems as sentences, file order lost, each once.
 
     place: function that names where a key comes from, given its location: the file, or the override that set it
@@ -47,7 +51,7 @@ def section_class(name: str) -> type[Section]:
     return annotation if isinstance(annotation, type) else get_args(annotation)[0]
 
 
-def _sentence(problem: Any) -> str:
+def _sentence(problem: ErrorDetails) -> str:
     if problem["type"] == "missing":
         return _missing(problem["loc"])
     if problem["type"] == "extra_forbidden":
@@ -57,31 +61,36 @@ def _sentence(problem: Any) -> str:
     return _wrong_kind(problem["loc"], problem["input"])
 
 
-def _missing(loc: tuple) -> str:
+def _missing(loc: Location) -> str:
     if len(loc) == 1:
         return f"section [{loc[0]}] is missing; take it over from {_TEMPLATE}"
-    section, key = loc
+    section, key = _names(loc)
     return f"{section}.{key} is missing; add it under [{section}]: {_expected(section, key)}"
 
 
-def _own(loc: tuple, found: object, said: str) -> str:
+def _own(loc: Location, found: object, said: str) -> str:
     """A problem found by a rule of the schema: the rule says it, the key and the value are put in front."""
     if len(loc) == 1:
         return f"[{loc[0]}] {said}"
     return f"{_dotted(loc)} = {shown(found)} {said}"
 
 
-def _wrong_kind(loc: tuple, found: object) -> str:
+def _wrong_kind(loc: Location, found: object) -> str:
     if len(loc) == 1:
         return f"{loc[0]} = {shown(found)} stands where the section [{loc[0]}] is expected; make it a table"
-    section, key = loc[:2]
+    section, key = _names(loc)
     hint = ", without quotes and without a unit" if isinstance(found, str) and re.match(r"\s*[-+.\d]", found) else ""
     return f"{_dotted(loc)} = {shown(found)} is not accepted; give {_expected(section, key)}{hint}"
 
 
-def _dotted(loc: tuple) -> str:
-    section, key, *rest = loc
-    position = "".join(f"[{index}]" for index in rest if isinstance(index, int))
+def _names(loc: Location) -> tuple[str, str]:
+    """Section and key."""
+    return str(loc[0]), str(loc[1])
+
+
+def _dotted(loc: Location) -> str:
+    section, key = _names(loc)
+    position = "".join(f"[{index}]" for index in loc[2:] if isinstance(index, int))
     return f"{section}.{key}{position}"
 
 
@@ -91,14 +100,21 @@ def _expected(section: str, key: str) -> str:
     field, quantity = cls.model_fields[key], cls.quantity(key)
     if quantity is not None:
         return f"{_kind(field.annotation)} ({quantity.meaning}, {quantity.allowed(key)})"
-    if choices := [str(shown(choice)) for choice in get_args(field.annotation)]:
-        return " or ".join(choices)
+    if choices := _choices(field.annotation):
+        return " or ".join(map(shown, choices))
     if field.annotation is bool:
         return "true or false"
     return "a text in quotes" + (" of a-z, 0-9, - and _" if key == "id" else "")
 
 
-def _kind(annotation: Any) -> str:
+def _choices(annotation: object) -> tuple[object, ...]:
+    """The values of a literal, also of one that may be left out; none for other kinds."""
+    if get_origin(annotation) is Literal:
+        return get_args(annotation)
+    return tuple(choice for one in get_args(annotation) for choice in _choices(one))
+
+
+def _kind(annotation: object) -> str:
     number = "an integer" if "int" in str(annotation) else "a number"
     return f"a list, each entry {number}" if "uple" in str(annotation) else number
 
@@ -106,10 +122,10 @@ def _kind(annotation: Any) -> str:
 # ------------------------------------------------------------------------------------- unknown keys
 
 
-def _unknown(loc: tuple, found: object) -> str:
+def _unknown(loc: Location, found: object) -> str:
     if len(loc) == 1:
-        return _unknown_section(loc[0])
-    section, key = loc[:2]
+        return _unknown_section(str(loc[0]))
+    section, key = _names(loc)
     meant = _meant(loc)
     if meant and split_unit(meant[1])[0] == split_unit(key)[0]:
         return _wrong_unit(section, key, meant[1], found)
@@ -146,12 +162,12 @@ def _in_unit(found: object, unit: str, right: str) -> str:
     return f"<value in {right}>" if number is False or number is None else f"{number:.6g}"
 
 
-def _meant(loc: tuple) -> tuple | None:
+def _meant(loc: Location) -> tuple[str, ...] | None:
     """The location that an unknown key was probably meant to be, in the same section."""
     if len(loc) == 1:
-        close = get_close_matches(loc[0], list(Study.model_fields), n=1)
+        close = get_close_matches(str(loc[0]), list(Study.model_fields), n=1)
         return (close[0],) if close else None
-    section, key = loc[:2]
+    section, key = _names(loc)
     known = list(section_class(section).model_fields)
     same = [other for other in known if split_unit(other)[0] == split_unit(key)[0]]
     close = same or ([] if sections_with(key) else get_close_matches(key, known, n=1, cutoff=0.7))

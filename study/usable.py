@@ -7,9 +7,9 @@ libraries, and what only the sweep and the stages after it need.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from itertools import product
 from math import pi
-from typing import Iterator
 
 from drivetrain.four_bar import LinkageError
 from geometry.checks import check_machine

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import operator
-from typing import Mapping
+from collections.abc import Mapping
 
 import numpy as np
 

@@ -1,14 +1,14 @@
 """What a comparison and a diagnosis found, as plain values: the only input of the reports and of the JSON files.
 
-Numbers are in the unit that stands beside them (the unit of the data file), fit for people. A residual is measured minus
-model. "u" is the standard uncertainty of one reading after the noise was measured from repeats; a residual "in u" is
-divided by it.
+Numbers are in the unit that stands beside them (the unit of the data file), fit for people. A residual is measured
+minus model. "u" is the standard uncertainty of one reading after the noise was measured from repeats; a residual
+"in u" is divided by it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Mapping
 
 import numpy as np
 
@@ -101,7 +101,8 @@ class RegimeMap:
 class OrderSpectrum:
     """V3: residual amplitude of every order per revolution [unit], (k,).
 
-    floor: amplitude that noise alone stays below in 99 of 100 spectra;  classes: family of each order, from ORDER_CLASSES
+    floor: amplitude that noise alone stays below in 99 of 100 spectra
+    classes: family of each order, from ORDER_CLASSES
     part: of a channel that was turned both ways, what is "the same both ways" or "opposite both ways"; empty otherwise
     """
 
@@ -298,7 +299,8 @@ class Diagnosis:
     """All that ``diagnose`` found.
 
     verdict: nothing_missing, effect, group, pair, partial, none_of_these or cannot_tell;  probability: of the verdict
-    abstention_power: share of unknown discrepancies that these data would flag, by their size in u ({3.0: 0.4, 10.0: 1.0})
+    abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
+        {3.0: 0.4, 10.0: 1.0}
     before, after: the failing channel without and with the leading effect, the same rows
     """
 
@@ -325,7 +327,8 @@ class Diagnosis:
     complaints: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
     p_partial: Mapping[str, float] = field(default_factory=dict)
-    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a pair: name -> names that may stand for it
+    # of a pair: name -> names that may stand for it
+    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ is Student's t for the size of an effect, whose prior is only a guess of its mag
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Sequence
 
 import numpy as np
 from scipy.stats import norm

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Mapping
 
 from effects.base import Effect
 from effects.parameter import parameters_of

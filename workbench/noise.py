@@ -6,8 +6,8 @@ reading minus nominal model, so that conditions that were not set quite alike do
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree

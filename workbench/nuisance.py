@@ -5,8 +5,9 @@ Each is a standard normal number z. At z = 0 the model is the nominal one.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 

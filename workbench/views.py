@@ -6,10 +6,10 @@ measured.
 
 from __future__ import annotations
 
+from collections.abc import Sequence as Sequence_
 from dataclasses import dataclass
 from functools import cached_property
 from math import gcd
-from typing import Sequence as Sequence_
 
 import numpy as np
 from scipy.spatial import cKDTree

@@ -5,7 +5,6 @@ from math import inf, sqrt
 
 import numpy as np
 import pytest
-from tests.drivetrain.linear_machine import AREA, END, LENGTH, POLES, PSI, RHO, STRANDS, TURNS, closed_form, per_turn
 
 from drivetrain.asked import (
     ActiveLength,
@@ -30,11 +29,13 @@ from drivetrain.remedies import (
     remedies,
 )
 from electrical.dq import DriveLimits, torque_speed_envelope
+from tests.drivetrain.linear_machine import AREA, END, LENGTH, POLES, PSI, RHO, STRANDS, TURNS, closed_form, per_turn
 from units import FACTORS
 
 AMPERES = sqrt(2) * 20e6 * AREA * STRANDS
 EVERY = (PeakEffortAtRest(1.0), PeakEffort(1.0, 2.0), PeakPower(1.0, 3.0), ContinuousEffort(1.0), LowSpeedDamping(1.0),
-         RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0), Diameter(1.0, 0.1))  # fmt: skip
+         RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0),
+         Diameter(1.0, 0.1))  # fmt: skip
 
 
 @pytest.fixture(scope="module")

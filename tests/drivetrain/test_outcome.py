@@ -5,7 +5,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
 
 from drivetrain.masses import PartMaterials
 from drivetrain.outcome import (
@@ -29,6 +28,7 @@ from geometry.machine import hanselman_machine
 from magnetostatics.flux_map_stage import FluxMap
 from pipeline.codec import decoded, digest, encoded
 from report.outcome import checks_table, features_table, files, masses_table, remedies_table, section
+from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
 
 MM = 1e-3
 BUILD = Construction(bore_fraction=0.45, flange_fraction=0.25, least_flange=1.5 * MM, axial_gap=0.5 * MM)

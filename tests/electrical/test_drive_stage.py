@@ -27,7 +27,8 @@ def test_on_a_linear_map_both_models_say_the_same(linear):
     _, found = linear
     assert found.envelope.torque == pytest.approx(found.constant_envelope.torque, rel=1e-5)
     assert found.field.base_speed == pytest.approx(found.constant.base_speed, rel=1e-6)
-    assert found.plane.current_peak == pytest.approx(found.plane_of_constant_parameters.current_peak, abs=0.02, nan_ok=True)
+    constant = found.plane_of_constant_parameters.current_peak
+    assert found.plane.current_peak == pytest.approx(constant, abs=0.02, nan_ok=True)
     for pair in found.neighbours:
         assert pair.field.maximum_power == pytest.approx(pair.constant.maximum_power, rel=1e-4)
 

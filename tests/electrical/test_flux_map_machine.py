@@ -273,23 +273,23 @@ def tables():
 
 def test_tables_of_currents_invert_those_of_flux_linkages(tables):
     """At every solved point of the current table the machine has the flux linkage of the breakpoints."""
-    solved = tables["inside"] == 1
+    solved = tables.inside == 1
     assert 0.5 < solved.mean() < 1.0
-    psi = MACHINE.flux_linkage(tables["id"][solved], tables["iq"][solved])
-    wanted = np.meshgrid(tables["flux_d"], tables["flux_q"], indexing="ij")
+    psi = MACHINE.flux_linkage(tables.id[solved], tables.iq[solved])
+    wanted = np.meshgrid(tables.flux_d, tables.flux_q, indexing="ij")
     assert np.array(psi) == pytest.approx(np.array([table[solved] for table in wanted]), abs=1e-12)
-    assert np.all(np.diff(tables["id"], axis=0) > 0) and np.all(np.diff(tables["iq"], axis=1) > 0)
+    assert np.all(np.diff(tables.id, axis=0) > 0) and np.all(np.diff(tables.iq, axis=1) > 0)
 
 
 def test_first_index_runs_along_d(tables):
-    assert tables["lambda_d"][:, 0] == pytest.approx(MACHINE.flux_linkage(tables["id_index"], tables["iq_index"][0])[0])
+    assert tables.lambda_d[:, 0] == pytest.approx(MACHINE.flux_linkage(tables.id_index, tables.iq_index[0])[0])
 
 
 def test_matlab_file(tables, tmp_path):
     write_mat(tmp_path / "map.mat", tables)
     read = loadmat(tmp_path / "map.mat", squeeze_me=True)
     for name in ("id_index", "lambda_q", "torque", "flux_d", "id", "i_s_dq", "psi_s_dq"):
-        assert read[name] == pytest.approx(tables[name])
+        assert read[name] == pytest.approx(tables.fields[name])
     assert read["pole_pairs"] == 5
 
 

@@ -1,9 +1,9 @@
 """Files: .vtu and back, the scene, the report, and looking into the fields of a study."""
 
 import base64
-from pathlib import Path
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd

@@ -30,7 +30,8 @@ def run(after: str) -> subprocess.CompletedProcess:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_a_broken_pipe_is_an_exception():
-    done = run("read, write = os.pipe(); os.close(read)\ntry: os.write(write, b'x')\nexcept BrokenPipeError: print('told')")
+    writing = "try: os.write(write, b'x')\nexcept BrokenPipeError: print('told')"
+    done = run(f"read, write = os.pipe(); os.close(read)\n{writing}")
     assert (done.returncode, done.stdout) == (0, "told\n")
 
 

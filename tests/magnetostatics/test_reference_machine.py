@@ -17,10 +17,10 @@ from geometry.half_cell import MeshDensity
 from geometry.machine import RadialMagnetisation
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.model import OperatingPoint
-from tests.magnetostatics.per_turn import per_turn_values
+from magnetostatics.positions import null_angle, null_current_angle
 from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from magnetostatics.positions import null_angle, null_current_angle
+from tests.magnetostatics.per_turn import per_turn_values
 from tests.magnetostatics.reference_machine import FINE, SWEEP, model_of, reference_machine
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 

@@ -3,15 +3,16 @@
 import pytest
 
 from optimisation.constrained_optimum import NoOptimumError, find_optimum
-from optimisation.gradient_optimum import find_optimum_by_gradients
 from optimisation.design import Judge
+from optimisation.gradient_optimum import find_optimum_by_gradients
 from optimisation.states import READINGS, AlignedTooth, EveryToothAndBackIronOverPeriod
 from optimisation.torque import MeanTorque, NullTorque, QuickMeanTorque
 from study.inputs_field import field_case
 from study.read import read_study
 
 LIMIT = 1.2  # T
-# Printed for the null state, so with the torque there as the objective: (w_bi, R_ro) [mm] and torque [Nm/m] at 42.5 mm, 12 slots, interpolated on its own grid
+# Printed for the null state, so with the torque there as the objective: (w_bi, R_ro) [mm] and torque [Nm/m] at
+# 42.5 mm, 12 slots, interpolated on its own grid
 BRACKET = {"aligned_tooth": 55.6, "every_tooth": 46.4}
 STARTS = {
     "aligned_tooth": ((2.68e-3, 13.9e-3), (3.0e-3, 15.0e-3)),

@@ -86,7 +86,8 @@ def test_an_optimum_beyond_the_grid_says_which_key_to_move(maps, optima):
 
 def test_no_design_below_the_limit_is_a_sentence(maps):
     impossible = DesignMaps(GRID, replace(LIMIT, limit=0.4), maps.data)
-    with pytest.raises(NoOptimumError, match="no design of the sweep holds the limit of 0.4 T.*raise saturation.limit_T"):
+    refused = "no design of the sweep holds the limit of 0.4 T.*raise saturation.limit_T"
+    with pytest.raises(NoOptimumError, match=refused):
         optima_stage(CASE, impossible, InThisProcess())
 
 
@@ -108,7 +109,8 @@ def test_limits_differ_in_the_limit_alone():
     found = limits_stage(CASE, GRID, LIMIT, InThisProcess())
     best = {(point.reading, point.limit): point for point in found.points}
     assert len(best) == 6
-    free = [best[name, 3.0].torque for name in ("aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period")]
+    names = ("aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period")
+    free = [best[name, 3.0].torque for name in names]
     assert free == pytest.approx([free[0]] * 3, rel=1e-6), "where no limit binds, all readings see one torque"
     assert best["aligned_tooth", 1.2].torque == pytest.approx(55.8, rel=0.01)
     assert np.isnan(best["every_tooth_and_back_iron_over_period", 1.2].torque)

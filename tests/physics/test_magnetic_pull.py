@@ -79,7 +79,9 @@ def test_pull_of_an_eccentric_rotor_turns_with_it():
 def coenergy_force(kind, point, density=SWEEP):
     """-dW/dx at held currents is +dW'/dx: central differences of co-energy over the shift (2,) [N/m]."""
     at, step = AMOUNT * np.array([np.cos(DIRECTION), np.sin(DIRECTION)]), 2e-6
-    ends = [[coenergy(field(kind, *(at + sign * step * axis), point, density)) for sign in (1, -1)] for axis in np.eye(2)]
+    ends = [
+        [coenergy(field(kind, *(at + sign * step * axis), point, density)) for sign in (1, -1)] for axis in np.eye(2)
+    ]
     return -np.diff(ends, axis=1)[:, 0] / (2 * step)
 
 

@@ -13,4 +13,5 @@ if __name__ == "__main__":
     with sentences():
         tasks = {f"task {number}": number for number in range(30)}
         pool = Processes(2)
-        PooledWorkers("slow run", pool, lambda what: Checkpoint(Path(sys.argv[1]), "inputs")).map("squares", slow_square, tasks)
+        workers = PooledWorkers("slow run", pool, lambda what: Checkpoint(Path(sys.argv[1]), "inputs"))
+        workers.map("squares", slow_square, tasks)

@@ -23,7 +23,10 @@ SMALL = {
 
 
 def small_study(path: Path, **replaced: str) -> Path:
-    """The study of the thesis with small grids and short roads, written to a path; replaced: further texts by old ones."""
+    """The study of the thesis with small grids and short roads, written to a path.
+
+    replaced: further texts by old ones
+    """
     text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
     for old, new in (SMALL | replaced).items():
         assert old in text, old

@@ -1,4 +1,4 @@
-"""Sweep, optima, flux map and blind score on a local cluster give the bytes of one process, a worker killed on the way."""
+"""Sweep, optima, flux map and blind score on a local cluster give the bytes of one process, a worker killed too."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Tasks: finished ones are kept whatever happens to the others, to a worker, to the whole run, here and on a cluster."""
+"""Tasks: finished ones are kept whatever happens to others, to a worker, to the whole run, here and on a cluster."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""A stage runs when something that it reads changed, says why, and leaves whole results or none; every end has a report."""
+"""A stage runs when something that it reads changed, says why, leaves whole results or none; every end has a report."""
 
 import json
 import os
@@ -134,8 +134,10 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
 
 
 def test_the_closure_finds_what_no_list_names():
-    names = {path.relative_to(pipeline.modules.PROJECT).as_posix() for path in pipeline.closure.files_of("magnetostatics.case")}
-    assert {"magnetostatics/assembly.py", "materials/steels/35PN270_bh.csv", "geometry/plane_mesh.py", "units.py"} <= names
+    found = pipeline.closure.files_of("magnetostatics.case")
+    names = {path.relative_to(pipeline.modules.PROJECT).as_posix() for path in found}
+    assert {"magnetostatics/assembly.py", "geometry/plane_mesh.py", "units.py"} <= names
+    assert "materials/steels/35PN270_bh.csv" in names
     assert not any(name.startswith(("workbench", "vehicle", "tests")) for name in names)
 
 
@@ -147,12 +149,13 @@ def test_the_provenance_tells_what_a_result_was_made_from(tmp_path):
     assert str(tmp_path) not in json.dumps(record)
 
 
-# ---- ends ---------------------------------------------------------------------------------------------------------------
+# ---- ends -----------------------------------------------------------------------------------------------------------
 
 
 def test_a_refusal_ends_with_a_report_of_what_was_found(tmp_path):
     run = go(tmp_path, StudyOfToys(refuse=True))
-    assert [(one.stage, one.reason) for one in run.failures] == [("summary", "no summary: refuse is set; set it to false")]
+    told = [(one.stage, one.reason) for one in run.failures]
+    assert told == [("summary", "no summary: refuse is set; set it to false")]
     assert (tmp_path / "report.html").read_text() == (
         "FAILED summary: no summary: refuse is set; set it to false\nSquares"
     )
@@ -175,7 +178,13 @@ def test_what_needs_a_failed_stage_is_left_out(tmp_path):
         raise AssertionError("must not be called")
 
     graph = Graph(
-        (Source(inputs), View(largest), SQUARES, replace(SUMMARY, function=_refusing, files=None), Stage("after", after, "")),
+        (
+            Source(inputs),
+            View(largest),
+            SQUARES,
+            replace(SUMMARY, function=_refusing, files=None),
+            Stage("after", after, ""),
+        ),
         refusals=GRAPH.refusals,
     )
     run = go(tmp_path, graph=graph)
@@ -187,13 +196,15 @@ def _refusing(largest: Largest) -> Summary:
     raise NoFit("no")
 
 
-# ---- faults of the machine ----------------------------------------------------------------------------------------------
+# ---- faults of the machine ------------------------------------------------------------------------------------------
 
 
 def test_a_second_run_on_one_folder_ends_in_a_sentence(tmp_path):
     with Results(tmp_path).held():
-        code = f"from pathlib import Path; from pipeline.results import Results\nwith Results(Path({str(tmp_path)!r})).held(): pass"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=pipeline.modules.PROJECT)
+        imports = "from pathlib import Path; from pipeline.results import Results"
+        code = f"{imports}\nwith Results(Path({str(tmp_path)!r})).held(): pass"
+        command, project = [sys.executable, "-c", code], pipeline.modules.PROJECT
+        done = subprocess.run(command, capture_output=True, text=True, cwd=project)
     assert done.returncode == 1 and "another run is at work in" in done.stderr.splitlines()[-1]
 
 

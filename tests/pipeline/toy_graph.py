@@ -1,4 +1,4 @@
-"""A small graph with everything that a large one has: a source, a view, stages with and without tasks, files, sections."""
+"""A small graph with everything a large one has: a source, a view, stages with and without tasks, files, sections."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drivetrain.output import Wheel
 from drivetrain.actuator_limits import ActuatorLimits
+from drivetrain.output import Wheel
 from drivetrain.requirements import Requirements, StatedRequirements
 from figures.report import Picture, Table
 from report import requirements as report
 from report import ride
 from tasks import InThisProcess
-from vehicle.demands import RideCase, requirements_stage, required
+from vehicle.demands import RideCase, required, requirements_stage
 from vehicle.ride_again import ride_again_stage
 from vehicle.road import roughness_of_class
 from vehicle.scenarios import acceleration_scenario, obstacle_scenarios, road_scenarios

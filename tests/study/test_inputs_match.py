@@ -31,7 +31,11 @@ def test_inputs_of_the_motorcycle(motorcycle):
 def test_choices_are_objects():
     changed = read_study(
         "motorcycle",
-        ["match.overload_torque=linear", "match.enforce_damping=true", "winding_selection.winding_temperature_degC=120"],
+        [
+            "match.overload_torque=linear",
+            "match.enforce_damping=true",
+            "winding_selection.winding_temperature_degC=120",
+        ],
     )
     found = match_inputs(changed)
     assert (found.overload, found.damping) == (LinearOverload(), DampingEnforced())

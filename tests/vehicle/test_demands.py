@@ -8,7 +8,7 @@ import pytest
 
 from tasks import InThisProcess
 from vehicle.damping import DamperCurve, linear_damper
-from vehicle.demands import RunsTask, requirements_stage, required, summed_up
+from vehicle.demands import RunsTask, required, requirements_stage, summed_up
 from vehicle.errors import VehicleError
 from vehicle.most_demanding import SetBy
 from vehicle.ride import simulate

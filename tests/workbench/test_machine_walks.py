@@ -88,7 +88,7 @@ def test_diagnose_names_the_effect_or_its_group(walked):
 
 
 def test_add_brings_the_held_out_error_to_the_noise(walked):
-    start, step = walked.added.ledger.steps[0], walked.added.ledger.steps[-1]
+    step = walked.added.ledger.steps[-1]
     assert step.decision == ACCEPTED
     assert step.held_out_chi2_per_n <= 1.2
     assert walked.added.diagnosis.verdict == "nothing_missing"

@@ -1,8 +1,8 @@
-"""The walk of a user on campaigns with a hidden effect: compare finds the channel, diagnose names it, add lowers the error.
+"""A user's walk on campaigns with a hidden effect: compare finds the channel, diagnose names it, add lowers the error.
 
 The campaigns come from virtual benches that follow other laws and methods than the models, see
-``benchmarks/virtual_benches``. Sizes are drawn by the bench; the seeds are the first whose effect stands out by a chi2 of
-100 to 10 000 (beyond that the approximate law of an effect is seen as something missing, rightly).
+``benchmarks/virtual_benches``. Sizes are drawn by the bench; the seeds are the first whose effect stands out by a chi2
+of 100 to 10 000 (beyond that the approximate law of an effect is seen as something missing, rightly).
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from workbench.report.sentences import readings
 from workbench.stack import stacked
 from workbench.table import Response, Table
 from workbench.views import ChannelView, order_spectra, scalings, sequences

@@ -12,10 +12,10 @@ The force is positive when it opposes a positive velocity. A shunt of 1e6 ohm is
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from math import isinf
-from typing import Mapping
 
 import numpy as np
 

@@ -13,8 +13,8 @@ Where a temperature is not measured the machine is at its reference temperature.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from math import sqrt
-from typing import Callable, Mapping
 
 import numpy as np
 

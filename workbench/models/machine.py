@@ -7,10 +7,10 @@ outwards, and a voltage is + d(flux linkage)/dt at open terminals, with the sign
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 from scipy.ndimage import median_filter

@@ -10,10 +10,9 @@ symmetry of the machine leaves:
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import lcm, pi
-from typing import Callable, Iterable, Sequence
 
 import numpy as np
 

@@ -6,7 +6,7 @@ Where nothing of a quantity was measured, nothing that needs it is proposed.
 
 from __future__ import annotations
 
-from typing import Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 

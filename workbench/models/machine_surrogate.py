@@ -10,9 +10,9 @@ About another design, with S_0 from field solutions there, the rest is the diffe
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Callable, Mapping, Sequence
 
 import numpy as np
 
