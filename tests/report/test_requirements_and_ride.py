@@ -12,11 +12,11 @@ from figures.report import Picture, Table
 from report import requirements as report
 from report import ride
 from tasks import InThisProcess
+from tests.vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
 from vehicle.demands import RideCase, required, requirements_stage
 from vehicle.ride_again import ride_again_stage
 from vehicle.road import roughness_of_class
 from vehicle.scenarios import acceleration_scenario, obstacle_scenarios, road_scenarios
-from tests.vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
 
 FIGURES = {"ride_road", "ride_worst", "ride_points", "requirements"}
 LIMITS = ActuatorLimits(np.array([0.0, 20.0]), np.array([400.0, 400.0]), 5.0, 0.0, 250.0)

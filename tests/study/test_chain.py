@@ -11,8 +11,8 @@ from study.inputs_linkage import installation_space, linkage_search, stated_link
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.read import STUDIES, read_study
 from study.usable import check_study
-from units import DEGREE
 from tests.vehicle import thesis
+from units import DEGREE
 
 FULL = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
 

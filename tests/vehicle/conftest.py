@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 import pytest
 
 from tasks import InThisProcess
+from tests.vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
 from vehicle.damping import linear_damper
 from vehicle.demands import RideCase, requirements_stage
 from vehicle.road import roughness_of_class
 from vehicle.scenarios import obstacle_scenarios, road_scenarios
-from tests.vehicle.thesis import CRUISE_SPEED, obstacle_shape, quarter_car, quarter_car_damping
 
 
 @dataclass

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from tests.vehicle.thesis import MAXIMUM_REGENERATIVE_DAMPING, REAR_DAMPER_LARGEST_DAMPING, motorcycle_damping
 from vehicle.actuator import Actuator, ForceSpeedLimit
 from vehicle.damping import DamperCurve, added, capped, linear_damper, mixed, read_damper_curve
 from vehicle.errors import VehicleError
 from vehicle.motion import Hinges
-from tests.vehicle.thesis import MAXIMUM_REGENERATIVE_DAMPING, REAR_DAMPER_LARGEST_DAMPING, motorcycle_damping
 
 DENSE = np.linspace(-5.9, 5.9, 200_001)
 

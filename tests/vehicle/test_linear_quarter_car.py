@@ -6,6 +6,17 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.vehicle.thesis import (
+    COMFORT,
+    CRUISE_SPEED,
+    HANDLING,
+    LQR_COEFFICIENTS,
+    QUARTER_CAR_ROAD_DURATION,
+    QUASI_IDEAL_PASSIVE,
+    TABLE_4_1,
+    TRADE_OFF,
+    quarter_car,
+)
 from units import GRAVITY
 from vehicle.comfort import WEIGHTING
 from vehicle.damping import linear_damper
@@ -34,17 +45,6 @@ from vehicle.spectral import (
     mean_power_theorem,
     ride_of,
     stationary_indices,
-)
-from tests.vehicle.thesis import (
-    COMFORT,
-    CRUISE_SPEED,
-    HANDLING,
-    LQR_COEFFICIENTS,
-    QUARTER_CAR_ROAD_DURATION,
-    QUASI_IDEAL_PASSIVE,
-    TABLE_4_1,
-    TRADE_OFF,
-    quarter_car,
 )
 
 CAR, ROAD = quarter_car(), IsoRoad(roughness_of_class("B"), seed=0)

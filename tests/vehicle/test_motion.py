@@ -7,14 +7,6 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import fsolve
 
-from units import GRAVITY
-from vehicle.actuator import Actuator
-from vehicle.damping import DamperCurve, linear_damper
-from vehicle.errors import VehicleError
-from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyre
-from vehicle.motion import Motion
-from vehicle.ride import Run, Scenario, simulate
-from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
 from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
@@ -23,6 +15,14 @@ from tests.vehicle.thesis import (
     obstacle_shape,
     quarter_car,
 )
+from units import GRAVITY
+from vehicle.actuator import Actuator
+from vehicle.damping import DamperCurve, linear_damper
+from vehicle.errors import VehicleError
+from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyre
+from vehicle.motion import Motion
+from vehicle.ride import Run, Scenario, simulate
+from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
 
 pytestmark = pytest.mark.physics
 

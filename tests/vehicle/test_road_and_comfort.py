@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
+from tests.vehicle.thesis import CRUISE_SPEED, motorcycle, obstacle_shape
 from vehicle.comfort import weighted_acceleration, weighting_gain
 from vehicle.errors import VehicleError
 from vehicle.ride import Scenario
 from vehicle.road import DISPLACEMENT_PSD, FlatRoad, IsoRoad, Obstacle, ObstacleShape, roughness_of_class
-from tests.vehicle.thesis import CRUISE_SPEED, motorcycle, obstacle_shape
 
 CLASS_B = roughness_of_class("B")
 

@@ -3,21 +3,6 @@
 import numpy as np
 import pytest
 
-from vehicle.actuator import Actuator, ForceSpeedLimit
-from vehicle.damping import capped
-from vehicle.errors import VehicleError
-from vehicle.most_demanding import most_demanding
-from vehicle.ride import Run, simulate
-from vehicle.road import roughness_of_class
-from vehicle.scenarios import (
-    RANDOM_ROAD,
-    acceleration_scenario,
-    obstacle_scenarios,
-    road_scenarios,
-    runs_of,
-    summaries,
-)
-from vehicle.spectral import mean_power_theorem
 from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
@@ -34,6 +19,21 @@ from tests.vehicle.thesis import (
     motorcycle_damping,
     obstacle_shape,
 )
+from vehicle.actuator import Actuator, ForceSpeedLimit
+from vehicle.damping import capped
+from vehicle.errors import VehicleError
+from vehicle.most_demanding import most_demanding
+from vehicle.ride import Run, simulate
+from vehicle.road import roughness_of_class
+from vehicle.scenarios import (
+    RANDOM_ROAD,
+    acceleration_scenario,
+    obstacle_scenarios,
+    road_scenarios,
+    runs_of,
+    summaries,
+)
+from vehicle.spectral import mean_power_theorem
 
 pytestmark = pytest.mark.reference
 
