@@ -85,6 +85,7 @@ class Stage:
     name: as in ``make <name>``; function: typed values -> artefact; says: what it does, in a few words
     files: typed values -> ``figures.files.File``s, None where people have nothing to read of it
     on_request: runs only when it is named
+    remarks: typed values, this artefact among them -> sentences that the run says at once, None where it has none
     """
 
     name: str
@@ -92,6 +93,7 @@ class Stage:
     says: str
     files: Callable | None = None
     on_request: bool = False
+    remarks: Callable | None = None
 
 
 @dataclass(frozen=True)

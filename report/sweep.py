@@ -54,6 +54,12 @@ def limits_files(limits: LimitComparison) -> Iterator[File]:
     yield figure_file("limits", limits_figure(table, **chosen))
 
 
+def remarks(optima: Optima) -> Iterator[str]:
+    """What the run says at once: where the sweep holds no optimum, or has it at its edge."""
+    yield from (one.reason for one in optima.without)
+    yield from (edge.sentence for edge in optima.edges)
+
+
 def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
     """Sweep, feasible domain, refined optima and what the limit costs."""
     caption = (

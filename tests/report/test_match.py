@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from drivetrain.finding import Sentence
 from drivetrain.matching import NamedMatch
 from drivetrain.output import Wheel
 from figures.report import Remark, Table
@@ -56,7 +57,7 @@ def test_the_section_says_what_must_not_be_overlooked(found):
 
 def test_the_section_without_matches_beside(found):
 
-    none = NamedMatch("reference machine, field torque", "", None, "the force is too large")
-    stated = NamedMatch("stated values", "", None, "too far")
+    none = NamedMatch("reference machine, field torque", "", None, Sentence("the force is too large"))
+    stated = NamedMatch("stated values", "", None, Sentence("too far"))
     said = texts(section(replace(found, reference=none, reference_cylinder=None, printed=None, stated=stated), Wheel()))
     assert "no match, the force is too large" in said and "there is no match: too far" in said
