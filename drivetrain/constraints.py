@@ -192,7 +192,8 @@ class RegenerativeDamping(Constraint):
 
 @dataclass(frozen=True)
 class SpeedLimit(Constraint):
-    """tau_t >= v_max / omega_max (3.64): velocity [m/s or rad/s] at the output, speed [rad/s] of the rotor."""
+    """tau_t >= v_max / omega_max (3.64): velocity [m/s] at the output (on a shaft its speed), speed [rad/s] of the
+    rotor."""
 
     velocity: float
     speed: float

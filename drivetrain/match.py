@@ -195,7 +195,7 @@ class Match:
 
 @dataclass(frozen=True)
 class LengthCurve:
-    """Active length [m] that a constraint asks for, over the transmission ratios of ``MatchCurves``."""
+    """What a constraint asks for; length: active length [m] over the transmission ratios of ``MatchCurves`` (n,)."""
 
     constraint: Constraint
     length: np.ndarray
@@ -207,7 +207,7 @@ class LengthCurve:
 
 @dataclass(frozen=True)
 class MatchCurves:
-    """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio``."""
+    """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio`` (n,)."""
 
     ratio: np.ndarray  # m/rad
     lengths: tuple[LengthCurve, ...]  # of the constraints that ask for one, enforced and reported
