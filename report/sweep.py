@@ -47,7 +47,9 @@ def optima_files(optima: Optima, maps: DesignMaps, case: FieldCase) -> Iterator[
 
 
 def limits_files(limits: LimitComparison) -> Iterator[File]:
-    """Table and figure of the optimum over the limit."""
+    """Table and figure of the optimum over the limit; nothing where no limits are compared."""
+    if not limits.points:
+        return
     table = limits_table(limits)
     yield table_file("limits.csv", table)
     chosen = {"chosen_reading": limits.chosen.reading.name, "chosen_limit_T": limits.chosen.limit}
@@ -153,7 +155,7 @@ def _overload(case: FieldCase, optima: Optima) -> str:
 
 
 def _readings(limits: LimitComparison | None) -> tuple[str | Picture, ...]:
-    if limits is None:
+    if limits is None or not limits.points:
         return ()
     text = (
         "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles "
