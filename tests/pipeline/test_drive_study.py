@@ -29,11 +29,11 @@ def foreign(text):
 def run(tmp_path_factory):
     """The robot joint, coarse, with a damping of zero that is stated."""
     folder = tmp_path_factory.mktemp("joint")
-    changes = {"gearbox__ratio_tolerance": "0.015", "drive__damping_Nms_per_rad": "0.0"}
+    changes = {"gearbox__ratio_tolerance": "0.008", "drive__damping_Nms_per_rad": "0.0"}
     study = small("robot_joint", folder, **changes)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("drivetrain.matching.RADII", 8)
-        patch.setattr("losses.map.STEPS", 12)
+        patch.setattr("losses.map.STEPS", 6)
         patch.setattr("losses.map.DIRECT", (-1.0, -0.5, 0.0, 0.75))
         patch.setattr("losses.map.QUADRATURE", (0.0, 0.25, 0.5, 1.0))
         return here(study, folder / "results", fitted(study, without=("fields",)))
