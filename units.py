@@ -132,7 +132,7 @@ def converted(value: float, unit: str, other: str) -> float | None:
 
 
 # What the last word of a name is measured in throughout the project, as docstrings write it; "1" is a pure number.
-# Words that mean several things (speed, density, ratio) are not here: a docstring states their unit.
+# Words that mean several things (speed, density, ratio, damping) are not here: a docstring states their unit.
 SYMBOLS: dict[str, str] = {
     word: unit
     for unit, words in {
@@ -145,10 +145,9 @@ SYMBOLS: dict[str, str] = {
         "kg": "mass",
         "kg m^2": "inertia",
         "N/m": "stiffness",
-        "Ns/m": "damping",
         "W": "power",
         "V": "voltage",
-        "A": "i_d i_q current",
+        "A": "i_d i_q current ampere_turns",
         "Wb": "psi_d psi_q",
         "ohm": "resistance",
         "ohm m": "resistivity",
@@ -165,7 +164,11 @@ SYMBOLS: dict[str, str] = {
 
 
 def usual_unit(name: str) -> str | None:
-    """Unit of a name by ``SYMBOLS``: that of the longest ending, None where it has none."""
+    """Unit of a name by ``SYMBOLS``: that of the longest ending, None where it has none.
+
+    A quotient such as ``torque_per_length`` has the unit of the whole, never that of what stands behind its ``per``.
+    """
     words = name.split("_")
-    endings = ("_".join(words[first:]) for first in range(len(words)))
+    last = max((place for place, word in enumerate(words) if word == "per"), default=len(words))
+    endings = ("_".join(words[first:]) for first in range(last))
     return next((SYMBOLS[ending] for ending in endings if ending in SYMBOLS), None)

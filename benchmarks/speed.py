@@ -12,6 +12,7 @@ import json
 import resource
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
 from math import sqrt
@@ -26,17 +27,22 @@ from benchmarks.floors import arithmetic_floor, memory_floor
 from benchmarks.reference_case import reference_materials, reference_section
 from benchmarks.speed_figure import draw
 from benchmarks.this_machine import machine_name
+from disk import write_atomically
 from figures.style import save_png
 from geometry.half_cell import MeshDensity
 from magnetostatics.cholesky import one_thread
 from magnetostatics.flux_map import CurrentGrid, map_angles, solve_angle
 from magnetostatics.model import FieldModel, OperatingPoint
 from magnetostatics.torque import arkkio_torque
-from optimisation.states import null_angle, null_current_angle
+from magnetostatics.positions import null_angle, null_current_angle
+from optimisation.constrained_optimum import NoOptimumError
+from optimisation.design import Judge
+from optimisation.gradient_optimum import find_optimum_by_gradients
+from optimisation.sweep import SweepBlock, blocks_of, solve_block
+from optimisation.torque import QuickMeanTorque
 from pipeline.checkpoint import Checkpoint
-from pipeline.models import layout_of, nominal_amplitude
-from pipeline.parallel import run_parallel
-from pipeline.stage import write_atomically
+from pipeline.pools import PooledWorkers, Processes
+from study.inputs_field import field_case, saturation_limit, sweep_grid
 from study.read import read_study
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
@@ -76,9 +82,9 @@ def cost(action) -> float:
 
 def null_point() -> OperatingPoint:
     """The state of the sweep on the reference machine."""
-    study = read_study(STUDY)
-    machine, layout = reference_section().machine, layout_of(study)
-    return OperatingPoint(null_angle(machine, layout), nominal_amplitude(study), null_current_angle(machine, layout))
+    case, machine = field_case(read_study(STUDY)), reference_section().machine
+    layout = case.layout(machine)
+    return OperatingPoint(null_angle(machine, layout), case.nominal_density, null_current_angle(machine, layout))
 
 
 def cold_solves() -> list[Row]:
@@ -131,43 +137,48 @@ def flux_map() -> list[Row]:
     return [Row(f"flux map of {currents} x {currents} currents and {angles} angles", seconds, 40.0, "s")]
 
 
-def timed_block(task: dict) -> float:
+def timed_block(block: SweepBlock) -> float:
     """CPU seconds of one block of the sweep, whichever process solves it."""
-    from pipeline.sweep import solve_block
-
     began = time.process_time()
-    solve_block(task)
+    solve_block(block)
     return time.process_time() - began
+
+
+def thesis_blocks() -> dict[str, SweepBlock]:
+    """The thesis's sweep."""
+    study = read_study(STUDY, SWEEP)
+    return blocks_of(field_case(study), sweep_grid(study), saturation_limit(study).reading)
+
+
+def mapped(processes: int, function: Callable, tasks: dict) -> tuple[dict, float]:
+    """Results of tasks on some processes, and the wall time [s]."""
+    pool = Processes(processes)
+    with TemporaryDirectory() as folder:
+        workers = PooledWorkers("benchmark", pool, lambda what: Checkpoint(Path(folder) / "tasks.jsonl", "benchmark"))
+        began = time.perf_counter()
+        found = workers.map("tasks", function, tasks)
+    wall = time.perf_counter() - began
+    pool.end()
+    return found, wall
 
 
 def sweep(processes: int = 2) -> list[Row]:
     """The thesis's 4500 designs."""
-    from pipeline.sweep import tasks_of
-
-    tasks = tasks_of(read_study(STUDY, SWEEP))
-    with TemporaryDirectory() as folder:
-        checkpoint = Checkpoint(Path(folder) / "sweep.jsonl", "benchmark")
-        began = time.perf_counter()
-        seconds = run_parallel(timed_block, tasks, processes, checkpoint, "sweep of 4500 designs")
-    wall = time.perf_counter() - began
+    seconds, wall = mapped(processes, timed_block, thesis_blocks())
     return [
         Row("4500 designs, meshes included", sum(seconds.values()), 100.0, "s"),
         Row("the same, wall, two processes", wall, np.nan, "s"),
     ]
 
 
-def solve_optimum(task: dict) -> float:
-    """Torque of one constrained optimum by gradients, NaN where the search does not settle."""
-    from optimisation.constrained_optimum import NoOptimumError
-    from optimisation.gradient_optimum import find_optimum_by_gradients
-    from pipeline.models import StudyFamily, judge_of
-
+def solve_optimum(slots: int, radius: float, guess: tuple[float, float]) -> float:
+    """Torque of one constrained optimum by gradients, NaN where the search does not settle; guess: shares of the radius."""
     study = read_study(STUDY)
-    radius = task["radius"]
-    start = task["width_share"] * radius, task["rotor_share"] * radius
-    judge = judge_of(study)
+    case, limit = field_case(study), saturation_limit(study)
+    judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
     try:
-        found = find_optimum_by_gradients(judge, StudyFamily(study.machine), task["slots"], radius, 1.2, start)
+        start = guess[0] * radius, guess[1] * radius
+        found = find_optimum_by_gradients(judge, slots, radius, limit.limit, start)
     except NoOptimumError:
         return np.nan
     return found.design.torque
@@ -175,25 +186,17 @@ def solve_optimum(task: dict) -> float:
 
 def optima() -> list[Row]:
     """All twenty optima by gradients from one rough guess (shares of the stator radius) for each slot count."""
-    guesses = {9: (0.061, 0.41), 12: (0.064, 0.345)}
+    guesses = {9: (0.064, 0.42), 12: (0.068, 0.35)}
     radii = [d / 2e3 for d in read_study(STUDY).sweep.stator_diameters_mm]
-    tasks = [
-        {"slots": slots, "radius": radius, "width_share": guess[0], "rotor_share": guess[1]}
-        for slots, guess in guesses.items()
-        for radius in radii
-    ]
+    tasks = [(slots, radius, guess) for slots, guess in guesses.items() for radius in radii]
     torques: list[float] = []
-    seconds = cost(lambda: torques.extend(map(solve_optimum, tasks)))
+    seconds = cost(lambda: torques.extend(solve_optimum(*task) for task in tasks))
     known = pd.read_csv(RESULTS.parent / "optima.csv").torque_nominal_Nm_per_m.to_numpy()
+    apart = 100 * np.nanmax(np.abs(np.array(torques) / known - 1))
     return [
         Row("20 constrained optima by gradients", seconds, 20.0, "s"),
         Row("of them settled", np.isfinite(torques).sum(), len(tasks), "1"),
-        Row(
-            "largest difference from the refined grid optima",
-            100 * np.nanmax(np.abs(np.array(torques) / known - 1)),
-            0.1,
-            "%",
-        ),
+        Row("largest difference from the refined grid optima", apart, 0.1, "%"),
     ]
 
 
@@ -219,39 +222,30 @@ def _scale(model: FieldModel, point: OperatingPoint) -> dict[str, float]:
 
 
 def designs_solved() -> pd.DataFrame:
-    """CPU time over the number of designs of one block of the sweep, the mesh and the imports apart from them."""
-    from pipeline.sweep import solve_block, tasks_of
-
-    tasks = list(tasks_of(read_study(STUDY, SWEEP)).values())
-    solve_block(tasks[0])
+    """CPU time over the number of designs of some blocks of the sweep, the imports apart from them."""
+    blocks = list(thesis_blocks().values())
+    solve_block(blocks[0])
     rows, seconds, designs = [], 0.0, 0
-    for task in tasks[1::9]:
-        seconds += cost(partial(solve_block, task))
-        designs += len(task["back_iron_widths_mm"]) * len(task["rotor_outer_radii_mm"])
+    for block in blocks[1::9]:
+        seconds += cost(partial(solve_block, block))
+        designs += len(block.back_iron_widths) * len(block.rotor_outer_radii)
         rows.append({"designs": designs, "cpu_s": seconds})
     return pd.DataFrame(rows)
 
 
 def work(number: int) -> int:
     """A few designs for the measurement of parallel efficiency."""
-    from pipeline.models import StudyFamily, judge_of
-
     study = read_study(STUDY)
+    case, limit = field_case(study), saturation_limit(study)
     for k in range(4):
-        judge_of(study).judge(StudyFamily(study.machine).machine(12, 42.5e-3, (3.0 + 0.05 * k) * 1e-3, 15.7e-3))
+        machine = case.family.machine(12, 42.5e-3, (3.0 + 0.05 * k) * 1e-3, 15.7e-3)
+        Judge(case, limit.reading, case.nominal_density, QuickMeanTorque()).judge(machine)
     return number
 
 
 def process_walls() -> dict[int, float]:
     """Wall time [s] of the same designs on one and on two processes."""
-    walls = {}
-    for processes in (1, 2):
-        with TemporaryDirectory() as folder:
-            checkpoint = Checkpoint(Path(folder) / "x.jsonl", "benchmark")
-            began = time.perf_counter()
-            run_parallel(work, {str(k): k for k in range(24)}, processes, checkpoint, f"{processes} process(es)")
-            walls[processes] = time.perf_counter() - began
-    return walls
+    return {processes: mapped(processes, work, {str(k): k for k in range(24)})[1] for processes in (1, 2)}
 
 
 def efficiency() -> list[Row]:

@@ -18,14 +18,14 @@ SLACK = 1e-6  # relative; a capability this close to its requirement is met
 class Requirement:
     """One demand in SI; the concrete ones below say how it is read off a design, and in words what it is.
 
-    needed: a lower bound, an upper one where ``at_most``
+    needed: a lower bound, an upper one where ``at_most``; needed, reached: [unit of the demand, SI]
     """
 
     needed: float
     at_most: ClassVar[bool] = False
 
     def reached(self, design: ActuatorDesign) -> Values:
-        """What a design reaches, one value for each of a batch."""
+        """What a design reaches [unit of the demand, SI], one value for each of a batch."""
         raise NotImplementedError
 
     def name(self, output: Output) -> str:
@@ -49,7 +49,7 @@ class Requirement:
 
 @dataclass(frozen=True)
 class PeakEffortAtRest(Requirement):
-    """Peak force or torque at standstill [N or Nm]."""
+    """Peak force or torque at standstill; needed, reached: [N or Nm]."""
 
     def reached(self, design: ActuatorDesign) -> Values:
         return design.effort_peak
@@ -63,7 +63,7 @@ class PeakEffortAtRest(Requirement):
 
 @dataclass(frozen=True)
 class PeakEffort(Requirement):
-    """Peak force or torque [N or Nm] at the speed [m/s or rad/s] where it is asked for."""
+    """Peak force or torque at the speed [m/s or rad/s] where it is asked for; needed, reached: [N or Nm]."""
 
     speed: float
 
@@ -79,7 +79,7 @@ class PeakEffort(Requirement):
 
 @dataclass(frozen=True)
 class PeakPower(Requirement):
-    """Peak power [W] at the speed [m/s or rad/s] where it is asked for."""
+    """Peak power at the speed [m/s or rad/s] where it is asked for; needed, reached: [W]."""
 
     speed: float
 
@@ -95,7 +95,7 @@ class PeakPower(Requirement):
 
 @dataclass(frozen=True)
 class ContinuousEffort(Requirement):
-    """RMS force or torque [N or Nm] at the nominal current density."""
+    """RMS force or torque at the nominal current density; needed, reached: [N or Nm]."""
 
     def reached(self, design: ActuatorDesign) -> Values:
         return design.effort_continuous
@@ -109,7 +109,7 @@ class ContinuousEffort(Requirement):
 
 @dataclass(frozen=True)
 class LowSpeedDamping(Requirement):
-    """Regenerative damping of the short-circuited machine at low speed [Ns/m or Nms/rad]."""
+    """Regenerative damping of the short-circuited machine at low speed; needed, reached: [Ns/m or Nms/rad]."""
 
     def reached(self, design: ActuatorDesign) -> Values:
         return design.low_speed_damping
@@ -123,7 +123,7 @@ class LowSpeedDamping(Requirement):
 
 @dataclass(frozen=True)
 class RotorSpeed(Requirement):
-    """Largest speed of the rotor [rad/s], at the peak speed of the output [m/s or rad/s]."""
+    """Largest speed of the rotor at the peak speed of the output [m/s or rad/s]; needed, reached: [rad/s]."""
 
     speed: float
     at_most = True
@@ -140,7 +140,7 @@ class RotorSpeed(Requirement):
 
 @dataclass(frozen=True)
 class PhaseCurrent(Requirement):
-    """RMS phase current of the overload [A]."""
+    """RMS phase current of the overload; needed, reached: [A]."""
 
     at_most = True
 
@@ -156,7 +156,7 @@ class PhaseCurrent(Requirement):
 
 @dataclass(frozen=True)
 class ActiveLength(Requirement):
-    """Active length [m]."""
+    """Active length; needed, reached: [m]."""
 
     at_most = True
 
@@ -172,7 +172,7 @@ class ActiveLength(Requirement):
 
 @dataclass(frozen=True)
 class EquivalentMass(Requirement):
-    """Inertia of rotor and gears at the output [kg or kg m^2]."""
+    """Inertia of rotor and gears at the output; needed, reached: [kg or kg m^2]."""
 
     at_most = True
 
@@ -188,7 +188,7 @@ class EquivalentMass(Requirement):
 
 @dataclass(frozen=True)
 class Diameter(Requirement):
-    """Outer diameter [m] of the casing, which no lever moves."""
+    """Outer diameter of the casing, which no lever moves; needed, reached: [m]."""
 
     diameter: float
     at_most = True
@@ -205,7 +205,7 @@ class Diameter(Requirement):
 
 @dataclass(frozen=True)
 class Check:
-    """A requirement and the value that a design reaches."""
+    """A requirement and the value that a design reaches; reached: [unit of the demand, SI]."""
 
     requirement: Requirement
     reached: float

@@ -84,7 +84,10 @@ class ActuatorDesign:
         return self.effort_over(np.full(designs, abs(speed)))
 
     def effort_over(self, speed: np.ndarray) -> np.ndarray:
-        """The same over speeds, an array, for one design; for a batch one speed a design."""
+        """The same effort [N or Nm], (n,), over speeds for one design; for a batch one speed a design.
+
+        speed: of the output [m/s or rad/s], (n,)
+        """
         torque = self._torque_per_length(np.abs(speed) / self.transmission_ratio) * self.active_length
         return torque / self.transmission_ratio
 

@@ -42,11 +42,11 @@ class Constraint:
 
     @property
     def needed(self) -> float:
-        """The limit, SI."""
+        """The limit, in the unit of the limited quantity [SI]."""
         raise NotImplementedError
 
     def capability(self, ratio: float, length: float) -> float:
-        """What a ratio [m/rad] and a length [m] reach, SI."""
+        """What is reached, in the unit of ``needed``; ratio: tau_t [m/rad]; length: l_em [m]."""
         raise NotImplementedError
 
     def remedy(self, violation: Violation, output: Output) -> str:
@@ -66,7 +66,7 @@ class Constraint:
         return 0.0
 
     def violation(self, ratio: float, length: float) -> Violation | None:
-        """What is missing at a ratio [m/rad] and a length [m], None when the constraint is met."""
+        """What is missing, None when the constraint is met; ratio: tau_t [m/rad]; length: l_em [m]."""
         reached = self.capability(ratio, length)
         if self.at_most:
             met = reached <= self.needed * (1 + CAPABILITY_SLACK)
@@ -77,7 +77,10 @@ class Constraint:
 
 @dataclass(frozen=True)
 class Violation(Finding):
-    """A constraint that is not met: what is reached, SI, at a ratio [m/rad] and an active length [m]."""
+    """A constraint that is not met.
+
+    reached: [SI], in the unit of ``constraint.needed``; ratio: tau_t [m/rad]; length: l_em [m]
+    """
 
     constraint: Constraint
     reached: float
@@ -115,7 +118,7 @@ class _Force(Constraint):
         return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Force or torque at the output, r_Tl l_em / tau_t [N or Nm]."""
+        """Force (on a shaft: torque) at the output, r_Tl l_em / tau_t [N]; ratio: tau_t [m/rad]."""
         return self.torque_per_length * length / ratio
 
     @property
@@ -131,7 +134,7 @@ class _Force(Constraint):
 
 @dataclass(frozen=True)
 class NominalForce(_Force):
-    """RMS force at the nominal current density (3.67, 3.95): force [N], torque per length [Nm/m]."""
+    """RMS force at the nominal current density (3.67, 3.95): force [N], torque_per_length [Nm/m]."""
 
     force: float
     torque_per_length: float
@@ -142,7 +145,7 @@ class NominalForce(_Force):
 
 @dataclass(frozen=True)
 class OverloadForce(_Force):
-    """Peak force at the overload current density (3.69, 3.96): force [N], torque per length there [Nm/m]."""
+    """Peak force at the overload current density (3.69, 3.96): force [N], torque_per_length [Nm/m] there."""
 
     force: float
     torque_per_length: float
@@ -175,14 +178,17 @@ class RegenerativeDamping(Constraint):
         return output.damping_unit
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
-        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping."""
+        """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping.
+
+        ratio: tau_t [m/rad]
+        """
         if self.damping == 0:
             return super().minimum_length(ratio)
         a = self.alpha / (self.damping * np.asarray(ratio, dtype=float) ** 2)
         return ((1 + np.sqrt(1 + 4 * self.end_turn_length * a)) / (2 * a))[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Largest damping coefficient at the output [Ns/m or Nms/rad] (3.92)."""
+        """Largest damping coefficient at the output [Ns/m] (3.92); ratio: tau_t [m/rad]."""
         return self.alpha * length**2 / (length + self.end_turn_length) / ratio**2
 
     def remedy(self, violation: Violation, output: Output) -> str:
@@ -210,10 +216,11 @@ class SpeedLimit(Constraint):
         return "rad_per_s"
 
     def minimum_ratio(self) -> float:
+        """v_max / omega_max [m/rad]."""
         return abs(self.velocity) / self.speed
 
     def capability(self, ratio: float, length: float) -> float:
-        """Speed of the rotor [rad/s]."""
+        """Speed of the rotor [rad/s]; ratio: tau_t [m/rad]."""
         return abs(self.velocity) / ratio
 
     def remedy(self, violation: Violation, output: Output) -> str:
@@ -241,7 +248,7 @@ class LengthLimit(Constraint):
         return self.length
 
     def capability(self, ratio: float, length: float) -> float:
-        """The length itself [m]."""
+        """The length itself [m]; ratio: tau_t [m/rad]."""
         return length
 
     def remedy(self, violation: Violation, output: Output) -> str:
@@ -249,7 +256,9 @@ class LengthLimit(Constraint):
 
 
 def largest_stage_ratio(planets: int) -> float:
-    """Stage ratio i at which the pitch circles of neighbouring planets touch, 2 / (1 - sin(pi/n)); 14.93 for three.
+    """Stage ratio i (dimensionless) at which the pitch circles of neighbouring planets touch; 14.93 for three planets.
+
+    i = 2 / (1 - sin(pi/n))
 
     d_carrier sin(pi/n) > d_planet with d_carrier = d_ring i / (2 (i - 1)), d_planet = d_ring (i - 2) / (2 (i - 1))
     planets: n, two or more; two clear each other at any ratio
@@ -284,13 +293,14 @@ class PlanetClearance(Constraint):
         return ""
 
     def minimum_ratio(self) -> float:
+        """tau_l / i_max^N [m/rad], 0 for a direct drive."""
         if self.stage_count == 0:
             return 0.0
         touching = self.linkage_ratio / largest_stage_ratio(self.planets) ** self.stage_count
         return touching * (1 + CAPABILITY_SLACK)
 
     def capability(self, ratio: float, length: float) -> float:
-        """The ratio of one of the equal stages."""
+        """The ratio of one of the equal stages, dimensionless; ratio: tau_t [m/rad]."""
         return (self.linkage_ratio / ratio) ** (1 / self.stage_count) if self.stage_count else 1.0
 
     def remedy(self, violation: Violation, output: Output) -> str:

@@ -23,7 +23,7 @@ class LinkageError(ValueError):
 
 @dataclass(frozen=True)
 class SwingArm:
-    """Input link: hardpoint A and wheel axle W in the nominal position, x + jy [m].
+    """Input link: hardpoint_a A and wheel_axle W in the nominal position, x + jy [m].
 
     With the axle of thesis Table 3.8 the y of W is negative, -121.7 mm: the printed +121.7 mm reproduces neither the
     transmission ratio nor the angles printed beside it.
@@ -45,7 +45,9 @@ class SwingArm:
         return abs(self.wheel_axle)
 
     def turn(self, travel: ArrayLike) -> np.ndarray:
-        """Rotation of the arm from its nominal position [rad]: asin((dz + y_W) / l_OW) - angle(OW_nom).
+        """Rotation of the arm from its nominal position [rad], of the shape of the travel.
+
+        asin((dz + y_W) / l_OW) - angle(OW_nom)
 
         travel: dz [m], any shape. Equation 3.34 with the bracket corrected: the printed one adds the nominal angle
         of OA inside the arcsine and leaves out that of OW. Raises LinkageError when the wheel cannot reach the
@@ -61,7 +63,7 @@ class SwingArm:
         return np.arcsin(sine) - np.angle(self.wheel_axle)
 
     def turn_per_travel(self, travel: ArrayLike) -> np.ndarray:
-        """d(theta_OA)/d(dz) = 1 / (l_OW cos theta_OW) [rad/m]."""
+        """d(theta_OA)/d(dz) = 1 / (l_OW cos theta_OW) [rad/m], of the shape of the travel [m]."""
         return 1 / (self.length * np.cos(self.turn(travel) + np.angle(self.wheel_axle)))
 
 
@@ -69,10 +71,12 @@ class SwingArm:
 class Motion:
     """A linkage over its wheel travel. Arrays are (linkages, positions), or (positions,) for one linkage.
 
-    travel: [m], (positions,); a, b: hardpoints x + jy [m]; c: hardpoint C [m]
-    transmission_ratio: tau_l = d(dz)/d(theta_BC) [m/rad]
-    gamma: angle between coupler and lever at B, lambda_: between swing arm and coupler at A [rad], in 0 ... pi
-    reach: what the coupler and lever lack to close [m], positive where the linkage comes apart; all else is NaN there
+    travel: [m], (positions,); a, b: hardpoints x + jy [m], (..., positions); c: hardpoint C [m], (..., 1)
+    transmission_ratio: tau_l = d(dz)/d(theta_BC) [m/rad], (..., positions)
+    gamma: angle between coupler and lever at B, in 0 ... pi [rad], (..., positions)
+    lambda_: angle between swing arm and coupler at A, in 0 ... pi [rad], (..., positions)
+    reach: what the coupler and lever lack to close [m], (..., positions), positive where the linkage comes apart; all
+        else is NaN there
     """
 
     travel: np.ndarray
@@ -86,13 +90,16 @@ class Motion:
 
     @property
     def lever_angle(self) -> np.ndarray:
-        """theta_BC, the direction from B to C [rad], continuous over the travel."""
+        """theta_BC, the direction from B to C [rad], (..., positions), continuous over the travel."""
         return np.unwrap(np.angle(self.c - self.b), axis=-1)
 
 
 @dataclass(frozen=True)
 class FourBar:
-    """Swing arm, coupler AB and lever BC, by the nominal hardpoints B and C, x + jy [m]; scalars or (linkages,)."""
+    """Swing arm, coupler AB and lever BC.
+
+    hardpoint_b, hardpoint_c: nominal B and C, x + jy [m], scalar or (linkages,)
+    """
 
     arm: SwingArm
     hardpoint_b: complex | np.ndarray
@@ -100,16 +107,16 @@ class FourBar:
 
     @property
     def coupler_length(self) -> float | np.ndarray:
-        """l_AB [m] (3.31)."""
+        """l_AB [m], of the shape of B (3.31)."""
         return np.abs(self.hardpoint_b - self.arm.hardpoint_a)
 
     @property
     def lever_length(self) -> float | np.ndarray:
-        """l_BC [m] (3.32)."""
+        """l_BC [m], of the shape of B and C (3.32)."""
         return np.abs(self.hardpoint_c - self.hardpoint_b)
 
     def motion(self, travel: ArrayLike) -> Motion:
-        """The linkage at wheel travels [m]; raises LinkageError when it does not close at each of them."""
+        """The linkage at a travel [m], (positions,); raises LinkageError when it does not close at each of them."""
         found = self.try_motion(travel)
         worst = np.unravel_index(np.argmax(found.reach), found.reach.shape)
         if found.reach[worst] > CLOSURE_SLACK:
@@ -124,6 +131,7 @@ class FourBar:
     def try_motion(self, travel: ArrayLike) -> Motion:
         """As ``motion``, with NaN and a positive ``reach`` where a linkage does not close, for a whole population.
 
+        travel: [m], (positions,)
         B is where the circles about A (radius l_AB) and C (radius l_BC) meet, on the side of AC on which it is
         drawn; this is the closed form of the loop A + AB + BC = C (3.37). tau_l = l_OW cos(theta_OW) |cross(B - C, B
         - A) / cross(A, B - A)| with its sign (3.42), from the velocity of B.
@@ -152,6 +160,8 @@ class FourBar:
 def from_lengths(arm: SwingArm, hardpoint_c: complex, coupler_length: float, lever_length: float) -> FourBar:
     """The linkage of given lengths [m] whose B lies above the line from A to C (left of it seen from C to A).
 
+    hardpoint_c: C, x + jy [m]
+
     For drawings that state C, l_AB and l_BC instead of B (thesis Table 3.9). Raises LinkageError.
     """
     a, distance = arm.hardpoint_a, abs(hardpoint_c - arm.hardpoint_a)
@@ -168,15 +178,15 @@ def from_lengths(arm: SwingArm, hardpoint_c: complex, coupler_length: float, lev
 
 
 def cross(u: complex | np.ndarray, v: complex | np.ndarray) -> np.ndarray:
-    """z component of the cross product of two plane vectors in complex form."""
+    """z component of the cross product [product of their units] of two plane vectors u, v [any unit], any shape."""
     return (np.conj(u) * v).imag
 
 
 def angle_between(u: complex | np.ndarray, v: complex | np.ndarray) -> np.ndarray:
-    """Angle between two plane vectors [rad], 0 ... pi."""
+    """Angle between two plane vectors [rad], 0 ... pi, of their shape; u, v: x + jy [any unit], any shape."""
     return np.abs(np.angle(np.conj(u) * v))
 
 
 def point_text(point: complex) -> str:
-    """(x, y) mm of a point in metres."""
+    """(x, y) mm of a point [m]."""
     return f"({point.real / MILLIMETRE:.1f}, {point.imag / MILLIMETRE:.1f}) mm"

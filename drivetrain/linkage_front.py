@@ -40,7 +40,8 @@ class GeneticSettings:
 class ParetoFront:
     """Non-dominated linkages in the order of rising f1 (falling f2).
 
-    designs: (points, 4) x_B, y_B, x_C, y_C [m]; objectives: (points, 2); seed: the run that found each, (points,)
+    designs: (points, 4) x_B, y_B, x_C, y_C [m]; objectives: f1, dimensionless, and f2 [rad^2], (points, 2)
+    seed: number of the run that found each, (points,)
     """
 
     problem: LinkageProblem
@@ -63,12 +64,12 @@ class ParetoFront:
         return self.problem.linkage(self.designs[index])
 
     def first_at(self, second: float) -> float:
-        """f1 of the front at this f2, linear between its points; NaN outside the front."""
+        """f1 (dimensionless) of the front at f2 = second [rad^2], linear between its points; NaN outside the front."""
         firsts, seconds = self.objectives[np.argsort(self.objectives[:, 1])].T
         return float(np.interp(second, seconds, firsts, left=np.nan, right=np.nan))
 
     def second_at(self, first: float) -> float:
-        """f2 of the front at this f1, linear between its points; NaN outside the front."""
+        """f2 [rad^2] of the front at f1 = first (dimensionless), linear between its points; NaN outside the front."""
         firsts, seconds = self.objectives.T
         return float(np.interp(first, firsts, seconds, left=np.nan, right=np.nan))
 
@@ -77,7 +78,9 @@ class ParetoFront:
 class Standing:
     """A linkage against a front: its objectives, whether a point of the front dominates it, and the gains there.
 
-    first_at_same_second, second_at_same_first: objectives of the front level with the linkage; NaN where it has none
+    objectives: f1, dimensionless, and f2 [rad^2]
+    first_at_same_second, second_at_same_first: f1, dimensionless, and f2 [rad^2] of the front level with the linkage;
+        NaN where it has none
     """
 
     objectives: tuple[float, float]

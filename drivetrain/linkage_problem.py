@@ -30,7 +30,7 @@ CONSTRAINTS = (
 
 @dataclass(frozen=True)
 class Box:
-    """Where a hardpoint may lie: lower left and upper right corner, x + jy [m]."""
+    """Where a hardpoint may lie; low, high: lower left and upper right corner, x + jy [m]."""
 
     low: complex
     high: complex
@@ -46,7 +46,10 @@ class Box:
 
 @dataclass(frozen=True)
 class Travel:
-    """Wheel travel from rebound (negative) to bump [m], seen at a number of positions that include both ends and 0."""
+    """Wheel travel, seen at a number of positions that include both ends and 0.
+
+    lowest, highest: rebound (negative) and bump [m]
+    """
 
     lowest: float
     highest: float
@@ -67,9 +70,11 @@ class Travel:
 
 @dataclass(frozen=True)
 class Limits:
-    """Largest nominal ratio tau_lim and spread sigma_lim [m/rad], window of the angles about pi/2 [rad], lever [m].
+    """Bounds of a linkage.
 
-    ratio_weight: w, 1 for the nominal ratio alone, 0 for its spread alone (3.43)
+    ratio, ratio_spread: largest nominal ratio tau_lim and spread sigma_lim [m/rad]
+    angle_window: of the angles about pi/2 [rad]; lever_length: shortest lever [m]
+    ratio_weight: w, dimensionless, 1 for the nominal ratio alone, 0 for its spread alone (3.43)
     """
 
     ratio: float
@@ -85,8 +90,10 @@ class Limits:
 
 @dataclass(frozen=True)
 class Scores:
-    """Objectives (linkages, 2) and constraints (linkages, 8), satisfied at or below 0, in the order of CONSTRAINTS.
+    """How good linkages are.
 
+    objectives: f1, dimensionless, and f2 [rad^2], (linkages, 2)
+    constraints: satisfied at or below 0, four angles [rad], the others relative, (linkages, 8), as in CONSTRAINTS
     Objectives are NaN where the linkage does not close; the constraint on closure is positive there.
     """
 
@@ -95,7 +102,7 @@ class Scores:
 
     @property
     def feasible(self) -> np.ndarray:
-        """Bool, (linkages,)."""
+        """Whether all constraints are satisfied, (linkages,)."""
         return np.all(self.constraints <= 0, axis=-1)
 
 
@@ -157,7 +164,10 @@ def _extremes(motion: Motion) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
 
 
 def constraint_text(problem: LinkageProblem, index: int, excess: float) -> str:
-    """By how much a constraint is missed, in words; index into CONSTRAINTS, excess as in ``Scores.constraints``."""
+    """By how much a constraint is missed, in words; index into CONSTRAINTS.
+
+    excess: as in ``Scores.constraints`` [rad, or relative]
+    """
     limits, name = problem.limits, CONSTRAINTS[index]
     if index < 4:
         window = f"{90 - limits.angle_window / DEGREE:g} to {90 + limits.angle_window / DEGREE:g} degrees"

@@ -16,9 +16,10 @@ from geometry.machine import Machine
 
 @dataclass(frozen=True)
 class PartMaterials:
-    """Densities of the parts [kg/m^3], and how much of a stack is iron.
+    """Densities of the parts, and how much of a stack is iron.
 
-    stacking: thickness of the steel over the thickness of the stack of laminations, 0 to 1
+    lamination_density, magnet_density, copper_density, shaft_density: [kg/m^3]
+    stacking: relative, thickness of the steel over the thickness of the stack of laminations, 0 to 1
     """
 
     lamination_density: float
@@ -48,7 +49,10 @@ class CopperBars:
 
 @dataclass(frozen=True)
 class PartMasses:
-    """Masses of the active parts [kg] and inertias of those that turn, about the axis [kg m^2]."""
+    """Masses of the active parts and inertias of those that turn, about the axis [kg m^2].
+
+    stator_laminations, rotor_laminations, magnets, shaft, copper: masses [kg]
+    """
 
     stator_laminations: float
     rotor_laminations: float

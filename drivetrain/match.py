@@ -87,7 +87,10 @@ class SizedSection:
 
 @dataclass(frozen=True)
 class CopperLoading:
-    """Nominal RMS current density [A/m^2], packing factor k_cp, copper resistivity [ohm m] of the damping demand."""
+    """Copper of the damping demand.
+
+    nominal_current_density: RMS [A/m^2]; packing: factor k_cp; resistivity [ohm m]
+    """
 
     nominal_current_density: float
     packing: float
@@ -96,7 +99,7 @@ class CopperLoading:
 
 @dataclass(frozen=True)
 class MatchLimits:
-    """Bounds of the match: active length [m] (3.62) and rotor speed [rad/s] (3.63)."""
+    """Bounds of the match: active_length [m] (3.62) and rotor_speed [rad/s] (3.63)."""
 
     active_length: float
     rotor_speed: float
@@ -142,7 +145,7 @@ class Constraints:
 
 @dataclass(frozen=True)
 class Cost:
-    """Masses [kg] and the three dimensionless terms of the cost (3.98)."""
+    """Masses [kg] and the terms of the cost (3.98); radius_term, inertia_term, mass_term: dimensionless."""
 
     motor_mass: float
     gearbox_mass: float
@@ -154,7 +157,7 @@ class Cost:
 
     @property
     def total(self) -> float:
-        """F_cost."""
+        """F_cost, dimensionless."""
         return self.radius_term + self.inertia_term + self.mass_term
 
     @property
@@ -183,19 +186,22 @@ class Match:
     cost: Cost
     gearbox: Gearbox
     binding: Constraint
-    ratio_bounds: tuple[float, float]  # m/rad
+    ratio_bounds: tuple[float, float]  # [m/rad]
     bound: Finding | None
     notes: tuple[Finding, ...]
 
     @property
     def total_cost(self) -> float:
-        """F_cost."""
+        """F_cost, dimensionless."""
         return self.cost.total
 
 
 @dataclass(frozen=True)
 class LengthCurve:
-    """What a constraint asks for; length: active length [m] over the transmission ratios of ``MatchCurves`` (n,)."""
+    """What a constraint asks for.
+
+    length: active length [m], (n,), over the transmission ratios of ``MatchCurves``
+    """
 
     constraint: Constraint
     length: np.ndarray
@@ -209,17 +215,17 @@ class LengthCurve:
 class MatchCurves:
     """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio`` (n,)."""
 
-    ratio: np.ndarray  # m/rad
+    ratio: np.ndarray  # [m/rad], (n,)
     lengths: tuple[LengthCurve, ...]  # of the constraints that ask for one, enforced and reported
-    active_length: np.ndarray  # m, the largest of the enforced ones
-    feasible: np.ndarray  # bool, inside ratio and length bounds
-    radius_term: np.ndarray
-    inertia_term: np.ndarray
-    mass_term: np.ndarray
+    active_length: np.ndarray  # [m], (n,), the largest of the enforced ones
+    feasible: np.ndarray  # whether inside ratio and length bounds, (n,)
+    radius_term: np.ndarray  # dimensionless, (n,)
+    inertia_term: np.ndarray  # dimensionless, (n,)
+    mass_term: np.ndarray  # dimensionless, (n,)
 
     @property
     def cost(self) -> np.ndarray:
-        """F_cost."""
+        """F_cost, dimensionless, (n,)."""
         return self.radius_term + self.inertia_term + self.mass_term
 
 
@@ -227,7 +233,8 @@ class MatchCurves:
 class RadiusMatches:
     """Matches over the stator outer radius (thesis Fig. 3.26).
 
-    radii [m], transmission_ratio [m/rad], active_length [m], cost: arrays over the radius, NaN where infeasible
+    radii [m], (n,); transmission_ratio [m/rad], (n,), active_length [m], (n,), cost: dimensionless, (n,), all three NaN
+        where infeasible
     refusals: the reasons, None where feasible
     best: the match of least cost over the continuous radius; at_edge: sentence when that is an end of the range
     """
@@ -250,7 +257,8 @@ def linear_overload(
     where the field solution gives 146, more than a fifth too much (27 %), because the teeth saturate. Use the field
     solution unless the assumption itself is the subject.
 
-    Torque per length [Nm/m]; current densities in one unit, both RMS or both peak.
+    torque_per_length_nominal, linear_overload: [Nm/m]
+    nominal_current_density, overload_current_density: [A/m^2], both RMS or both peak
     """
     return torque_per_length_nominal * overload_current_density / nominal_current_density
 
@@ -349,7 +357,7 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
 
 
 def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
-    """Largest of the enforced minimum lengths [m] at these ratios [m/rad]."""
+    """Largest of the enforced minimum lengths [m] at a ratio [m/rad], of its shape."""
     return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
 
 
@@ -420,7 +428,9 @@ def match_curves(
     gearbox: GearboxDesign,
     model: CostModel,
 ) -> MatchCurves:
-    """Length curves of all constraints and cost terms over an array of transmission ratios [m/rad] (Fig. 3.25).
+    """Length curves of all constraints and cost terms over transmission ratios (Fig. 3.25).
+
+    ratio: [m/rad], (n,)
 
     The cost is given outside the bounds too, for the curve; ``feasible`` tells where it counts. Constraints without
     a length curve (speed, length) are left out of ``lengths``.
@@ -449,10 +459,10 @@ def match_over_radius(
     gearbox: GearboxDesign,
     model: CostModel,
 ) -> RadiusMatches:
-    """Matches over an array of stator outer radii [m], and the best over the continuous radius between them.
+    """Matches over stator outer radii [m], and the best over the continuous radius between them.
 
     section_at: stator outer radius [m] -> cross-section, for example from the polynomial fits
-    radii: two or more, rising
+    radii: [m], (n,), two or more, rising
     constraints_of: cross-section -> constraints, for example of a ``DampingReading``
     Raises Infeasible when no radius has a match.
     Source: thesis, "Optimization output" of the match, Fig. 3.26.
@@ -549,7 +559,7 @@ def _on_bound(ratio: float, bounds: tuple[float, float], enforced: tuple[Constra
 
 @dataclass(frozen=True)
 class NoRatio(Finding):
-    """A constraint asks for a larger ratio (least [m/rad]) than so many gear stages can have (largest [m/rad])."""
+    """A constraint asks for a larger ratio than so many gear stages can have; least: [m/rad]; largest: [m/rad]."""
 
     lowest: Constraint
     least: float
@@ -583,7 +593,10 @@ class NoLength(Finding):
 
 @dataclass(frozen=True)
 class TooLong(Finding):
-    """A constraint needs more length than the longest allowed [m], even at the smallest ratio [m/rad]."""
+    """A constraint needs more length than the longest allowed, even at the smallest ratio that the other leaves.
+
+    needed: [m]; longest: [m]; ratio: the smallest [m/rad]
+    """
 
     hardest: Constraint
     needed: float
@@ -602,7 +615,7 @@ class TooLong(Finding):
 
 @dataclass(frozen=True)
 class NoRadius(Finding):
-    """Not one stator radius has a match; refusal: of the largest radius [m]."""
+    """Not one stator radius has a match; refusal: of the largest, radius [m]."""
 
     radius: float
     refusal: Finding
@@ -613,7 +626,7 @@ class NoRadius(Finding):
 
 @dataclass(frozen=True)
 class OnSmallestRatio(Finding):
-    """The optimum lies on the smallest allowed ratio [m/rad]; lowest: what sets it."""
+    """The optimum lies on the smallest allowed ratio: [m/rad]; lowest: what sets it."""
 
     lowest: Constraint
     ratio: float
@@ -627,7 +640,7 @@ class OnSmallestRatio(Finding):
 
 @dataclass(frozen=True)
 class OnLargestRatio(Finding):
-    """The optimum lies on the largest allowed ratio [m/rad], where the machine is so long; longest: allowed [m]."""
+    """The optimum lies on the largest allowed ratio: [m/rad]; length: of the machine there; longest: allowed [m]."""
 
     ratio: float
     length: float

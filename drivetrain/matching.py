@@ -73,7 +73,7 @@ class FieldOverload(OverloadLaw):
     name: ClassVar[str] = "field"
 
     def torque_per_length(self, fitted: FittedSection) -> float:
-        """See ``OverloadLaw``."""
+        """[Nm/m], see ``OverloadLaw``."""
         return fitted.torque_overload
 
 
@@ -84,7 +84,7 @@ class LinearOverload(OverloadLaw):
     name: ClassVar[str] = "linear"
 
     def torque_per_length(self, fitted: FittedSection) -> float:
-        """See ``OverloadLaw``."""
+        """[Nm/m], see ``OverloadLaw``."""
         return fitted.torque_overload_linear
 
 
@@ -313,7 +313,10 @@ class Matcher:
 def sized_section(
     case: FieldCase, machine: Machine, coil_side_area: float, torque_nominal: float, torque_overload: float
 ) -> SizedSection:
-    """A machine of a study as the match sees it; area of a coil side [m^2], torques per length [Nm/m]."""
+    """A machine of a study as the match sees it.
+
+    coil_side_area: [m^2]; torque_nominal, torque_overload: per length [Nm/m]
+    """
     coils, pitch = _coils(machine.slots, machine.pole_pairs, case.layers, case.coil_pitch)
     return SizedSection(machine, coils, pitch, coil_side_area, torque_nominal, torque_overload)
 

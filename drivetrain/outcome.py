@@ -42,7 +42,7 @@ class Features:
 
     effort_peak: at the output, at rest [N or Nm]; slow_shaft_torque, machine_torque: at rest [Nm]
     equivalent_mass: of rotor and gears at the output [kg or kg m^2]; transmission_ratio tau_t, linkage_ratio tau_l
-        [m/rad or 1]; gear_ratio: fast over slow speed; mass [kg]; diameter, length of the envelope [m]
+        [m/rad or 1]; gear_ratio: fast over slow speed, dimensionless; mass [kg]; diameter, length of the envelope [m]
     """
 
     effort_peak: float
@@ -100,7 +100,7 @@ class Outcome:
     checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
     masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
     active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
-    load_inertia_ratio: inertia of the load over that of the drive, both at the output; None without a load inertia
+    load_inertia_ratio: inertia of the load relative to that of the drive, at the output; None without a load inertia
     """
 
     features: Features

@@ -125,6 +125,7 @@ class Wheel(Output):
     )
 
     def overall_ratio(self, ratio: float) -> str:
+        """ratio: tau_t [m/rad]."""
         return f"Overall ratio {ratio / FACTORS[self.ratio_unit]:.3f} {written(self.ratio_unit)}"
 
     def ratio(self, ratio: float) -> str:
@@ -173,6 +174,7 @@ class Shaft(Output):
     )
 
     def overall_ratio(self, ratio: float) -> str:
+        """ratio: of output over rotor speed, dimensionless."""
         return f"The rotor turns {1 / ratio:.3f} times as fast as the shaft"
 
     def ratio(self, ratio: float) -> str:

@@ -6,9 +6,9 @@ import numpy as np
 
 
 def non_dominated(costs: np.ndarray) -> np.ndarray:
-    """Indices of the points that no other one dominates, in the order of rising first cost; equal points count once.
+    """Indices (k,) of the points that no other one dominates, by rising first cost; equal points count once.
 
-    costs: (points, objectives), all to be made small
+    costs: [any units], (points, objectives), all to be made small
     """
     unique, first = np.unique(costs, axis=0, return_index=True)
     return first[[not _dominated(point, unique) for point in unique]]

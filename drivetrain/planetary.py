@@ -32,6 +32,7 @@ class PrintedDynamicFactor(DynamicFactor):
     """K_v = (5.6 + sqrt(v)) / 5.6, thesis eq. 3.118: without the root of the handbook's rule for ground teeth."""
 
     def at(self, pitch_line_velocity: float) -> float:
+        """K_v, dimensionless; pitch_line_velocity: [m/s]."""
         return (5.6 + sqrt(pitch_line_velocity)) / 5.6
 
 
@@ -44,6 +45,7 @@ class GroundTeethDynamicFactor(DynamicFactor):
     """
 
     def at(self, pitch_line_velocity: float) -> float:
+        """K_v, dimensionless; pitch_line_velocity: [m/s]."""
         return sqrt((5.56 + sqrt(pitch_line_velocity)) / 5.56)
 
 
@@ -222,7 +224,7 @@ class GearboxDesign:
         return self.linkage_ratio / 2**self.stage_count
 
     def stage_ratio(self, transmission_ratio: float) -> float:
-        """i = (tau_l / tau_t)^(1/N), equal stages (3.104-3.105); tau_t in m/rad."""
+        """i = (tau_l / tau_t)^(1/N), dimensionless, equal stages (3.104-3.105); tau_t in m/rad."""
         return (self.linkage_ratio / transmission_ratio) ** (1 / self.stage_count)
 
     def size(self, *, envelope_radius: float, transmission_ratio: float) -> Gearbox:

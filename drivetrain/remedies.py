@@ -18,14 +18,14 @@ _BISECTIONS = 7  # of a lever: its value to 0.2 %
 
 @dataclass(frozen=True)
 class Lever:
-    """An input that can be moved; the concrete ones are below."""
+    """An input that can be moved; the concrete ones are below and state its unit."""
 
     def value(self, design: ActuatorDesign) -> Values:
-        """Its present value, SI."""
+        """Its present value [unit of the lever, SI]."""
         raise NotImplementedError
 
     def moved(self, design: ActuatorDesign, value: Values) -> ActuatorDesign:
-        """The design with another value, a batch of designs for several."""
+        """The design with another value [unit of the lever, SI], a batch of designs for several."""
         raise NotImplementedError
 
     def name(self) -> str:
@@ -39,7 +39,7 @@ class Lever:
 
 @dataclass(frozen=True)
 class ActiveLengthLever(Lever):
-    """Active length [m]."""
+    """Active length; value: [m]."""
 
     def value(self, design: ActuatorDesign) -> Values:
         return design.active_length
@@ -56,7 +56,7 @@ class ActiveLengthLever(Lever):
 
 @dataclass(frozen=True)
 class TransmissionLever(Lever):
-    """Transmission ratio [m/rad or 1]."""
+    """Transmission ratio; value: [m/rad or 1]."""
 
     def value(self, design: ActuatorDesign) -> Values:
         return design.transmission_ratio
@@ -73,7 +73,7 @@ class TransmissionLever(Lever):
 
 @dataclass(frozen=True)
 class VoltageLever(Lever):
-    """Bus voltage [V]."""
+    """Bus voltage; value: [V]."""
 
     def value(self, design: ActuatorDesign) -> Values:
         return design.dc_voltage
@@ -90,7 +90,7 @@ class VoltageLever(Lever):
 
 @dataclass(frozen=True)
 class TurnsLever(Lever):
-    """Turns of a coil at constant copper: the current grows as they fall."""
+    """Turns of a coil at constant copper: the current grows as they fall; value: dimensionless."""
 
     def value(self, design: ActuatorDesign) -> Values:
         return design.turns
@@ -113,7 +113,8 @@ DIRECT_DRIVE_LEVERS: tuple[Lever, ...] = (ActiveLengthLever(), VoltageLever(), T
 class Remedy:
     """The smallest move of one lever that makes a failing requirement hold, and what would fail then.
 
-    now: present value, SI; value: None where the lever does not reach it within ``LEVER_RANGE``
+    now: present value [unit of the lever, SI]
+    value: [unit of the lever, SI], None where the lever does not reach it within ``LEVER_RANGE``
     """
 
     requirement: Requirement

@@ -38,9 +38,10 @@ class StatedRequirements:
 
 @dataclass(frozen=True)
 class Linkage:
-    """Transmission from wheel travel to the lever of the actuator, tau_l [m/rad].
+    """Transmission from wheel travel to the lever of the actuator, tau_l.
 
-    ratio_nominal: in the nominal wheel position; ratio_max: the largest along the travel, where torques are largest
+    ratio_nominal: in the nominal wheel position [m/rad]
+    ratio_max: the largest along the travel [m/rad], where torques are largest
     envelope_radius_max: largest outer radius of the actuator [m], None where nothing limits it
     """
 
@@ -51,9 +52,10 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Transmission:
-    """Overall transmission from wheel travel to the rotor, linkage and gears together, tau_t [m/rad].
+    """Overall transmission from wheel travel to the rotor, linkage and gears together, tau_t.
 
-    nominal: in the nominal wheel position; largest: along the travel, where a force asks for the largest torque
+    nominal: in the nominal wheel position [m/rad]
+    largest: along the travel [m/rad], where a force asks for the largest torque
     """
 
     nominal: float

@@ -56,7 +56,7 @@ class RoadSection(SizedSection):
 
 @dataclass(frozen=True)
 class RoadDemand:
-    """Working point on the road: RMS force [N] and velocity [m/s] at the wheel; copper of the winding."""
+    """Working point on the road at the wheel, force_rms [N] and velocity_rms [m/s]; copper of the winding."""
 
     force_rms: float
     velocity_rms: float
@@ -76,7 +76,11 @@ class WholeDesign:
 
 @dataclass(frozen=True)
 class Values:
-    """Objectives in the order of OBJECTIVES [kg, kg, Ns/m, W; on a shaft kg, kg m^2, Nms/rad, W], and constraints, relative, satisfied at or below 0."""
+    """What a design is worth.
+
+    objectives: in the order of OBJECTIVES [kg, kg, Ns/m, W], on a shaft [kg, kg m^2, Nms/rad, W]
+    constraints: relative, satisfied at or below 0
+    """
 
     objectives: tuple[float, ...]
     constraints: tuple[float, ...]
@@ -89,7 +93,7 @@ class Values:
 
 @dataclass(frozen=True)
 class RatedDesign:
-    """A design and what it is worth."""
+    """A design and its values, objectives [kg, kg, Ns/m, W] and constraints."""
 
     design: WholeDesign
     values: Values
@@ -133,7 +137,7 @@ class WholeProblem:
         return replace(self.gearbox, linkage_ratio=linkage_ratio)
 
     def design(self, unit: np.ndarray, slots: int | None = None) -> WholeDesign:
-        """From numbers 0 ... 1 for slots, radius, length, ratio (logarithmic) and linkage."""
+        """From unit, fractions 0 ... 1, (5,), for slots, radius, length, ratio (logarithmic) and linkage."""
         number = min(int(unit[0] * len(self.slots)), len(self.slots) - 1) if slots is None else self.slots.index(slots)
         (low, high), linkage = self.ratios, _between(self.linkage_ratios, unit[4])
         return WholeDesign(
@@ -145,7 +149,7 @@ class WholeProblem:
         )
 
     def unit(self, design: WholeDesign) -> np.ndarray:
-        """The inverse of ``design``."""
+        """The inverse of ``design``: fractions 0 ... 1, (5,)."""
         number, (low, high) = self.slots.index(design.slots), self.ratios
         return np.array(
             [
@@ -158,7 +162,10 @@ class WholeProblem:
         )
 
     def values(self, design: WholeDesign, section: SizedSection | None = None) -> Values:
-        """Objectives and constraints; ``section``: in the place of the fits, such as one solved by the field."""
+        """Objectives [kg, kg, Ns/m, W] and constraints.
+
+        section: in the place of the fits, such as one solved by the field
+        """
         section = section or self.section_at(design.slots, design.stator_outer_radius)
         ratio, length, box = design.transmission_ratio, design.active_length, self._box(design.linkage_ratio)
         limits = self._limits(section, box, ratio, length)
@@ -257,7 +264,7 @@ def improved(
 ) -> RatedDesign:
     """The design of least (damping: most) ``objective`` with the others no worse than ``allowed``, for all slots.
 
-    allowed: (4,) in the order of OBJECTIVES, the entry of the objective itself does not count
+    allowed: [kg, kg, Ns/m, W], (4,), in the order of OBJECTIVES, the entry of the objective itself does not count
     returns the start where no design keeps them
     Differential evolution for each slot count, with ``start`` among the first designs of its own.
     """

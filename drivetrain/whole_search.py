@@ -71,7 +71,10 @@ class FieldTask:
 
 @dataclass(frozen=True)
 class Question:
-    """Which objective (number in OBJECTIVES) is bettered, and what the others may come to; inf: anything."""
+    """Which objective (number in OBJECTIVES) is bettered, and what the others may come to.
+
+    allowed: [kg, kg, Ns/m, W]; inf: anything
+    """
 
     objective: int
     allowed: tuple[float, ...]
@@ -167,7 +170,9 @@ def optimise_stage(
 
 
 def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:
-    """What is asked against the objectives of the stage-by-stage design; damping: required [Ns/m].
+    """What is asked against the objectives of the stage-by-stage design.
+
+    before: those objectives [kg, kg, Ns/m, W]; damping: required [Ns/m]
 
     First each objective with the other three no worse; then mass and inertia with the damping that is asked for and a
     free loss, which is all that the requirements ask for.

@@ -83,7 +83,7 @@ class DqMachine(Protocol):
 
 @dataclass(frozen=True)
 class DriveLimits:
-    """What the power electronics allow: peak phase current [A] and peak phase voltage [V]; arrays for a family."""
+    """What the power electronics allow, of a phase: current_peak [A], voltage_peak [V]; arrays for a family."""
 
     current_peak: Values
     voltage_peak: Values
@@ -94,7 +94,7 @@ class DriveLimits:
 
     @classmethod
     def from_dc_bus(cls, current_peak: Values, dc_voltage: Values) -> DriveLimits:
-        """Limits of an inverter in its linear range: peak phase voltage V_DC / sqrt(3)."""
+        """Limits of an inverter in its linear range: peak phase voltage V_DC / sqrt(3); current_peak: [A]."""
         return cls(current_peak, dc_voltage / sqrt(3.0))
 
 
@@ -102,20 +102,20 @@ class DriveLimits:
 class Envelope:
     """Largest motoring torque at each speed and the currents that give it; NaN at speeds out of reach."""
 
-    speed: np.ndarray  # rad/s, mechanical
-    torque: np.ndarray  # Nm
-    i_d: np.ndarray  # A peak
-    i_q: np.ndarray  # A peak
-    voltage_peak: np.ndarray  # V
+    speed: np.ndarray  # mechanical [rad/s], any shape
+    torque: np.ndarray  # [Nm], the shape that speed and family broadcast to
+    i_d: np.ndarray  # peak [A], shape of the torque
+    i_q: np.ndarray  # peak [A], shape of the torque
+    voltage_peak: np.ndarray  # of a phase [V], shape of the torque
 
     @property
     def power(self) -> np.ndarray:
-        """Mechanical power [W]."""
+        """Mechanical power [W], of the shape of the torque."""
         return self.torque * self.speed
 
     @property
     def current_peak(self) -> np.ndarray:
-        """Peak phase current [A]."""
+        """Peak phase current [A], of the shape of the torque."""
         return np.hypot(self.i_d, self.i_q)
 
 
@@ -123,15 +123,15 @@ class Envelope:
 class OperatingMap:
     """Smallest current, and the voltage that goes with it, for each torque and speed; NaN where out of reach."""
 
-    torque: np.ndarray  # Nm
-    speed: np.ndarray  # rad/s, mechanical
-    i_d: np.ndarray  # A peak
-    i_q: np.ndarray  # A peak
-    voltage_peak: np.ndarray  # V peak phase
+    torque: np.ndarray  # [Nm], any shape, broadcast with the speed
+    speed: np.ndarray  # mechanical [rad/s], that shape
+    i_d: np.ndarray  # peak [A], that shape
+    i_q: np.ndarray  # peak [A], that shape
+    voltage_peak: np.ndarray  # of a phase [V], that shape
 
     @property
     def current_peak(self) -> np.ndarray:
-        """Peak phase current [A]."""
+        """Peak phase current [A], of the shape of the torque."""
         return np.hypot(self.i_d, self.i_q)
 
 
@@ -154,7 +154,7 @@ def torque_of(pole_pairs: int, psi: tuple[Values, Values], i_d: Values, i_q: Val
 def voltage_of(
     resistance: Values, psi: tuple[Values, Values], i_d: Values, i_q: Values, omega_e: Values
 ) -> tuple[Values, Values]:
-    """(v_d, v_q) = (R i_d - omega_e psi_q, R i_q + omega_e psi_d) [V peak]; omega_e: electrical [rad/s]."""
+    """(v_d, v_q) = (R i_d - omega_e psi_q, R i_q + omega_e psi_d) [V peak]; psi [Wb]; omega_e: electrical [rad/s]."""
     return resistance * i_d - omega_e * psi[1], resistance * i_q + omega_e * psi[0]
 
 
@@ -162,7 +162,7 @@ def voltage_of(
 
 
 def mtpa_currents(machine: DqMachine, current_peak: Values) -> tuple[Values, Values]:
-    """(i_d, i_q) [A] of the largest torque at a given peak phase current [A], any shape.
+    """(i_d, i_q) [A] of the largest torque at a given current_peak [A], of a phase, any shape.
 
     The root of dT/d gamma = dT/d i_q i_d - dT/d i_d i_q over the current angle, i_d = -I sin(gamma) and
     i_q = I cos(gamma); where the torque still rises at the end of the range, that end.
@@ -266,7 +266,7 @@ def torque_speed_envelope(machine: DqMachine, limits: DriveLimits, speed: Values
 def mtpv_currents(
     machine: DqMachine, voltage_peak: Values, speed: Values, largest_current: Values
 ) -> tuple[Values, Values]:
-    """(i_d, i_q) [A] of the largest torque that a peak phase voltage [V] allows at each speed, whatever the current.
+    """(i_d, i_q) [A] of the largest torque that voltage_peak [V] allows at each speed [rad/s], whatever the current.
 
     largest_current: how far is searched [A], for a map its ``reach``; NaN where the best current lies beyond.
     """
@@ -278,7 +278,7 @@ def mtpv_currents(
 def maximum_power(
     machine: DqMachine, limits: DriveLimits, maximum_speed: float, *, samples: int = 25, zooms: int = 3
 ) -> PowerPoint:
-    """Largest mechanical power up to a given mechanical speed [rad/s]; an ideal machine needs that bound.
+    """Largest mechanical power up to maximum_speed [rad/s], mechanical; an ideal machine needs that bound.
 
     Samples the envelope between base speed and maximum speed, then resamples round the best one. Deep in the MTPV
     region the power hardly changes, so its speed is then the bound itself. A family of machines has its fields in

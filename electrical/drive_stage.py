@@ -61,8 +61,9 @@ class Neighbour:
 class DriveOutcome:
     """See the module. field: the flux map; constant: constant parameters.
 
-    mtpa_direct, mtpa_quadrature: i_d, i_q from no current to the limit [A]
-    mtpv_direct, mtpv_quadrature: i_d, i_q over the speeds of the envelopes [A], NaN where the current limit rules
+    mtpa_direct, mtpa_quadrature: i_d, i_q from no current to the limit [A], (currents,)
+    mtpv_direct, mtpv_quadrature: i_d, i_q over the speeds of the envelopes [A], (speeds,), NaN where the current
+        limit rules
     field_plane, constant_plane: least currents over torque and speed, data sets of ``OperatingMap``
     neighbours: by turns; by_constant: the winding that constant parameters would choose of them
     """
@@ -140,7 +141,7 @@ def operating_plane(machine: DqMachine, limits: DriveLimits, fastest: float) -> 
 def by_constant_parameters(
     winding: Winding, machine: SynchronousMachine, limits: DriveLimits, fastest: float
 ) -> Winding:
-    """A winding with base speed, powers and peak torque of its constant parameters."""
+    """A winding with base speed, powers and peak torque of its constant parameters; fastest: speed [rad/s]."""
     torque, base = float(peak_torque(machine, limits)), float(base_speed(machine, limits))
     best = maximum_power(machine, limits, fastest)
     return replace(

@@ -35,14 +35,14 @@ class FinalLength:
 
 
 def length_for_torque(torque: float, torque_per_length: float) -> float:
-    """l = T / r (3.66) [m]; torque [Nm], torque of the wound machine per metre [Nm/m]."""
+    """l = T / r (3.66) [m]; torque [Nm], torque_per_length: of the wound machine [Nm/m]."""
     return torque / torque_per_length
 
 
 def length_for_damping(damping: float, *, reached: float, length: float, end_turn_length: float) -> float:
     """Length with a damping, from the damping ``reached`` at another length [m]: c ~ l^2 / (l + l_et) (3.91).
 
-    damping, reached: [Nms/rad] or [Ns/m], both the same
+    damping, reached: [Nms/rad or Ns/m], both the same
 
     The positive root of l^2 = a (l + l_et),  a = c / c_reached l_0^2 / (l_0 + l_et)
     """

@@ -12,5 +12,8 @@ def shaft_damping(*, torque_constant: float, phase_resistance: float) -> float:
 
 
 def winding_damping(*, torque_constant: float, phase_resistance: float, transmission_ratio: float) -> float:
-    """The same behind a transmission, 2 K_t^2 / (3 R_ph tau_t^2) [Ns/m] (3.75); transmission_ratio: tau_t [m/rad]."""
+    """The same behind a transmission, 2 K_t^2 / (3 R_ph tau_t^2) [Ns/m] (3.75).
+
+    torque_constant: K_t [Nm per peak ampere]; transmission_ratio: tau_t [m/rad]
+    """
     return shaft_damping(torque_constant=torque_constant, phase_resistance=phase_resistance) / transmission_ratio**2

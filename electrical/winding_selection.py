@@ -66,7 +66,7 @@ class PerTurnMachine:
 class WindingLimits:
     """What workshop, bus, bearings and power electronics allow.
 
-    packing_limit: gross packing factor k_cp aimed at, copper over half-slot area
+    packing_limit: gross packing factor k_cp aimed at, relative, copper over half-slot area
     packing_tolerance: relative excess over the limit that the workshop still accepts, 0 for none. The windings printed
         in the thesis need one: 7 x 22 and 4 x 39 wires of 0.5 mm fill 0.308 and 0.312 of 98.2 mm^2 (0.301 and 0.305 of
         the 100.45 mm^2 of the drawn half-slot) against a limit of 0.3. A chosen winding that uses it says so.
@@ -103,7 +103,7 @@ class WindingLimits:
 
 @dataclass(frozen=True)
 class WindingRequirement:
-    """What the wound machine must reach: base speed [rad/s, mechanical], power [W], peak torque [Nm]."""
+    """What the wound machine must reach: base_speed [rad/s, mechanical], power [W], peak torque [Nm]."""
 
     base_speed: float
     power: float
@@ -118,18 +118,18 @@ class Winding:
     strands: int  # N_h, wires in hand
     fullest: bool  # N_h is the largest that fits with this N_t
     packing: float  # copper over the area of the coil side
-    current_rms: float  # A, phase
-    current_peak: float  # A, phase
+    current_rms: float  # [A], phase
+    current_peak: float  # [A], phase
     phase_resistance: float  # ohm
     inductance_d: float  # H, phase, apparent with the overload current on the q axis and a quarter of it against d
     inductance_q: float  # H, phase, apparent at the overload current on the q axis
-    torque_constant: float  # Nm per peak ampere at the overload current on the q axis
-    no_load_torque_constant: float  # Nm per peak ampere at vanishing current
+    torque_constant: float  # [Nm/A], per peak ampere at the overload current on the q axis
+    no_load_torque_constant: float  # [Nm/A], per peak ampere at vanishing current
     peak_torque: float  # Nm, MTPA at the overload current, mean over one electrical period
-    base_speed: float  # rad/s, mechanical; 0 where the resistance alone uses up the voltage
-    power_at_base_speed: float  # W
+    base_speed: float  # mechanical [rad/s]; 0 where the resistance alone uses up the voltage
+    power_at_base_speed: float  # [W]
     maximum_power: float | None = None  # W, ideal field weakening up to the maximum speed; None: not asked for
-    speed_at_maximum_power: float | None = None  # rad/s, mechanical
+    speed_at_maximum_power: float | None = None  # mechanical [rad/s]
 
     @property
     def phase_to_phase_resistance(self) -> float:

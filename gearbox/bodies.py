@@ -40,7 +40,11 @@ def ring_body(
     count: int = 1,
     orbit: Batch = 0.0,
 ) -> Body:
-    """Hollow cylinder of these radii and width [m]."""
+    """Hollow cylinder, or ``count`` of them.
+
+    outer, inner: radii [m]; width: [m]; density: [kg/m^3]; speed: relative to that of the carrier
+    orbit: radius about the axis of the stage [m]
+    """
     mass = density * width * pi * (outer**2 - inner**2)
     return Body(name, count, mass, mass * (outer**2 + inner**2) / 2, speed, orbit)
 
@@ -58,6 +62,7 @@ def inertia_at_carrier(bodies: Iterable[Body]) -> Batch:
 def solid_bodies(gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float) -> tuple[Body, ...]:
     """Solid discs of the reference circles and a solid carrier disc through the planet centres: the scaling-law stage.
 
+    face_width, envelope_diameter: [m]; density: [kg/m^3]
     Without profile shift the inertia is pi/256 rho b d_ring^4 i^2/(i - 1)^4 (5 i^2 - 18 i + 26) (thesis eq. 3.111
     with the orbits of the planets).
     """
@@ -72,7 +77,7 @@ def solid_bodies(gears: PlanetarySet, face_width: Batch, envelope_diameter: floa
 
 
 def planet_speed(gears: PlanetarySet) -> Batch:
-    """Speed of the planets over that of the carrier, 1 - |z_ring| / z_planet: they roll inside the fixed ring."""
+    """Speed of the planets relative to the carrier's, 1 - |z_ring| / z_planet: they roll inside the fixed ring."""
     return 1 + gears.ring.teeth / gears.planet.teeth
 
 
@@ -82,7 +87,8 @@ class Construction:
 
     bore_fraction: planet bore over root diameter; the pin and its needles fill it, orbit and do not spin
     flange_fraction: thickness of each of the two carrier flanges over the face width, least_flange: not below [m];
-        the pins hold them together; flange_margin: from the pin to the rim of the flange, over the radius of the pin
+        the pins hold them together
+    flange_margin: from the pin to the rim of the flange, relative to the radius of the pin
     axial_gap: flange to teeth [m]
     """
 
@@ -103,7 +109,10 @@ class Construction:
     def bodies(
         self, gears: PlanetarySet, face_width: Batch, envelope_diameter: float, density: float
     ) -> tuple[Body, ...]:
-        """Sun, bored planets, pins with needles, carrier flanges and ring; teeth solid up to the reference circle."""
+        """Sun, bored planets, pins with needles, carrier flanges and ring; teeth solid up to the reference circle.
+
+        face_width, envelope_diameter: [m]; density: [kg/m^3]
+        """
         pin = self.bore_fraction * gears.planet.root_radius
         room, orbit = self.stage_length(face_width), gears.centre_distance
         rim = orbit + pin * (1 + self.flange_margin)

@@ -29,7 +29,7 @@ def loss_factor(mesh: Mesh) -> Batch:
 
 
 def basic_efficiency(gears: PlanetarySet, friction: float) -> Batch:
-    """eta_0 with the carrier held: (1 - mu H_V,sun) (1 - mu H_V,ring)."""
+    """eta_0 with the carrier held: (1 - mu H_V,sun) (1 - mu H_V,ring); friction: mu, dimensionless."""
     if not 0 <= friction < 0.5:
         raise GearError(f"the coefficient of friction must lie between 0 and 0.5; found {friction:g}")
     return (1 - friction * loss_factor(gears.sun_mesh)) * (1 - friction * loss_factor(gears.ring_mesh))
@@ -38,6 +38,7 @@ def basic_efficiency(gears: PlanetarySet, friction: float) -> Batch:
 def stage_efficiency(gears: PlanetarySet, friction: float) -> tuple[Batch, Batch]:
     """(carrier drives sun, sun drives carrier), ring fixed (VDI 2157; Mueller, Umlaufgetriebe).
 
+    friction: mu of the teeth, dimensionless
     i_0 = z_ring/z_sun < 0; sun drives: (1 - i_0 eta_0)/(1 - i_0); carrier drives: (1 - i_0)/(1 - i_0/eta_0).
     """
     fixed, eta = gears.ring.teeth / gears.sun.teeth, basic_efficiency(gears, friction)

@@ -12,9 +12,10 @@ _SAFETY_RANGE = (1e-3, 1e3)
 
 
 def miner_sum(line: LifeLine, stress_ratio: Batch, cycles: Batch) -> Batch:
-    """Damage sum_i n_i / N_i over the first axis, 1 at failure (Palmgren and Miner).
+    """Damage sum_i n_i / N_i over the first axis, dimensionless, 1 at failure (Palmgren and Miner).
 
-    stress_ratio: stress over endurance limit, (classes, ...); cycles: endured in each class, (classes, ...).
+    stress_ratio: stress relative to the endurance limit, (classes, ...)
+    cycles: number of them endured in each class, (classes, ...)
     """
     life = line.cycles(stress_ratio)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -23,7 +24,10 @@ def miner_sum(line: LifeLine, stress_ratio: Batch, cycles: Batch) -> Batch:
 
 
 def spectrum_safety(line: LifeLine, stress_ratio: Batch, cycles: Batch) -> Batch:
-    """The factor on all stresses at which Miner's sum reaches 1 (ISO 6336-6), shape of a class."""
+    """The factor, dimensionless, on all stresses at which Miner's sum reaches 1 (ISO 6336-6), shape of a class.
+
+    stress_ratio, cycles: as in ``miner_sum``, dimensionless, (classes, ...)
+    """
     low, high = (np.full(np.shape(stress_ratio)[1:], np.log(end)) for end in _SAFETY_RANGE)
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2

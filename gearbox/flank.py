@@ -15,7 +15,7 @@ from units import MILLIMETRE
 
 @dataclass(frozen=True)
 class Lubrication:
-    """Oil and surface: viscosity nu_40 [m^2/s], roughness R_z of flanks and roots [m]."""
+    """Oil and surface: viscosity_40 nu_40 [m^2/s], flank_roughness and root_roughness R_z [m]."""
 
     viscosity_40: float
     flank_roughness: float
@@ -34,7 +34,7 @@ def contact_ratio_factor(mesh: Mesh) -> Batch:
 
 
 def single_contact_factors(mesh: Mesh) -> tuple[Batch, Batch]:
-    """(Z_B, Z_D): stress at the inner points of single contact over that at the pitch point.
+    """(Z_B, Z_D), both dimensionless: stress at the inner points of single contact over that at the pitch point.
 
     sqrt of the relative curvatures rho_C / rho_B, not below 1. For an external pair it is the standard's M_1, M_2. The
     standard sets Z_D = 1 for an internal wheel; Z_B follows from the same curvatures there.
@@ -88,7 +88,9 @@ def roughness_factor(mesh: Mesh, oil: Lubrication) -> Batch:
 def hertz_stress(
     mesh: Mesh, normal_force: Batch, face_width: Batch, pinion_curvature: Batch, material: GearMaterial
 ) -> Batch:
-    """Contact pressure of two cylinders [Pa] under a normal force [N] where the pinion flank has a curvature [m].
+    """Contact pressure of two cylinders [Pa] under a normal force [N].
+
+    pinion_curvature: radius of curvature of the pinion flank there [m]
 
     sigma = Z_E sqrt(F / (b rho)). At the pitch point it is ``contact_stress`` with Z_eps = 1.
     """

@@ -37,12 +37,12 @@ ISO_53_A = BasicRack(addendum=1.0, dedendum=1.25, fillet_radius=0.38, pressure_a
 
 
 def involute(angle: Batch) -> Batch:
-    """inv(alpha) = tan(alpha) - alpha, angle in rad."""
+    """inv(alpha) = tan(alpha) - alpha, dimensionless; angle: alpha [rad]."""
     return tan(angle) - angle
 
 
 def inverse_involute(value: Batch) -> Batch:
-    """The angle [rad] whose involute is this; NaN for a negative value, which no involute has."""
+    """The angle [rad] whose involute is the value, dimensionless; NaN for a negative value, which no involute has."""
     value = np.asarray(value, dtype=float)
     usable = np.where(value >= 0, value, np.nan)
     angle = np.cbrt(3 * usable) / (1 + 0.4 * np.cbrt(3 * usable) ** 2) ** 0.5  # tan(a) - a = a^3/3 + ...
@@ -63,7 +63,7 @@ class Gear:
 
     @property
     def side(self) -> Batch:
-        """+1 for an external gear, -1 for an internal one."""
+        """+1 for an external gear, -1 for an internal one, dimensionless."""
         return np.sign(self.teeth)
 
     @property
@@ -92,7 +92,7 @@ class Gear:
             return arccos(self.base_radius / radius)
 
     def half_tooth_angle(self, radius: Batch) -> Batch:
-        """Half the angle of a tooth at a radius [rad]: pi/(2 z) + 2 x tan(alpha)/z +- (inv alpha - inv alpha_r)."""
+        """Half the angle of a tooth [rad] at a radius [m]: pi/(2 z) + 2 x tan(alpha)/z +- (inv alpha - inv alpha_r)."""
         z, alpha = np.abs(self.teeth), self.rack.pressure_angle
         half = (pi / 2 + 2 * self.shift * tan(alpha)) / z
         return half + self.side * (involute(alpha) - involute(self.pressure_angle_at(radius)))
@@ -130,7 +130,7 @@ class Mesh:
 
     @property
     def ratio(self) -> Batch:
-        """u = z_2 / z_1, negative for an internal wheel."""
+        """u = z_2 / z_1, dimensionless, negative for an internal wheel."""
         return self.wheel.teeth / self.pinion.teeth
 
     @property
@@ -167,12 +167,12 @@ class Mesh:
 
     @property
     def contact_ratio(self) -> Batch:
-        """eps_alpha: length of the path of contact over the base pitch."""
+        """eps_alpha: length of the path of contact relative to the base pitch."""
         return (self.pinion_curvature_at_tip - self.pinion_curvature_at_start) / self.base_pitch
 
     @property
     def addendum_contact_ratios(self) -> tuple[Batch, Batch]:
-        """(eps_1, eps_2): recess and approach parts of eps_alpha."""
+        """(eps_1, eps_2), both dimensionless: recess and approach parts of eps_alpha."""
         pitch = self.pinion.base_radius * tan(self.working_pressure_angle)
         pair = self.pinion_curvature_at_tip - pitch, pitch - self.pinion_curvature_at_start
         return tuple(part / self.base_pitch for part in pair)
@@ -194,11 +194,11 @@ class Mesh:
         )
 
     def wheel_curvature(self, pinion_curvature: Batch) -> Batch:
-        """Radius of curvature of the wheel flank where that of the pinion is given [m]: the line of action less it."""
+        """Radius of curvature of the wheel flank [m]: the line of action less pinion_curvature [m]."""
         return self.line_of_action - self.wheel.side * pinion_curvature
 
     def relative_curvature(self, pinion_curvature: Batch) -> Batch:
-        """rho = rho_1 rho_2 / (rho_2 +- rho_1) where the pinion flank has this radius of curvature [m]."""
+        """rho = rho_1 rho_2 / (rho_2 +- rho_1) [m]; pinion_curvature: radius of curvature of the pinion flank [m]."""
         wheel = self.wheel_curvature(pinion_curvature)
         return pinion_curvature * wheel / (wheel + self.wheel.side * pinion_curvature)
 
@@ -208,7 +208,10 @@ class Mesh:
 
 
 def working_angle(pinion_teeth: Batch, wheel_teeth: Batch, shift_sum: Batch, pressure_angle: Batch) -> Batch:
-    """alpha_w of a pair without backlash [rad]: inv(alpha_w) = inv(alpha) + 2 (x_1 + x_2)/(z_1 + z_2) tan(alpha)."""
+    """alpha_w of a pair without backlash [rad]: inv(alpha_w) = inv(alpha) + 2 (x_1 + x_2)/(z_1 + z_2) tan(alpha).
+
+    shift_sum: x_1 + x_2 [modules]
+    """
     added = 2 * shift_sum / (pinion_teeth + wheel_teeth) * tan(pressure_angle)
     return inverse_involute(involute(pressure_angle) + added)
 
@@ -216,7 +219,7 @@ def working_angle(pinion_teeth: Batch, wheel_teeth: Batch, shift_sum: Batch, pre
 def centre_distance(
     pinion_teeth: Batch, wheel_teeth: Batch, shift_sum: Batch, module: Batch, pressure_angle: Batch
 ) -> Batch:
-    """Centre distance of a pair without backlash [m], positive."""
+    """Centre distance of a pair without backlash [m], positive; shift_sum: x_1 + x_2 [modules]; module: [m]."""
     alpha_w = working_angle(pinion_teeth, wheel_teeth, shift_sum, pressure_angle)
     return np.abs(pinion_teeth + wheel_teeth) * module / 2 * cos(pressure_angle) / cos(alpha_w)
 
@@ -224,7 +227,10 @@ def centre_distance(
 def shift_sum(
     pinion_teeth: Batch, wheel_teeth: Batch, distance: Batch, module: Batch, pressure_angle: Batch
 ) -> Batch:
-    """x_1 + x_2 that closes a pair at a centre distance [m] without backlash; NaN where no pair reaches it."""
+    """x_1 + x_2 [modules] that closes a pair at a centre distance [m] without backlash; NaN where no pair reaches it.
+
+    module: [m]
+    """
     with np.errstate(invalid="ignore"):
         alpha_w = arccos(np.abs(pinion_teeth + wheel_teeth) * module / 2 * cos(pressure_angle) / distance)
     return (pinion_teeth + wheel_teeth) / (2 * tan(pressure_angle)) * (involute(alpha_w) - involute(pressure_angle))

@@ -22,8 +22,11 @@ class MachineEnvelope:
 
 @dataclass(frozen=True)
 class Housing:
-    """What the casing adds: radial wall, lever side (two bearings, spline, lock nut), bearing seats either side of the
-    machine, cover with the position sensor [m]."""
+    """What the casing adds.
+
+    wall: radial [m]; lever_side: with two bearings, spline and lock nut [m]
+    bearing_seat: either side of the machine [m]; sensor_cover: cover with the position sensor [m]
+    """
 
     wall: float
     lever_side: float
@@ -33,7 +36,10 @@ class Housing:
 
 @dataclass(frozen=True)
 class Part:
-    """A cylinder of the axial section: name, kind, from where to where along the axis, inner and outer radius [m]."""
+    """A cylinder of the axial section: name, kind, start and length along the axis, inner and outer radius.
+
+    start, length, inner_radius, outer_radius: [m]
+    """
 
     name: str
     kind: str

@@ -25,7 +25,7 @@ _FULL_LINE_LOAD = 100 * LINE_LOAD  # ISO 6336-1: stiffness and relative errors a
 class Quality:
     """Manufacture: accuracy grade of ISO 1328-1, application factor K_A, mesh load factor K_gamma.
 
-    K_gamma is the share of the most loaded planet over the mean.
+    application: K_A, dimensionless; load_sharing: K_gamma, share of the most loaded planet over the mean
     """
 
     grade: int = 6
@@ -35,7 +35,11 @@ class Quality:
 
 @dataclass(frozen=True)
 class LoadFactors:
-    """K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha and the product K_A K_gamma, arrays like the load."""
+    """K_V, K_Hbeta, K_Fbeta, K_Halpha, K_Falpha and the product K_A K_gamma.
+
+    external: K_A K_gamma, dimensionless; dynamic, face_contact, face_root, transverse_contact, transverse_root:
+        dimensionless, arrays like the load
+    """
 
     external: float
     dynamic: Batch
@@ -46,12 +50,12 @@ class LoadFactors:
 
     @property
     def contact(self) -> Batch:
-        """Factor on the tooth force for the flank."""
+        """Factor on the tooth force for the flank, dimensionless."""
         return self.external * self.dynamic * self.face_contact * self.transverse_contact
 
     @property
     def root(self) -> Batch:
-        """Factor on the tooth force for the root."""
+        """Factor on the tooth force for the root, dimensionless."""
         return self.external * self.dynamic * self.face_root * self.transverse_root
 
 
@@ -103,7 +107,7 @@ def pitch_deviation(module: Batch, diameter: Batch, grade: int) -> Batch:
 
 
 def profile_deviation(module: Batch, diameter: Batch, grade: int) -> Batch:
-    """f_falpha [m] of ISO 1328-1:1995: (2.5 sqrt m + 0.17 sqrt d + 0.5) 2^((Q - 5)/2) um."""
+    """f_falpha [m] of ISO 1328-1:1995: (2.5 sqrt m + 0.17 sqrt d + 0.5) 2^((Q - 5)/2) um; module, diameter: [m]."""
     m, d = module / MILLIMETRE, diameter / MILLIMETRE
     return (2.5 * np.sqrt(m) + 0.17 * np.sqrt(d) + 0.5) * 2 ** ((grade - 5) / 2) * MICROMETRE
 

@@ -16,6 +16,8 @@ class LifeLine:
     """S-N line in double logarithms: ``strength`` times the endurance limit at ``first`` cycles, 1 at ``knee``, and
     beyond the knee down to ``last_strength`` at ``last`` cycles. Constant before the first and after the last.
 
+    first, knee, last: number of cycles; strength, last_strength: relative to the endurance limit
+
     In ISO 6336 it is Z_NT (flank) or Y_NT (root). A line whose last strength is 1 is horizontal beyond the knee.
     """
 
@@ -26,12 +28,14 @@ class LifeLine:
     last_strength: float
 
     def factor(self, cycles: Batch) -> Batch:
-        """Strength over endurance limit at these load cycles."""
+        """Strength relative to the endurance limit after load cycles; cycles: number of them."""
         logs = np.log([self.first, self.knee, self.last]), np.log([self.strength, 1.0, self.last_strength])
         return np.exp(np.interp(np.log(np.maximum(cycles, 1e-30)), *logs))
 
     def cycles(self, stress_ratio: Batch) -> Batch:
-        """Life under a constant stress over endurance limit [cycles]; 0 above the static strength, inf below the line.
+        """Life under a constant stress [cycles]; 0 above the static strength, inf below the line.
+
+        stress_ratio: stress relative to the endurance limit
 
         The damage of the stress is the cycles endured over this.
         """

@@ -15,7 +15,11 @@ _FLANK_POINTS = 9
 
 @dataclass(frozen=True)
 class StageOutlines:
-    """Closed outlines of a stage with the sun at the origin, x + jy [m]; the ring by its inner edge."""
+    """Closed outlines of a stage with the sun at the origin.
+
+    sun, planets: x + jy [m], (points,); ring: its inner edge, x + jy [m], (points,)
+    centres: of the planets, x + jy [m], (planets,)
+    """
 
     sun: np.ndarray
     planets: tuple[np.ndarray, ...]
@@ -43,14 +47,20 @@ def gear_outline(gear: Gear, phase: float = 0.0) -> np.ndarray:
 
 
 def planet_phases(gears: PlanetarySet, sun_phase: float = 0.0) -> np.ndarray:
-    """Angle of a tooth of each planet [rad], (planets,), so that the sun's teeth stand in its spaces."""
+    """Angle of a tooth of each planet [rad], (planets,), so that the sun's teeth stand in its spaces.
+
+    sun_phase: angle of a tooth of the sun [rad]
+    """
     at = 2 * pi * np.arange(gears.planets) / gears.planets
     sun, planet = abs(gears.sun.teeth), abs(gears.planet.teeth)
     return at + pi - (pi - (at - sun_phase) * sun) / planet
 
 
 def ring_phases(gears: PlanetarySet, sun_phase: float = 0.0) -> np.ndarray:
-    """Angle of a ring tooth [rad] that each planet asks for, (planets,); equal modulo the pitch if they assemble."""
+    """Angle of a ring tooth [rad] that each planet asks for, (planets,); equal modulo the pitch if they assemble.
+
+    sun_phase: angle of a tooth of the sun [rad]
+    """
     at = 2 * pi * np.arange(gears.planets) / gears.planets
     planet, ring = abs(gears.planet.teeth), abs(gears.ring.teeth)
     return at - ((at - planet_phases(gears, sun_phase)) * planet + pi) / ring

@@ -39,7 +39,7 @@ class PlanetarySet:
 
     @property
     def ratio(self) -> Batch:
-        """i = 1 + |z_ring| / z_sun, sun speed over carrier speed."""
+        """i = 1 + |z_ring| / z_sun, sun speed relative to carrier speed."""
         return 1 - self.ring.teeth / self.sun.teeth
 
     @property
@@ -81,7 +81,10 @@ def equally_spaced(sun_teeth: Batch, ring_teeth: Batch, planets: int) -> Batch:
 
 
 def share_a_factor(first: Batch, second: Batch) -> Batch:
-    """Whether two tooth numbers have a common factor, so that the same teeth meet more often than they need to."""
+    """Whether two tooth numbers have a common factor, so that the same teeth meet more often than they need to.
+
+    first, second: number of teeth, dimensionless
+    """
     return np.gcd(np.abs(np.asarray(first, dtype=int)), np.abs(np.asarray(second, dtype=int))) > 1
 
 
@@ -96,7 +99,8 @@ def planetary_set(
 ) -> PlanetarySet:
     """The set of tooth numbers (z_sun, z_planet, z_ring < 0) and shifts (x_sun, x_planet) without backlash.
 
-    module [m]. The sun-planet pair sets the centre distance, and that the shift of the ring, unless ``ring_shift``
+    module [m]; shifts, ring_shift: [modules]
+    The sun-planet pair sets the centre distance, and that the shift of the ring, unless ``ring_shift``
     states it (then the ring has the backlash that results). Tips are one addendum over the shifted reference circle,
     less what keeps the clearance of the rack (h_f - h_a) to the mating root and ends contact before the mating fillet.
     Arrays broadcast; where no geometry exists the values are NaN. A single set raises GearError there.

@@ -43,9 +43,9 @@ GEARS = ("sun", "planet", "ring")
 class Rules:
     """What teeth are rated by.
 
-    alternating: Y_M on the root strength of gears loaded both ways, fatigue; 0.7 for an idler (thesis above eq. 3.123),
-        here for sun and ring too, as the actuator turns back and forth
-    alternating_static: the same on the static root strength; 1 takes the peak as a single load
+    alternating: Y_M, dimensionless, on the root strength of gears loaded both ways, fatigue; 0.7 for an idler (thesis
+        above eq. 3.123), here for sun and ring too, as the actuator turns back and forth
+    alternating_static: the same, dimensionless, on the static root strength; 1 takes the peak as a single load
     """
 
     material: GearMaterial
@@ -57,7 +57,7 @@ class Rules:
 
 @dataclass(frozen=True)
 class StageLoad:
-    """What the carrier of a stage transmits: load spectrum, and the torque [Nm] and speed [rad/s] of the overload."""
+    """What the carrier of a stage transmits: load spectrum, peak_torque [Nm] and peak_speed [rad/s] of the overload."""
 
     spectrum: LoadSpectrum
     peak_torque: float
@@ -71,7 +71,7 @@ class StageLoad:
             )
 
     def behind(self, ratio: float) -> StageLoad:
-        """The load of the next stage: torque over the ratio of this one, speed times it; losses left out."""
+        """The load of the next stage: torque over the ratio of this one, dimensionless, speed times it; lossless."""
         spectrum = self.spectrum.scaled(1 / ratio, ratio)
         return StageLoad(spectrum, self.peak_torque / ratio, self.peak_speed * ratio)
 
@@ -80,7 +80,8 @@ class StageLoad:
 class StageRating:
     """Safety factors by gear ("sun", "planet", "ring"; the planet's are the lower ones of its two meshes).
 
-    flank, root: fatigue under the spectrum; static_flank, static_root: the peak torque, once
+    flank, root: dimensionless, fatigue under the spectrum
+    static_flank, static_root: dimensionless, the peak torque, once
     """
 
     flank: dict[str, Batch]
@@ -90,7 +91,7 @@ class StageRating:
 
     @property
     def least(self) -> dict[str, float]:
-        """Smallest safety factor of each kind."""
+        """Smallest safety factor of each kind, dimensionless."""
         return {kind.name: min(np.min(value) for value in getattr(self, kind.name).values()) for kind in fields(self)}
 
 
@@ -98,6 +99,7 @@ class StageRating:
 class PittingBudget:
     """Where the pitting safety of a sun goes: ``safety`` is the product of the other four.
 
+    bare, loads, film, spectrum: dimensionless
     bare: sigma_Hlim Z_N over the stress of the RMS torque all the time, all other factors 1; loads: 1/sqrt(K_V K_Hbeta
     K_Halpha K_A K_gamma) at that torque; film: Z_L Z_V Z_R; spectrum: Miner's sum over the classes in the place of
     their RMS torque
@@ -110,7 +112,7 @@ class PittingBudget:
 
     @property
     def safety(self) -> float:
-        """Pitting safety of the sun under the spectrum."""
+        """Pitting safety of the sun under the spectrum, dimensionless."""
         return self.bare * self.loads * self.film * self.spectrum
 
 
@@ -151,7 +153,7 @@ def pitting_budget(gears: PlanetarySet, face_width: float, load: StageLoad, rule
 def static_ratings(
     gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules
 ) -> tuple[dict[str, Batch], dict[str, Batch]]:
-    """(flank, root) safety factors against the peak torque by gear, (batch).
+    """(flank, root) safety factors, dimensionless, against the peak torque by gear, (batch).
 
     The film plays no part in the static strength of the flank: Z_L Z_V Z_R = 1 (ISO 6336-2).
     """
@@ -177,7 +179,10 @@ def static_ratings(
 def survives(
     gears: PlanetarySet, face_width: Batch, load: StageLoad, rules: Rules, safety: tuple[float, float]
 ) -> np.ndarray:
-    """Whether fatigue safety factors (flank, root) are reached, by Miner's sum below 1, (batch)."""
+    """Whether fatigue safety factors (flank, root) are reached, by Miner's sum below 1, (batch).
+
+    safety: wanted of flank and root, dimensionless; face_width: [m]
+    """
     flank, root = endurance_ratios(gears, face_width, load.spectrum, rules)
     cycles, passed = load_cycles(gears, load.spectrum), np.array(True)
     for ratios, line, wanted in (
@@ -191,7 +196,7 @@ def survives(
 
 
 def load_cycles(gears: PlanetarySet, spectrum: LoadSpectrum) -> dict[str, Batch]:
-    """Load cycles of a tooth of each gear in each class over the life, (classes, ...), with eq. 3.123."""
+    """Number of load cycles of a tooth of each gear in each class over the life, (classes, ...), with eq. 3.123."""
     turns = {"sun": gears.ratio - 1, "planet": -gears.ring.teeth / gears.planet.teeth}
     turns["ring"] = np.ones_like(gears.ratio)
     contacts = {"sun": (gears.planets, 0.5), "planet": (1, 1.0), "ring": (gears.planets, 0.5)}
@@ -210,7 +215,7 @@ def sun_force(gears: PlanetarySet, carrier_torque: Batch) -> Batch:
 def endurance_ratios(
     gears: PlanetarySet, face_width: Batch, spectrum: LoadSpectrum, rules: Rules
 ) -> tuple[dict[str, list[Batch]], dict[str, list[Batch]]]:
-    """(flank, root): stress over endurance limit by gear, a list for its meshes, each (classes, batch)."""
+    """(flank, root): stress relative to the endurance limit by gear, a list for its meshes, each (classes, batch)."""
     torque, speed = (_over_classes(values, gears) for values in (spectrum.torque, spectrum.speed))
     flank: dict[str, list[Batch]] = {name: [] for name in GEARS}
     root: dict[str, list[Batch]] = {name: [] for name in GEARS}

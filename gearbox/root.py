@@ -25,7 +25,10 @@ _TEST_GEAR_NOTCH = 2.5  # q_sT, ISO 6336-3
 
 @dataclass(frozen=True)
 class RootSection:
-    """Critical section under a load point: chord s_Fn, fillet radius rho_F, lever arm h_Fe [m], load angle [rad]."""
+    """Critical section under a load point.
+
+    chord: s_Fn [m]; fillet: radius rho_F [m]; lever: arm h_Fe [m]; load_angle, pressure_angle: [rad]; module: [m]
+    """
 
     chord: Batch
     fillet: Batch
@@ -42,12 +45,12 @@ class RootSection:
 
     @property
     def notch(self) -> Batch:
-        """q_s = s_Fn / (2 rho_F)."""
+        """q_s = s_Fn / (2 rho_F), dimensionless."""
         return self.chord / (2 * self.fillet)
 
     @property
     def stress_correction(self) -> Batch:
-        """Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_Fe."""
+        """Y_S (dimensionless) = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_Fe."""
         slender = self.chord / self.lever
         return (1.2 + 0.13 * slender) * self.notch ** (1 / (1.21 + 2.3 / slender))
 

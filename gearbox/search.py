@@ -42,10 +42,11 @@ _PLANET_OFFSETS = range(-1, 5)  # planet teeth below half the difference of ring
 class ToothLimits:
     """What can be made and runs well.
 
-    least_sun_teeth; contact_ratio: smallest of either mesh (1.2, thesis below eq. 3.123); tip_thickness: [modules],
-    0.4 so that case hardening does not go through the tip;
+    least_sun_teeth; contact_ratio: smallest of either mesh, dimensionless (1.2, thesis below eq. 3.123)
+    tip_thickness: [modules], 0.4 so that case hardening does not go through the tip;
     planet_gap: between tips of neighbouring planets [m]; rim: ring root to the envelope [modules];
-    ring_shift: largest magnitude of the ring's profile shift; sun_shift, planet_shift: ranges searched; shift_step
+    ring_shift: largest magnitude of the ring's profile shift [modules]; sun_shift, planet_shift: ranges searched
+    [modules]; shift_step: [modules]
     """
 
     least_sun_teeth: int = 12
@@ -70,7 +71,7 @@ class WidthLimits:
     step: float = 0.5 * MILLIMETRE
 
     def range(self, gears: PlanetarySet) -> tuple[np.ndarray, np.ndarray]:
-        """Smallest and largest number of steps, (batch)."""
+        """Smallest and largest number of steps, of the shape of the batch."""
         most = np.minimum(self.most_modules * gears.sun.module, self.sun_diameters * 2 * gears.sun.reference_radius)
         least = np.ceil(self.modules * gears.sun.module / self.step - 1e-9)
         return least.astype(int), np.floor(most / self.step + 1e-9).astype(int)
@@ -78,7 +79,10 @@ class WidthLimits:
 
 @dataclass(frozen=True)
 class Safety:
-    """Smallest safety factors: fatigue of flank and root, and under the peak torque. 0 leaves it to the report."""
+    """Smallest safety factors, dimensionless; 0 leaves it to the report.
+
+    flank, root: fatigue, dimensionless; static_flank, static_root: under the peak torque, dimensionless
+    """
 
     flank: float
     root: float
@@ -90,8 +94,8 @@ class Safety:
 class CostScale:
     """Cost = weight m_eq / equivalent_mass + (1 - weight) m / mass, as in the match (3.98).
 
-    mass, equivalent_mass [kg]; linkage_ratio tau_l [m/rad] takes the inertia to the wheel; shared_factor_cost: added,
-    relative, to the cost of a set whose meshing tooth numbers have a common factor
+    mass, equivalent_mass [kg]; weight: dimensionless, 0 to 1; linkage_ratio tau_l [m/rad] takes inertia to the wheel
+    shared_factor_cost: added, relative, to the cost of a set whose meshing tooth numbers have a common factor
     """
 
     mass: float
@@ -103,8 +107,11 @@ class CostScale:
 
 @dataclass(frozen=True)
 class GearRequest:
-    """What a gearbox must do and be. ratio: fast over slow speed, ratio_tolerance: relative; envelope_diameter [m];
-    modules [m]."""
+    """What a gearbox must do and be.
+
+    ratio: fast over slow speed, dimensionless; ratio_tolerance: relative; envelope_diameter [m]; modules [m]
+    friction: mu of the teeth, dimensionless
+    """
 
     ratio: float
     ratio_tolerance: float
@@ -128,7 +135,7 @@ class GearRequest:
 
     @property
     def stage_ratios(self) -> tuple[float, float]:
-        """Smallest and largest ratio of a stage within the tolerance."""
+        """Smallest and largest ratio of a stage within the tolerance, dimensionless."""
         ends = (self.ratio * (1 - self.ratio_tolerance), self.ratio * (1 + self.ratio_tolerance))
         low, high = (end ** (1 / self.stage_count) for end in ends)
         return low, high
@@ -155,7 +162,7 @@ def _no_planets(ratio: float, stages: int) -> str:
 class Found:
     """Outcome of a search: gearboxes in the order of rising cost, the first is the choice.
 
-    shared: whether meshing tooth numbers of each have a common factor
+    costs: dimensionless; shared: whether meshing tooth numbers of each have a common factor
     sets_formed: sets of teeth and shifts looked at; sets_that_fit: those that can be made and assembled;
     tooth_triples_that_fit: different (module, z_sun, z_planet, z_ring) among them
     """

@@ -21,8 +21,8 @@ from units import DEGREE
 class LoadSpectrum:
     """Torque classes at the slow shaft (carrier of stage 1).
 
-    torque: magnitude [Nm], (classes,), representative of each class; share: of the operating time, sum 1
-    speed: mean magnitude [rad/s] in the class; duration: operating time of the life [s]
+    torque: magnitude [Nm], (classes,), representative of each class; share: of the operating time, sum 1, (classes,)
+    speed: mean magnitude in the class [rad/s], (classes,); duration: operating time of the life [s]
     swing: angle between the ends of the shaft's motion [rad], inf for continuous rotation
     """
 
@@ -45,7 +45,7 @@ class LoadSpectrum:
 
     @property
     def revolutions(self) -> np.ndarray:
-        """Of the slow shaft in each class over the life, back and forth added up, (classes,)."""
+        """Number of revolutions of the slow shaft in each class over the life, back and forth added up, (classes,)."""
         return self.share * self.duration * self.speed / (2 * pi)
 
     @property
@@ -87,7 +87,7 @@ def gaussian_spectrum(
 ) -> LoadSpectrum:
     """Stand-in without a history: normal torque, speed in proportion to it (a linear damper), up to ``crest`` RMS.
 
-    torque_rms [Nm], speed_rms [rad/s], the others as in ``spectrum_from_history``.
+    torque_rms [Nm], speed_rms [rad/s], crest: relative to the RMS, the others as in ``spectrum_from_history``.
     """
     samples = 4000
     quantile = (np.arange(samples) + 0.5) / samples
@@ -113,17 +113,19 @@ def largest_swing(angle: ArrayLike) -> float:
 
 
 def cycles_per_revolution(contacts: float, alternation: float, swing: float, speed_ratio: float) -> Batch:
-    """N_j = a_1 a_2 max(1, 2 pi / (swing ratio)): load cycles of a gear per revolution of that gear (3.123).
+    """N_j = a_1 a_2 max(1, 2 pi / (swing ratio)): number of load cycles of a gear per revolution of that gear (3.123).
 
-    contacts a_1: contacts per continuous revolution (3 for sun and ring, 1 for a planet); alternation a_2: 0.5 where a
-    full alternation takes two revolutions, there and back (sun, ring), 1 for a planet; swing [rad] of the input
-    shaft of the stage; speed_ratio: turns of the gear, against the carrier, per turn of that shaft.
+    contacts a_1: number of them per continuous revolution (3 for sun and ring, 1 for a planet)
+    alternation a_2: dimensionless, 0.5 where a full alternation takes two revolutions, there and back (sun, ring), 1
+        for a planet
+    swing [rad] of the input shaft of the stage
+    speed_ratio: number of turns of the gear, against the carrier, per turn of that shaft
     """
     return contacts * alternation * np.maximum(1.0, 360 * DEGREE / (swing * speed_ratio))
 
 
 def reversals(history: ArrayLike) -> np.ndarray:
-    """Turning points of a history, its first and last value included."""
+    """Turning points (k,) of a history (n,) [any unit, that of the result], its first and last value included."""
     values = np.asarray(history, dtype=float)
     values = values[np.concatenate([[True], np.diff(values) != 0])]
     if values.size < 3:
@@ -133,7 +135,10 @@ def reversals(history: ArrayLike) -> np.ndarray:
 
 
 def rainflow(history: ArrayLike) -> np.ndarray:
-    """Cycles of a history, (cycles, 3): range, mean, count (1 or 0.5), by the rainflow rule of ASTM E1049-85, 5.4.4."""
+    """Cycles of a history, (cycles, 3), by the rainflow rule of ASTM E1049-85, 5.4.4.
+
+    history: [any unit], (n,); rainflow: range and mean [unit of the history], count (1 or 0.5)
+    """
     stack, found = [], []
     for point in reversals(history):
         stack.append(point)

@@ -26,9 +26,10 @@ WIDTH_SLACK = 1e-3  # relative; widths are drawn in steps and Miner's sum is met
 class GearDemand:
     """What the actuator asks of its gearbox.
 
-    ratio: wanted, fast over slow speed, where the linkage ratio is largest; envelope_diameter: to stay inside [m]
+    ratio: wanted, fast over slow speed, dimensionless, where the linkage ratio is largest
+    envelope_diameter: to stay inside [m]
     linkage_ratio: nominal tau_l [m/rad], 1 for a load on the slow shaft; linkage_ratio_max: the largest along the
-        travel, where torques are largest
+        travel [m/rad or 1], where torques are largest
     effort_peak: overload at the output [N or Nm], at speed_at_effort_peak [m/s or rad/s]
     """
 
@@ -43,7 +44,8 @@ class GearDemand:
 @dataclass(frozen=True)
 class GearCost:
     """Scales of the cost of a gearbox, as in the match (3.98): mass, equivalent_mass that count as 1 [kg], and the
-    weight of the second against the first. Behind a linkage ratio of 1 the equivalent mass is an inertia [kg m^2]."""
+    weight (dimensionless) of the second against the first. Behind a linkage ratio of 1 the equivalent mass is an
+    inertia [kg m^2]."""
 
     mass: float
     equivalent_mass: float
@@ -52,7 +54,7 @@ class GearCost:
 
 @dataclass(frozen=True)
 class StatedGears:
-    """Somebody else's gears, rated in the same way: teeth and the face width [m] of each stage."""
+    """Somebody else's gears, rated in the same way: teeth and the face_widths [m] of the stages."""
 
     gears: PlanetarySet
     face_widths: tuple[float, ...]
@@ -62,7 +64,7 @@ class StatedGears:
 class GearInputs:
     """What a study says about the gearbox.
 
-    stage_count: planetary stages; ratio_tolerance: relative; planets of a stage; friction: of the teeth
+    stage_count: planetary stages; ratio_tolerance: relative; planets of a stage; friction: mu, dimensionless
     torque_class_width: of the load spectrum at the slow shaft [Nm]; life: operating time [s]
     swing: largest turn of the slow shaft between two reversals [rad], inf for a shaft that turns on; read where no
         history tells it
@@ -101,7 +103,7 @@ class RecordedLoads(GearLoads):
     histories: xr.Dataset
 
     def spectrum(self, demand: GearDemand, class_width: float, life: float) -> LoadSpectrum:
-        """See ``GearLoads.spectrum``."""
+        """See ``GearLoads.spectrum``; class_width: [Nm]; life: [s]."""
         force, velocity, stroke = (self.histories[name].values for name in ("force", "velocity", "stroke"))
         ratio = demand.linkage_ratio_max
         swing = max(largest_swing(run / demand.linkage_ratio) for run in np.atleast_2d(stroke))
@@ -123,7 +125,7 @@ class NormalLoads(GearLoads):
     swing: float
 
     def spectrum(self, demand: GearDemand, class_width: float, life: float) -> LoadSpectrum:
-        """See ``GearLoads.spectrum``."""
+        """See ``GearLoads.spectrum``; class_width: [Nm]; life: [s]."""
         ratio = demand.linkage_ratio_max
         return gaussian_spectrum(
             self.effort_rms * ratio, self.speed_rms / ratio, class_width=class_width, duration=life, swing=self.swing
@@ -132,7 +134,10 @@ class NormalLoads(GearLoads):
 
 @dataclass(frozen=True)
 class SafetyCheck:
-    """Wanted and smallest reached safety factor of all gears and stages; kind as in ``Safety``."""
+    """Safety factor of all gears and stages; kind as in ``Safety``.
+
+    wanted, reached: dimensionless, reached the smallest
+    """
 
     kind: str
     wanted: float
@@ -152,7 +157,10 @@ class SafetyCheck:
 @dataclass(frozen=True)
 class RatedSet:
     """One of the best gearboxes of the search: its cost, its smallest safety factors, whether meshing tooth numbers
-    have a common factor."""
+    have a common factor.
+
+    cost, flank, root, static_flank, static_root: dimensionless
+    """
 
     train: GearTrain
     cost: float
@@ -167,7 +175,8 @@ class RatedSet:
 class GearSearch:
     """How the gears were found.
 
-    load: at the slow shaft; requested_ratio: fast over slow speed; weakness: None, or the sentence on what is too weak
+    load: at the slow shaft; requested_ratio: fast over slow speed, dimensionless
+    weakness: None, or the sentence on what is too weak
     sets_formed, sets_that_fit: sets of teeth and profile shifts; tooth_triples_that_fit: different teeth among them
     best: in the order of rising cost, the first is the choice; stated: somebody else's gears in the same construction
     """
@@ -266,7 +275,7 @@ def _rated_sets(found: Found, request: GearRequest) -> tuple[RatedSet, ...]:
 
 
 def least_safety(train: Gears, load: StageLoad, rules: Rules) -> dict[str, float]:
-    """Smallest safety factor of each kind (as in ``Safety``) over all gears and stages."""
+    """Smallest safety factor, dimensionless, of each kind (as in ``Safety``) over all gears and stages."""
     ratings = train.rate(load, rules)
     return {kind: min(float(rating.least[kind]) for rating in ratings) for kind in ratings[0].least}
 

@@ -28,7 +28,7 @@ class Gears:
 
     @property
     def ratio(self) -> float:
-        """Fast over slow speed."""
+        """Fast over slow speed, dimensionless."""
         raise NotImplementedError
 
     @property
@@ -79,6 +79,7 @@ class DirectDrive(Gears):
 
     @property
     def ratio(self) -> float:
+        """1, dimensionless."""
         return 1.0
 
     @property
@@ -87,10 +88,12 @@ class DirectDrive(Gears):
 
     @property
     def inertia_at_slow_shaft(self) -> float:
+        """0 [kg m^2]."""
         return 0.0
 
     @property
     def stage_lengths(self) -> tuple[float, ...]:
+        """Of no stage [m], empty."""
         return ()
 
     @property
@@ -103,7 +106,7 @@ class DirectDrive(Gears):
 
 @dataclass(frozen=True)
 class GearTrain(Gears):
-    """Stages in order from the slow shaft, in an envelope diameter [m]; density [kg/m^3], friction coefficient mu."""
+    """Stages in order from the slow shaft, in an envelope diameter [m]; density [kg/m^3]; friction: dimensionless."""
 
     stages: tuple[Stage, ...]
     envelope_diameter: float
@@ -113,12 +116,12 @@ class GearTrain(Gears):
 
     @property
     def ratio(self) -> float:
-        """Fast over slow speed, the product of the stages."""
+        """Fast over slow speed, dimensionless, the product of the stages."""
         return prod(stage.gears.ratio for stage in self.stages)
 
     @property
     def speed_ratios(self) -> tuple[float, ...]:
-        """Speed of the carrier of each stage over the slow shaft."""
+        """Speed of the carrier of each stage relative to the slow shaft."""
         return tuple(prod(stage.gears.ratio for stage in self.stages[:k]) for k in range(len(self.stages)))
 
     @property

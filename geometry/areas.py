@@ -19,9 +19,9 @@ _Point = tuple[float, float]  # radius [m], angle [rad]
 class PartAreas:
     """Areas [m^2] and polar moments of area about the axis [m^4] of the whole machine.
 
-    stator_laminations, rotor_laminations, magnets, shaft: areas; the shaft is a solid bar
-    half_slot: half a slot without its opening, as far as copper may lie
-    rotor_laminations_moment, magnets_moment, shaft_moment: integral of r^2 dA
+    stator_laminations, rotor_laminations, magnets, shaft: areas [m^2]; the shaft is a solid bar
+    half_slot: half a slot without its opening, as far as copper may lie [m^2]
+    rotor_laminations_moment, magnets_moment, shaft_moment: integral of r^2 dA [m^4]
     """
 
     stator_laminations: float

@@ -28,7 +28,8 @@ _BESIDE_THE_LINE = 1e-6  # rad, small against any element
 
 @dataclass(frozen=True)
 class Probe:
-    """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m], weights (n,) of sum 1."""
+    """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m], weights (n,), shares
+    of the points in the mean (sum 1)."""
 
     name: str
     points: np.ndarray
@@ -111,7 +112,10 @@ class CrossSection:
         return GapHalf(m.mid_gap_radius, m.rotor_outer_radius, self.assembly.rotor_centre)
 
     def magnetisation_angle(self, number: int, points: np.ndarray) -> np.ndarray:
-        """Angle of the magnetisation of magnet ``number`` [rad], taken outwards, at points (2, ...) of the rotor."""
+        """Angle of the magnetisation of a magnet [rad], (...), taken outwards, at points of the rotor [m], (2, ...).
+
+        number: of the magnet
+        """
         x, y = self.assembly.rotor_centre
         centre_line = number * self.machine.pole_pitch + self.assembly.magnet_turn(number)
         return self.machine.magnetisation.direction_angle(np.arctan2(points[1] - y, points[0] - x), centre_line)
@@ -124,7 +128,7 @@ class CrossSection:
 
     @property
     def rotor_band(self) -> np.ndarray:
-        """Elements of the gap on the rotor side of the sliding circle."""
+        """Indices (k,) of the elements of the gap on the rotor side of the sliding circle."""
         gap = self.mesh.subdomains["gap"]
         return gap[self.rotor_elements[gap]]
 
@@ -186,7 +190,7 @@ class Piece:
 
     Copy h covers the angles (h - 1) width .. h width; even copies are mirrored. Nodes on shared rays are shared.
     cell, mesh: the half cell and its triangles
-    nodes: number in the piece of every half-cell node in every copy (count, n)
+    nodes: index in the piece of every half-cell node in every copy (count, n)
     """
 
     cell: HalfCell
@@ -206,27 +210,27 @@ class Piece:
         return len(self.nodes)
 
     def place(self, points: np.ndarray) -> np.ndarray:
-        """Points of the piece (2, m) from those of the half cell (n, 2)."""
+        """Points of the piece [m], (2, m), from the points of the half cell [m], (n, 2)."""
         placed = np.empty((2, self.nodes.max() + 1))
         for h, nodes in enumerate(self.nodes):
             placed[:, nodes] = _place(points, h, self.width).T
         return placed
 
     def place_copies(self, points: np.ndarray, copies: Iterable[int]) -> tuple[np.ndarray, np.ndarray]:
-        """Points of the half cell (n, 2), or their moves, in some copies (2, k), and their node numbers (k,)."""
+        """Points of the half cell in some copies: [m], (2, k), and node indices (k,); points or moves [m], (n, 2)."""
         copies = [h % self.count for h in copies]
         placed = np.hstack([_place(points, h, self.width).T for h in copies])
         return placed, np.concatenate([self.nodes[h] for h in copies])
 
     @cached_property
     def triangles(self) -> np.ndarray:
-        """Triangles (3, m) of the piece, counter-clockwise, copy by copy."""
+        """Node indices of the triangles of the piece (3, m), counter-clockwise, copy by copy."""
         points = self.place(self.mesh.points).T
         return _counter_clockwise(points, self.nodes[:, self.mesh.triangles].reshape(-1, 3)).T
 
     @property
     def region(self) -> np.ndarray:
-        """Region index of every triangle."""
+        """Region index of every triangle (m,)."""
         return np.tile(self.mesh.region, self.count)
 
     @property
@@ -236,12 +240,12 @@ class Piece:
 
     @property
     def start(self) -> np.ndarray:
-        """Nodes on the first ray, outwards."""
+        """Indices (k,) of the nodes on the first ray, outwards."""
         return self.nodes[0][self.mesh.nodes_at_angle(self.width)]
 
     @property
     def end(self) -> np.ndarray:
-        """Nodes on the last ray, outwards."""
+        """Indices (k,) of the nodes on the last ray, outwards."""
         return self.nodes[-1][self.mesh.nodes_at_angle(self.width)]
 
 

@@ -60,6 +60,7 @@ class StaticEccentricity(Eccentricity):
     """
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         return self._moves(section, section.stator_gap, slice(0, first_rotor_node(section)))
 
     def assemble(self, assembly: Assembly) -> Assembly:
@@ -74,6 +75,7 @@ class DynamicEccentricity(Eccentricity):
     """
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         return self._moves(section, section.rotor_gap, slice(first_rotor_node(section), None))
 
     def assemble(self, assembly: Assembly) -> Assembly:
@@ -93,6 +95,7 @@ class MagnetPosition(Defect):
     angle: float  # [rad], about the rotor's centre
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         return _turn_rotor(section, self.number, self.angle, self.angle)
 
     def assemble(self, assembly: Assembly) -> Assembly:
@@ -110,6 +113,7 @@ class MagnetArc(Defect):
     change: float  # of the whole arc [rad]
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         return _turn_rotor(section, self.number, -self.change / 2, self.change / 2)
 
 
@@ -121,6 +125,7 @@ class SlotOpening(Defect):
     change: float  # of the opening width [m]
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         m = section.machine
         wanted = m.opening_width + self.change
         if wanted >= m.slot_pitch * m.stator_inner_radius - m.tooth_width:
@@ -140,6 +145,7 @@ class ToothWidth(Defect):
     change: float  # [m]
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
+        """Moves of the nodes [m], (2, n)."""
         _check_number("tooth", self.tooth, section.machine.slots)
         machine = replace(section.machine, tooth_width=section.machine.tooth_width + self.change)
         return morpher.copies_moved(machine, section, (2 * self.tooth, 2 * self.tooth + 1))

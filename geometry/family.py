@@ -13,6 +13,7 @@ _STATED = ("tooth_width", "shoe_d1", "shoe_d2")
 class MachineFamily:
     """What ``hanselman_machine`` derives a machine from, lengths in m, with the dimensions that are stated instead.
 
+    shoe_aspect_ratio: depth of the parallel opening over that of the taper, dimensionless
     tooth_width, shoe_d1, shoe_d2 [m]: None where they follow from the back iron (thesis eqs 3.53, 3.57, 3.58)
     """
 

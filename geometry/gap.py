@@ -28,7 +28,10 @@ class GapHalf:
         return self.rim_radius - self.slide_radius
 
     def height(self, points: np.ndarray) -> np.ndarray:
-        """h of points (2, ...): the small root of (c^2 - D^2) h^2 - 2 (p.c + r_0 D) h + p^2 - r_0^2 = 0."""
+        """h (dimensionless) at points [m], (2, ...).
+
+        The small root of (c^2 - D^2) h^2 - 2 (p.c + r_0 D) h + p^2 - r_0^2 = 0.
+        """
         (x, y), (cx, cy), depth = points, self.rim_centre, self.depth
         half = x * cx + y * cy + self.slide_radius * depth
         rest = x * x + y * y - self.slide_radius**2
@@ -37,14 +40,17 @@ class GapHalf:
         return rest / (half + np.copysign(root, depth))
 
     def sheared(self, points: np.ndarray, angle: float) -> np.ndarray:
-        """Points (2, ...) [m] turned about the axis by an angle [rad] on the sliding circle and beyond, by nothing on
-        the rim, in between by as much as they are close to the circle."""
+        """The points turned about the axis by an angle [rad] on the sliding circle and beyond, by nothing on the rim,
+        in between by as much as they are close to the circle.
+
+        points, sheared: [m], (2, ...)
+        """
         radius = np.hypot(*points)
         direction = np.arctan2(points[1], points[0]) + angle * np.clip(1 - self.height(points), 0.0, 1.0)
         return radius * np.stack([np.cos(direction), np.sin(direction)])
 
     def gradient(self, points: np.ndarray) -> np.ndarray:
-        """grad h = q/(D + q.c) with q the unit vector from the centre h c to the point (2, ...) [1/m]."""
+        """grad h = q/(D + q.c) [1/m], (2, ...), at points [m], (2, ...); q: unit vector from h c to the point."""
         centre = np.array(self.rim_centre).reshape(2, *[1] * (np.ndim(points) - 1))
         away = points - self.height(points) * centre
         unit = away / np.hypot(*away)

@@ -22,9 +22,9 @@ class MeshDensity:
     ring average of most machines, with 0.4 % at worst.
 
     gap_edges: least number of edges around the sliding circle
-    longest_gap_edge: longest edge on the sliding circle, as a multiple of the air gap
+    longest_gap_edge: longest edge on the sliding circle, relative to the air gap
     gap_layers: structured layers between the sliding circle and the iron, on each side
-    across_iron: elements across a tooth
+    across_iron: number of elements across a tooth
     """
 
     gap_edges: int = 180
@@ -84,7 +84,8 @@ class HalfCell:
         return PlaneMesh(points, np.vstack([drawn.triangles, triangles]), region, drawn.region_names + ("gap",))
 
     def gap_points(self, machine: Machine, rim: np.ndarray) -> np.ndarray:
-        """Nodes (n, 2) [m] of the layers from the rim, whose nodes are given by rising angle, to the sliding circle."""
+        """Nodes [m], (n, 2), of the layers from the rim, whose nodes [m], (k, 2), are given by rising angle, to the
+        sliding circle."""
         share = np.arange(1, self.density.gap_layers + 1)[:, None] / self.density.gap_layers
         equal = np.linspace(0, self.width(machine), self.edges + 1)
         angles = (1 - share) * np.arctan2(rim[:, 1], rim[:, 0]) + share * equal

@@ -20,7 +20,7 @@ class Magnetisation:
     """Direction of the remanence inside one magnet; the concrete patterns are below."""
 
     def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
-        """Angle of the magnetisation vector of an outward magnet [rad].
+        """Angle of the magnetisation vector of an outward magnet [rad], of the shape of the positions.
 
         position_angle: polar angle of the point [rad], array of any shape
         centre_angle: polar angle of the magnet's centre line [rad]
@@ -33,6 +33,7 @@ class ParallelMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along the magnet's centre line."""
 
     def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+        """The angle of the centre line [rad], of the shape of position_angle [rad], any shape."""
         return 0.0 * position_angle + centre_angle
 
 
@@ -41,6 +42,7 @@ class RadialMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along its own radius."""
 
     def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+        """The polar angle of the point [rad], of the shape of position_angle [rad], any shape."""
         return position_angle + 0.0 * centre_angle
 
 
@@ -62,8 +64,8 @@ class Machine:
     magnet_length: float  # l_m, radial
     airgap: float  # g
     slot_opening: float  # w_s
-    shoe_d1: float  # depth of the parallel-sided opening
-    shoe_d2: float  # depth of the taper
+    shoe_d1: float  # depth of the parallel-sided opening [m]
+    shoe_d2: float  # depth of the taper [m]
     shaft_radius: float
     magnet_arc_fraction: float = 1.0  # of the pole pitch
     magnetisation: Magnetisation = ParallelMagnetisation()
@@ -191,6 +193,7 @@ def hanselman_machine(
     d_1 = alpha_sd w_tb / (1 + alpha_d)   (3.57)
     d_2 = d_1 / alpha_d                   (3.58)
 
+    shoe_depth_fraction: alpha_sd; shoe_aspect_ratio: alpha_d, dimensionless; magnet_arc_fraction: of the pole pitch
     Lengths in m. Source: thesis eqs 3.53-3.58 after Hanselman, Brushless Permanent Magnet Motor Design.
     """
     slots_per_pole = slots / (2 * pole_pairs)

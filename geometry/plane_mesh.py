@@ -21,7 +21,7 @@ class Drawing:
     Points carry the wanted edge length [m]; a curve may carry a fixed number of equal edges instead.
     """
 
-    points: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # x, y, edge length
+    points: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # x, y, edge length [m]
     curves: dict[tuple[str, str], tuple[bool, int | None]] = field(default_factory=dict)  # is_arc, number of edges
     regions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # corner points in order
 
@@ -50,7 +50,8 @@ class Drawing:
 
 @dataclass(frozen=True)
 class PlaneMesh:
-    """Triangles of a drawing: points (n, 2) [m], triangles (m, 3), region index per triangle (m,), region names."""
+    """Triangles of a drawing: points (n, 2) [m], triangles (m, 3) as indices of points, region (m,) as an index
+    of region_names."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -58,14 +59,14 @@ class PlaneMesh:
     region_names: tuple[str, ...]
 
     def nodes_at_angle(self, angle: float) -> np.ndarray:
-        """Nodes on the ray at this polar angle [rad], sorted outwards; the origin counts as on every ray."""
+        """Indices (k,) of the nodes on the ray at this angle [rad], outwards; the origin counts as on every ray."""
         distance = self.points @ np.array([-sin(angle), cos(angle)])
         along = self.points @ np.array([cos(angle), sin(angle)])
         nodes = np.flatnonzero((np.abs(distance) < 1e-9) & (along > -1e-9))
         return nodes[np.argsort(along[nodes])]
 
     def nodes_at_radius(self, radius: float) -> np.ndarray:
-        """Nodes on the circle of this radius [m], sorted by angle."""
+        """Indices (k,) of the nodes on the circle of this radius [m], sorted by angle."""
         nodes = np.flatnonzero(np.abs(np.hypot(*self.points.T) - radius) < 1e-9)
         return nodes[np.argsort(np.arctan2(self.points[nodes, 1], self.points[nodes, 0]))]
 

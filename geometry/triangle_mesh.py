@@ -13,7 +13,10 @@ class TriangleMesh(MeshTri):
     def build_entities(
         t: np.ndarray, indices: list[list[int]] | None, sort: bool = True
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Edges (2, k) of triangles (3, m) in the order of their nodes, and the edges of every triangle (3, m)."""
+        """Edges (2, k) in the order of their nodes, and the edges of every triangle (3, m), all indices.
+
+        t: node indices of the triangles (3, m)
+        """
         if indices is None or not sort:
             return MeshTri.build_entities(t, indices, sort)
         start, end = np.sort(np.hstack([t[pair] for pair in indices]), axis=0)

@@ -82,7 +82,10 @@ def iron_loss(loci: Loci, law: IronLossLaw) -> IronLoss:
 
 
 def principal_components(values: np.ndarray) -> np.ndarray:
-    """Loci (steps, E, 2) about their mean, along their own major and minor axes."""
+    """The values about their mean, along their own major and minor axes.
+
+    values, principal_components: [T], (steps, E, 2)
+    """
     centred = values - values.mean(0)
     x, y = centred[..., 0], centred[..., 1]
     angle = 0.5 * np.arctan2(2 * (x * y).mean(0), (x * x).mean(0) - (y * y).mean(0))
@@ -91,10 +94,11 @@ def principal_components(values: np.ndarray) -> np.ndarray:
 
 
 def loop_sum(components: np.ndarray, exponent: float) -> np.ndarray:
-    """Sum over all closed loops of (peak-to-peak/2)^exponent, both components together (E,).
+    """Sum over all closed loops of (peak-to-peak/2)^exponent, both components together [T^exponent], (E,).
 
-    components (steps, E, 2), one period. Loops are found by the rainflow count from the largest value on, so that
-    nested minor loops are split from the major one (as in a Preisach material, whose loops close).
+    components: [T], (steps, E, 2), one period; exponent: dimensionless
+    Loops are found by the rainflow count from the largest value on, so that nested minor loops
+    are split from the major one (as in a Preisach material, whose loops close).
     """
     steps, count, _ = components.shape
     series = components.reshape(steps, -1)

@@ -120,9 +120,9 @@ def solve_part(
 class Loci:
     """A field quantity of some elements over one full period of what they see.
 
-    elements (E,): their numbers in the mesh of the sector; area (E,) [m^2]
-    values (steps, E, components): equally spaced in time, the end of the period left out
-    periods: electrical periods that the steps cover; sectors: sectors that make up the machine
+    elements: indices in the mesh of the sector (E,); area (E,) [m^2]
+    values [T, or that of the quantity], (steps, E, components): equally spaced in time, the end of the period left out
+    periods: number of electrical periods that the steps cover; sectors: sectors that make up the machine
     """
 
     elements: np.ndarray
@@ -132,7 +132,7 @@ class Loci:
     sectors: int
 
     def rate(self) -> np.ndarray:
-        """d(values)/d(electrical periods), the sum of all harmonics (steps, E, components); times f it is d/dt."""
+        """d(values)/d(electrical periods) [as values], (steps, E, components), of all harmonics; times f it is d/dt."""
         steps = len(self.values)
         orders = np.fft.rfftfreq(steps, 1 / steps)
         if steps % 2 == 0:
@@ -141,7 +141,7 @@ class Loci:
         return np.fft.irfft(spectrum, steps, axis=0)
 
     def spectrum(self) -> tuple[np.ndarray, np.ndarray]:
-        """Orders of the electrical frequency (H,) and peak amplitudes (H, E, components)."""
+        """Orders of the electrical frequency, dimensionless, (H,), and peak amplitudes of values (H, E, components)."""
         steps = len(self.values)
         amplitude = 2 / steps * np.abs(np.fft.rfft(self.values, axis=0))
         amplitude[0] /= 2

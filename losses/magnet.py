@@ -74,7 +74,7 @@ def magnet_loss(part: PartOfPeriod, resistivity: float = NDFEB_RESISTIVITY, segm
 
 
 def skin_depth(frequency: float, resistivity: float = NDFEB_RESISTIVITY, permeability: float = 1.05) -> float:
-    """sqrt(rho / (pi f mu)) [m]."""
+    """sqrt(rho / (pi f mu)) [m]; permeability: relative."""
     return sqrt(resistivity / (pi * frequency * MU_0 * permeability))
 
 

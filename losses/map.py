@@ -46,7 +46,7 @@ class FieldLosses:
 def current_point(
     section: CrossSection, direct: float, quadrature: float, packing: float, angle: float = 0.0
 ) -> OperatingPoint:
-    """Operating point of ampere-turns on the d and q axes [A peak per coil]; packing: copper share of the slot."""
+    """Operating point of ampere-turns; direct, quadrature: on the axes [A peak per coil]; packing: share of copper."""
     area = section.half_slot_area * section.half_slots_per_coil_side
     return OperatingPoint(angle, hypot(direct, quadrature) / (packing * area), atan2(-direct, quadrature), packing)
 
@@ -79,7 +79,7 @@ class FieldLossTable:
     """Losses over the ampere-turns of a coil.
 
     direct (D,), quadrature (Q,): peak ampere-turns on the axes [A], quadrature from 0 up
-    terms (D, Q, 3, 3): of stator, rotor, magnet; hysteresis, eddy, excess [W s^n/m]
+    terms (D, Q, 3, 3) [W s^n/m]: of stator, rotor, magnet; hysteresis, eddy, excess
     """
 
     direct: np.ndarray
@@ -114,12 +114,12 @@ class FieldLossTable:
 
 
 def grid(largest: float) -> list[tuple[float, float]]:
-    """(d, q) ampere-turns [A] of a table up to ``largest`` peak ampere-turns of a coil, d outermost."""
+    """(d, q) ampere-turns [A] of a table up to ``largest`` [A], peak of a coil, d outermost."""
     return [(d * largest, q * largest) for d in DIRECT for q in QUADRATURE]
 
 
 def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
-    """The table of the losses at the currents of ``grid(largest)``, in that order."""
+    """The table of the losses at the currents of ``grid(largest)`` [A], in that order."""
     terms = [[[t.hysteresis, t.eddy, t.excess] for t in (one.stator, one.rotor, one.magnet)] for one in losses]
     shaped = np.array(terms).reshape(len(DIRECT), len(QUADRATURE), 3, 3)
     return FieldLossTable(largest * np.array(DIRECT), largest * np.array(QUADRATURE), shaped)
@@ -127,7 +127,10 @@ def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
 
 @dataclass(frozen=True, eq=False)
 class PowerLosses:
-    """Losses [W] over torque [Nm] and speed [rad/s, mechanical], all of one shape; NaN where out of reach."""
+    """Losses over torque and speed, all of one shape; NaN where out of reach.
+
+    torque [Nm], speed [rad/s, mechanical], copper, stator_iron, rotor_iron, magnet: [W], of any shape
+    """
 
     torque: np.ndarray
     speed: np.ndarray
@@ -138,12 +141,12 @@ class PowerLosses:
 
     @property
     def total(self) -> np.ndarray:
-        """All electrical losses [W]."""
+        """All electrical losses [W], of the shape of the torque."""
         return self.copper + self.stator_iron + self.rotor_iron + self.magnet
 
     @property
     def efficiency(self) -> np.ndarray:
-        """Power out over power in, as motor and as generator; NaN where nothing comes out."""
+        """Power out over power in, shape of the torque, as motor and as generator; NaN where nothing comes out."""
         mechanical = self.torque * self.speed
         electrical = mechanical + self.total
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -79,7 +79,7 @@ class LossMap:
 
 @dataclass(frozen=True)
 class LossTask:
-    """Iron and magnet losses at one current: ampere-turns of a coil on the d and the q axis [A peak]."""
+    """Iron and magnet losses at one current; direct, quadrature: ampere-turns of a coil on the axes [A peak]."""
 
     case: FieldCase
     machine: Machine
@@ -146,7 +146,7 @@ def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> O
 
 
 def best_point(losses: PowerLosses, where: np.ndarray) -> BestPoint:
-    """The largest efficiency among the points of a mask."""
+    """The largest efficiency among the points where a mask says so; where: whether each counts, shape of the losses."""
     efficiency = np.where(where, losses.efficiency, np.nan)
     if np.isnan(efficiency).all():
         raise LossError("no point of the plane has an efficiency: speed_max_rpm of winding_selection is too low")

@@ -19,7 +19,7 @@ from magnetostatics.cholesky import SymmetricSystem
 class Entries:
     """Addresses of the local entries (K, E) of a set of elements in the reduced matrix.
 
-    keys (k,): sorted distinct keys; adder (k, K E): sparse, +-1 where a local entry belongs to a key
+    keys (k,): sorted distinct integers, dimensionless; adder (k, K E): sparse, +-1 where a local entry belongs to a key
     """
 
     keys: np.ndarray
@@ -34,9 +34,10 @@ class Entries:
         dof_sign: np.ndarray,
         size: int,
     ) -> Entries:
-        """Addresses for elements with degrees of freedom (F, E), given the map of every degree of freedom.
+        """Addresses for elements, given the map of every degree of freedom.
 
-        pairs: local (row, column) of the K entries
+        pairs: local (row, column) indices of the K entries, each (K,); dofs: indices, (F, E)
+        column: index of the unknown of every degree of freedom, (n,); dof_sign: its sign, dimensionless, (n,)
         """
         i, j = pairs
         a, b = column[dofs][i].ravel(), column[dofs][j].ravel()
@@ -51,7 +52,7 @@ class Entries:
         return cls(keys[starts], adder)
 
     def sum(self, local: np.ndarray) -> np.ndarray:
-        """Add local entries (K, E) up, one value per key."""
+        """The local entries (K, E) [m/H] summed up, one value per key [m/H], (k,)."""
         return self.adder @ local.ravel()
 
 
@@ -65,7 +66,8 @@ def _counting_sort(values: np.ndarray, size: int) -> np.ndarray:
 class FixedPattern:
     """What of the pattern does not depend on the rotor's turn.
 
-    keys: sorted; iron, linear: positions of the keys of ``iron_entries`` and of ``linear_entries`` in them
+    keys: sorted, dimensionless, (k,)
+    iron, linear: indices of the keys of ``iron_entries`` and of ``linear_entries`` in them, (k_iron,), (k_linear,)
     """
 
     iron_entries: Entries
@@ -108,8 +110,8 @@ class JoinedPattern:
 class JoinedSystem:
     """The matrix of one model at one rotor angle: linear part as a product, whole matrix as a factorisation.
 
-    edges: that the rotor is turned by; linear: values of the linear entries in the order of their keys
-    band: local entries of the rotor side of the gap (K, E)
+    edges: that the rotor is turned by; linear: values of the linear entries [m/H], in the order of their keys (k,)
+    band: local entries of the rotor side of the gap [m/H], (K, E)
     """
 
     def __init__(self, pattern: JoinedPattern, edges: int, linear: np.ndarray, band: np.ndarray) -> None:
@@ -129,11 +131,14 @@ class JoinedSystem:
         return self.linear_matrix.diagonal()
 
     def linear_product(self, u: np.ndarray) -> np.ndarray:
-        """Linear part of the matrix times u."""
+        """Linear part of the matrix times the unknowns [A], (n,); u: [Wb/m], (n,)."""
         return self.linear_matrix @ u + self.linear_matrix.T @ u - self._diagonal * u
 
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
-        """Factorise linear part plus the local iron entries (K, E). Good until the next call for the same pattern."""
+        """Factorise linear part plus iron. Good until the next call for the same pattern.
+
+        iron_tangent: local iron entries [m/H], (K, E)
+        """
         values = self._linear.copy()
         values[self.pattern.iron_position] += self.pattern.fixed.iron_entries.sum(iron_tangent)
         self.pattern.system.factorise(values)

@@ -20,7 +20,7 @@ def one_thread() -> AbstractContextManager[object]:
 class SymmetricSystem:
     """A symmetric positive definite matrix with fixed pattern: analysed once, refactorised for new values.
 
-    rows, columns: indices of the lower triangle (rows >= columns), sorted by column, then by row
+    rows, columns: indices of the lower triangle (k,), rows >= columns, sorted by column, then by row
     """
 
     def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int) -> None:
@@ -29,7 +29,7 @@ class SymmetricSystem:
         self._factor = cvxopt.cholmod.symbolic(self._matrix)
 
     def factorise(self, values: np.ndarray) -> None:
-        """Numeric factorisation for the values of the lower triangle, in the order of the pattern.
+        """Numeric factorisation for the values of the lower triangle [m/H], (k,), in the order of the pattern.
 
         Raises ArithmeticError when the matrix is not positive definite.
         """
@@ -37,13 +37,13 @@ class SymmetricSystem:
         cvxopt.cholmod.numeric(self._matrix, self._factor)
 
     def column_counts(self) -> np.ndarray:
-        """Entries in every column of the factor (n,); their squares sum up to the operations of a factorisation."""
+        """Number of entries in every column of the factor (n,); their squares sum up to the operations."""
         factor = cvxopt.cholmod.symbolic(self._matrix)
         cvxopt.cholmod.numeric(self._matrix, factor)
         return np.diff(np.array(cvxopt.cholmod.getfactor(factor).CCS[0]).ravel())
 
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
-        """Solution for one right-hand side (n,) or several (n, k)."""
+        """Solution [Wb/m] of the shape of right_hand_side [A], (n,), or several in one, (n, k)."""
         solution = cvxopt.matrix(right_hand_side)
         cvxopt.cholmod.solve(self._factor, solution)
         return np.array(solution).reshape(right_hand_side.shape)

@@ -25,10 +25,11 @@ class PhaseCurrents:
     turns: float = 1.0
 
     def ampere_turns(self, section: CrossSection) -> np.ndarray:
-        """Of one coil, as designed, of phases A, B, C [A]."""
+        """Of one coil, as designed, of phases A, B, C [A], (3,)."""
         return self.turns * np.array(self.currents)
 
     def current_load(self, model: FieldModel) -> np.ndarray:
+        """Right-hand side [A], (n,)."""
         return self.ampere_turns(model.section) @ model.phase_loads
 
 
@@ -37,7 +38,7 @@ class CoilCurrents:
     """Rotor angle and the ampere-turns of every single coil, for example with a current of their own in shorted turns.
 
     angle: mechanical rotor angle, magnet 0 on the x axis at zero [rad]
-    coil_ampere_turns: (coils,) [A], in the order of ``WindingLayout.coils``; positive in +z where the coil goes
+    coil_ampere_turns: [A], (coils,), in the order of ``WindingLayout.coils``; positive in +z where the coil goes
     """
 
     angle: float

@@ -35,7 +35,7 @@ class CutEdge(LocalSteel):
     of electric machines due to mechanical and laser cutting", IEEE Trans. Ind. Appl. 54 (2018) 366-375; take 0.5 to
     1 mm for an order of magnitude, and let a measurement decide.
 
-    law: of the undamaged steel; depth: delta [m]; severity: s, from 0 to below 1
+    law: of the undamaged steel; depth: delta [m]; severity: s, dimensionless, from 0 to below 1
     """
 
     law: Reluctivity

@@ -26,7 +26,9 @@ from skfem.quadrature import get_quadrature
 class TriangleOrder:
     """Lagrange functions on the reference triangle at the quadrature points.
 
-    values (F, Q), gradients (F, 2, Q), points (2, Q), weights (Q,); pairs: local (row, column) of the lower triangle, K
+    All in reference coordinates, dimensionless.
+    values: dimensionless, (F, Q); gradients: dimensionless, (F, 2, Q); points: dimensionless, (2, Q)
+    weights: shares of the area 1/2, (Q,); pairs: local (row, column) indices of the lower triangle, each (K,)
     """
 
     element: Element
@@ -44,17 +46,23 @@ class TriangleOrder:
 
     @cached_property
     def slopes(self) -> np.ndarray:
-        """Derivatives along xi at all points, then along eta (2 Q, F)."""
+        """Derivatives along xi at all points, then along eta (2 Q, F), dimensionless."""
         return np.ascontiguousarray(self.gradients.transpose(1, 2, 0).reshape(-1, len(self.values)))
 
     @cached_property
     def weighted_slopes(self) -> np.ndarray:
-        """The slopes times the weights of their points (F, 2 Q): sums a field at the points up to local vectors."""
+        """The slopes times the weights of their points (F, 2 Q), dimensionless.
+
+        Sums a field at the points up to local vectors.
+        """
         return np.ascontiguousarray((self.gradients * self.weights).reshape(len(self.values), -1))
 
     @cached_property
     def products(self) -> np.ndarray:
-        """Weighted (d_xi u d_xi v, d_xi u d_eta v + d_eta u d_xi v, d_eta u d_eta v) per pair and point (K, 3 Q)."""
+        """Weighted (d_xi u d_xi v, d_xi u d_eta v + d_eta u d_xi v, d_eta u d_eta v) per pair and point.
+
+        products: dimensionless, (K, 3 Q)
+        """
         i, j = self.pairs
         u, v = self.gradients[:, 0], self.gradients[:, 1]
         parts = np.stack([u[i] * u[j], u[i] * v[j] + v[i] * u[j], v[i] * v[j]], axis=1) * self.weights
@@ -62,7 +70,7 @@ class TriangleOrder:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """The products summed over the points (K, 3): what the metric is multiplied with."""
+        """The products summed over the points (K, 3), dimensionless: what the metric is multiplied with."""
         return self.products.reshape(len(self.products), 3, -1).sum(axis=2)
 
     @cached_property
@@ -75,7 +83,7 @@ class TriangleOrder:
         return TriangleOrder(self.element, values, self.gradients[:, :, :1], middle, whole, self.pairs)
 
     def gradients_at(self, local: np.ndarray) -> np.ndarray:
-        """Reference gradients (F, 2, n) at local coordinates (2, n)."""
+        """Reference gradients (F, 2, n) at local coordinates (2, n), both dimensionless."""
         return _same_shape([self.element.lbasis(local, i)[1] for i in range(len(self.values))])
 
 
@@ -89,7 +97,7 @@ QUADRATIC = TriangleOrder.of(ElementTriP2(), 6)
 
 
 def element_dofs(mesh: MeshTri, order: TriangleOrder) -> tuple[np.ndarray, int]:
-    """Degrees of freedom (F, E), nodes first, then edges, and their total number."""
+    """Indices of the degrees of freedom (F, E), nodes first, then edges, and their total number."""
     dofs = Dofs(mesh, order.element)
     return dofs.element_dofs, dofs.N
 
@@ -102,12 +110,18 @@ def dof_locations(mesh: MeshTri, order: TriangleOrder) -> np.ndarray:
 
 
 def refine_order(facets: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Degrees of freedom of the quadratic functions (n,) that describe the same field as linear ones; facets (2, k)."""
+    """Potential [Wb/m], (n,), of the quadratic functions that describes the same field as that of linear ones.
+
+    facets: indices of the ends of the edges, (2, k); a: potential at the nodes [Wb/m], (nodes,)
+    """
     return np.concatenate([a, a[facets].mean(axis=0)])
 
 
 def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Load on the linear functions (nodes,) from that on the quadratic ones (n,); the transpose of ``refine_order``."""
+    """Load on the linear functions [A], (nodes,), from that on the quadratic ones; the transpose of ``refine_order``.
+
+    facets: indices of the ends of the edges, (2, k); load: on the quadratic functions [A], (n,)
+    """
     nodes = len(load) - facets.shape[1]
     halves = np.tile(load[nodes:] / 2, 2)
     return load[:nodes] + np.bincount(facets.ravel(), weights=halves, minlength=nodes)
@@ -117,7 +131,8 @@ def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
 class Elements:
     """A set of straight triangles with F functions each (3 linear, 6 quadratic).
 
-    dofs (F, E); first: the first corners (2, E) [m]; edges: from them to the second and third corners (2, 2, E) [m]
+    dofs: indices (F, E); first: the first corners (2, E) [m]
+    edges: from them to the second and third corners (2, 2, E) [m]
     """
 
     order: TriangleOrder
@@ -127,12 +142,12 @@ class Elements:
 
     @classmethod
     def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
-        """Elements with corners (2, 3, E) [m] and degrees of freedom (F, E)."""
+        """Elements with corners (2, 3, E) [m] and dofs, indices (F, E)."""
         a, b, c = corners.transpose(1, 0, 2)
         return cls(order, dofs, a, np.stack([b - a, c - a]))
 
     def take(self, which: np.ndarray) -> Elements:
-        """The elements with these indices."""
+        """The elements with these indices; which: indices (k,)."""
         return Elements(self.order, *(np.take(part, which, axis=-1) for part in (self.dofs, self.first, self.edges)))
 
     @cached_property
@@ -143,7 +158,7 @@ class Elements:
 
     @cached_property
     def metric(self) -> np.ndarray:
-        """M_11, M_12, M_22 (3, E): grad . grad times |D| in reference coordinates."""
+        """M_11, M_12, M_22, dimensionless (3, E): grad . grad times |D| in reference coordinates."""
         u, v = self.edges
         return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / np.abs(self.determinant)
 
@@ -171,20 +186,23 @@ class Elements:
         return (along_v * u[0] - along_u * v[0]) / self.determinant
 
     def stiffness(self, reluctivity: np.ndarray | float) -> np.ndarray:
-        """Element matrices (K, E) for a reluctivity that is constant in each element (E,) [m/H]."""
+        """Element matrices [m/H], (K, E), for a reluctivity that is constant in each element [m/H], (E,) or scalar."""
         return self.order.stiffness @ (self.metric * reluctivity)
 
     def slopes(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(dA/dxi, dA/deta) at the quadrature points, each (Q, E), of local values (F, E)."""
+        """(dA/dxi, dA/deta) [Wb/m] at the quadrature points, each (Q, E), of local values [Wb/m], (F, E)."""
         return tuple((self.order.slopes @ local).reshape(2, -1, local.shape[1]))
 
     def gradient(self, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(dA/dx, dA/dy) at the quadrature points, each (Q, E) [T]."""
+        """(dA/dx, dA/dy) at the quadrature points [T], each (Q, E); a: potential [Wb/m], (n,)."""
         (u, v), (along_u, along_v) = self.edges / self.determinant, self.slopes(a[self.dofs])
         return along_u * v[1] - along_v * u[1], along_v * u[0] - along_u * v[0]
 
     def forces(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Local vectors integral (x dv/dx + y dv/dy) (F, E) of a vector field given at the quadrature points (Q, E)."""
+        """Local vectors integral (x dv/dx + y dv/dy) of a vector field given at the quadrature points.
+
+        x, y: [A/m], (Q, E); forces: [A], (F, E), or in metres times another unit of the field
+        """
         u, v = self.edges * np.sign(self.determinant)
         return self.order.weighted_slopes @ np.concatenate([x * v[1] - y * v[0], y * u[0] - x * u[1]])
 
@@ -193,5 +211,5 @@ class Elements:
         return self.order.values @ self.weights
 
     def scatter(self, local: np.ndarray, size: int) -> np.ndarray:
-        """Sum local vectors (F, E) into a global vector (size,)."""
+        """Sum local vectors [A], (F, E), into a global vector [A], (size,); or both in another unit."""
         return np.bincount(self.dofs.ravel(), weights=local.ravel(), minlength=size)

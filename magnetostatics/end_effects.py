@@ -28,11 +28,14 @@ class EndEffects:
     end_inductance: float = 0.0
 
     def torque(self, per_length: Values) -> Values:
-        """Torque [Nm] from that of the 2-D field [Nm/m]; end turns carry flux, but make no torque."""
+        """Torque [Nm] from that of the 2-D field, per_length [Nm/m]; end turns carry flux, but make no torque."""
         return self.active_length * self.flux_factor * per_length
 
     def flux_linkage(self, per_length_and_turn: Values, turns: float, currents: Values) -> np.ndarray:
-        """Flux linkage [Wb] of the phases from that of the 2-D field [Wb/m per turn] and their currents [A]."""
+        """Flux linkage [Wb] of the phases, of the shape of their currents [A].
+
+        per_length_and_turn: that of the 2-D field [Wb/m per turn]
+        """
         inside = self.active_length * self.flux_factor * turns * np.asarray(per_length_and_turn)
         return inside + self.end_inductance * np.asarray(currents)
 

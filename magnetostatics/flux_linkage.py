@@ -49,8 +49,9 @@ def flux_linkage_torque(solution: FieldSolution) -> float:
 
 
 def park(phases: np.ndarray, electrical_angle: float, phase_axis: float) -> np.ndarray:
-    """(d, q) of three phase values, amplitude-invariant; the d axis lies on magnet 0.
+    """(d, q), (2,), of three phase values, (3,), amplitude-invariant; the d axis lies on magnet 0.
 
+    phases: [any unit], (3,), that of the result; park: [the same], (2,)
     electrical_angle: p theta [rad]; phase_axis: electrical angle of the axis of phase A [rad]
     """
     angle = electrical_angle - phase_axis - 2 * np.pi / 3 * np.arange(3)

@@ -146,7 +146,7 @@ Reader = Callable[[FieldSolution], Mapping[str, float]]
 def flux_map(
     model: FieldModel, grid: CurrentGrid, angles: Sequence[float], read: Reader = flux_and_torque
 ) -> xr.Dataset:
-    """The whole map in this process; see ``solve_angle`` for one angle at a time."""
+    """The whole map in this process, angles: mechanical [rad]; see ``solve_angle`` for one angle at a time."""
     return to_dataset(model, grid, angles, [solve_angle(model, angle, grid, read) for angle in angles])
 
 
@@ -172,7 +172,7 @@ def solve_angle(
 def to_dataset(
     model: FieldModel, grid: CurrentGrid, angles: Sequence[float], rows: Sequence[Mapping[str, Any]]
 ) -> xr.Dataset:
-    """The labelled map from the results of ``solve_angle`` in the order of the angles; units are in the attributes."""
+    """The labelled map from the results of ``solve_angle`` in the order of the angles [rad], with units."""
     data = {name: (("angle", "id", "iq"), np.array([row[name] for row in rows]), _ATTRIBUTES[name]) for name in rows[0]}
     values = {"id": grid.i_d, "iq": grid.i_q, "angle": np.asarray(angles, dtype=float)}
     coordinates = {name: (name, values[name], attributes) for name, attributes in _COORDINATES.items()}

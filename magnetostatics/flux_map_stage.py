@@ -36,7 +36,7 @@ class FluxMapGrid:
     largest_packing: copper over the area of a coil side that a winding may fill, k_cp (1 + tolerance)
     overload_density: amplitude of the overload current density in the copper [A/m^2]
     angles: over 60 electrical degrees; currents: along i_d and along i_q >= 0
-    margin: reach of the map over the largest ampere-turns
+    margin: reach of the map relative to the largest ampere-turns
     """
 
     largest_packing: float
@@ -58,7 +58,7 @@ class FluxMap:
         angles evenly over 60 electrical degrees, negative i_q by symmetry; see ``magnetostatics.flux_map``
     pole_pairs; coils_in_series: of one phase; coil_pitch [slots]; coil_side_area: A_s [m^2]
     overload_ampere_turns: peak of one coil at which the error of the mesh is bounded [A]
-    torque_error: that bound over the torque there; in the first rotor position, at the best current angle
+    torque_error: that bound relative to the torque there; in the first rotor position, at the best current angle
     """
 
     data: xr.Dataset
@@ -122,7 +122,7 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
 
 
 def solve_angle_task(task: AngleTask) -> dict[str, list[list[float]]]:
-    """What ``magnetostatics.flux_map.solve_angle`` reads at one rotor angle."""
+    """psi_d, psi_q [Wb/m], torque [Nm/m] and iterations by name, (i_d, i_q), at one rotor angle."""
     return solve_angle(kept_model(task.case, task.machine), task.angle, task.grid)
 
 

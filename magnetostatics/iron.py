@@ -30,7 +30,7 @@ class Iron:
         self._laws = [(slice(None), laws[0])] if one_law else list(zip(parts, laws, strict=True))
 
     def at(self, local: np.ndarray) -> IronState:
-        """The iron in the field of local values (F, E)."""
+        """The iron in the field of local values [Wb/m], (F, E)."""
         elements = self.elements
         m11, m12, m22 = elements.metric
         g1, g2 = elements.slopes(local)
@@ -47,7 +47,7 @@ class Iron:
 
 @dataclass(frozen=True, eq=False)
 class IronState:
-    """Slopes times metric h1, h2, reluctivity nu [m/H] and dnu/d(b2) at the points of the iron, each (Q, E)."""
+    """Slopes times metric h1, h2 [Wb/m], reluctivity nu [m/H] and its slope dnu/d(b2) [m/(H T^2)], each (Q, E)."""
 
     elements: Elements
     h1: np.ndarray
@@ -57,12 +57,12 @@ class IronState:
 
     @property
     def forces(self) -> np.ndarray:
-        """Local vectors integral nu grad A . grad v (F, E)."""
+        """Local vectors integral nu grad A . grad v [A], (F, E)."""
         return self.elements.order.weighted_slopes @ np.concatenate([self.nu * self.h1, self.nu * self.h2])
 
     @property
     def tangent(self) -> np.ndarray:
-        """Local matrices integral nu grad u . grad v + 2 nu' (grad A . grad u)(grad A . grad v) (K, E)."""
+        """Local matrices integral nu grad u . grad v + 2 nu' (grad A . grad u)(grad A . grad v) [m/H], (K, E)."""
         m11, m12, m22 = self.elements.metric
         s1 = self.slope * self.h1 * (2 / np.abs(self.elements.determinant))
         s2 = self.slope * self.h2 * (2 / np.abs(self.elements.determinant))

@@ -29,14 +29,13 @@ def torque_with_error(model: FieldModel, point: OperatingState) -> tuple[float, 
     return arkkio_torque(solution), torque_error(solution, refined_solution(solution))
 
 
-def torque_errors(model: FieldModel, points: Sequence[OperatingState]) -> list[float]:
-    """The bound of ``torque_with_error`` [Nm/m] for several states; those at one rotor angle share much of the work."""
-    finer, errors = refined_model(model), []
-    coarse = fine = None
-    for point in points:
-        coarse, fine = model.solve(point, start=coarse), finer.solve(point, start=fine)
-        errors.append(torque_error(coarse, fine))
-    return errors
+def torque_errors(solutions: Sequence[FieldSolution]) -> list[float]:
+    """The bound of ``torque_with_error`` [Nm/m] of several solutions of one model; those at one angle share work."""
+    finer = refined_model(solutions[0].model)
+    fine: list[FieldSolution] = []
+    for solution in solutions:
+        fine.append(finer.solve(solution.point, start=fine[-1] if fine else None))
+    return [torque_error(*both) for both in zip(solutions, fine, strict=True)]
 
 
 def flux_linkage_with_error(model: FieldModel, point: OperatingState) -> tuple[np.ndarray, float]:

@@ -82,16 +82,22 @@ class OperatingPoint:
     packing_factor: float = 0.3
 
     def phase_densities(self, pole_pairs: int, phase_axis: float) -> np.ndarray:
-        """Current density in the copper of A, B, C [A/m^2]: J cos(p theta + 90 deg - axis_A + gamma - i 120 deg)."""
+        """Current density in the copper of A, B, C [A/m^2], (3,).
+
+        J cos(p theta + 90 deg - axis_A + gamma - i 120 deg)
+
+        phase_axis: electrical angle of the axis of phase A [rad]
+        """
         lead = pole_pairs * self.angle + pi / 2 - phase_axis + self.current_angle
         return self.current_density * np.cos(lead - 2 * pi / 3 * np.arange(3))
 
     def ampere_turns(self, section: CrossSection) -> np.ndarray:
-        """Of one coil of phases A, B, C [A]."""
+        """Of one coil of phases A, B, C [A], (3,)."""
         densities = self.phase_densities(section.machine.pole_pairs, section.layout.phase_axis)
         return densities * self.packing_factor * section.half_slot_area * section.half_slots_per_coil_side
 
     def current_load(self, model: FieldModel) -> np.ndarray:
+        """Right-hand side [A], (n,)."""
         return self.ampere_turns(model.section) @ model.phase_loads
 
 
@@ -99,6 +105,7 @@ class OperatingPoint:
 class FieldSolution:
     """Vector potential a (n,) [Wb/m] of one operating point and how it was found.
 
+    cpu_seconds: time that the solution took [s]
     coarse: the solution with linear elements that one with quadratic elements started from
     """
 
@@ -151,7 +158,7 @@ class FieldModel:
 
     @property
     def rotor_band(self) -> np.ndarray:
-        """Elements of the gap on the rotor side of the sliding circle."""
+        """Indices of the elements of the gap on the rotor side of the sliding circle (k,)."""
         return self.topology.rotor_band
 
     def like(self, section: CrossSection | None = None, materials: MachineMaterials | None = None) -> FieldModel:
@@ -178,7 +185,9 @@ class FieldModel:
 
     @cached_property
     def phase_loads(self) -> np.ndarray:
-        """Load of 1 A in one turn of every coil of phases A, B, C (3, n); as a product with a it is flux linkage.
+        """Load per ampere in one turn of every coil of phases A, B, C (3, n), dimensionless.
+
+        As a product with a it is flux linkage.
 
         1 A is spread evenly over each coil side, so that the product with a is its mean. A coil whose turns are not as
         designed counts with its relative turns.
@@ -189,7 +198,8 @@ class FieldModel:
 
     @cached_property
     def coil_loads(self) -> np.ndarray:
-        """Load of 1 A in one turn of every single coil (coils, n), in +z where it goes; what of it is in the sector."""
+        """Load per ampere in one turn of every single coil (coils, n), dimensionless, in +z where it goes; what of it
+        is in the sector."""
         sides, coils = self._coils_of_sides, self.section.layout.coils
         rows = {coil.index: row for row, coil in enumerate(coils)}
         return self._spread([rows[coil.index] for coil, _ in sides], np.array([way for _, way in sides]), len(coils))

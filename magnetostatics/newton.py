@@ -32,7 +32,7 @@ class NewtonSettings:
 
 @dataclass(frozen=True)
 class NewtonRecord:
-    """Relative residual after every iteration and the step length it took."""
+    """residuals: relative, after every iteration; steps: fraction of the Newton step that it took."""
 
     residuals: tuple[float, ...]
     steps: tuple[float, ...]
@@ -50,11 +50,11 @@ def newton(
     settings: NewtonSettings = NewtonSettings(),
     again: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> tuple[np.ndarray, NewtonRecord]:
-    """Solve residual(u) = 0.
+    """Potential u [Wb/m], (n,), with residual(u) = 0, and the record of how it was found.
 
-    start: first guess (n,);  scale: size of the load that the residual is compared with
-    residual(u) -> (n,);  direction(u, residual) -> Newton step (n,)
-    again(residual) -> step (n,) with the tangent of the last Newton step, where that is much cheaper than a new one
+    start: first guess [Wb/m], (n,);  scale: size of the load that the residual is compared with [A]
+    residual(u) -> [A], (n,);  direction(u, residual) -> Newton step [Wb/m], (n,)
+    again(residual) -> step [Wb/m], (n,), with the tangent of the last Newton step, where that is much cheaper
     The first step is taken whole whatever the residual does (from zero field it always grows in saturated iron); later
     ones are halved until the residual falls. Where ``again`` is given, one such step follows at the end, if the
     residual falls by it: it costs a tenth and takes most of the error left. The record is that of the Newton steps.

@@ -69,6 +69,7 @@ def mean_torque(
     """Torque alone at one current, mean over 60 electrical degrees [Nm/m]; a third of the solutions of
     ``per_turn_values``.
 
+    amplitude: of the current density in the copper [A/m^2]
     current_angle: from the q axis, positive weakens the field [rad]; the other arguments as there
     """
     span = pi / 3 / model.section.machine.pole_pairs

@@ -38,6 +38,7 @@ def period_points(
 ) -> list[OperatingPoint]:
     """The q-axis current at ``steps`` rotor positions from the null position on, evenly over 60 electrical degrees.
 
+    amplitude: of the current density in the copper [A/m^2]
     After these a balanced winding sees the same field in other teeth, so they stand for the whole period.
     """
     first, span = null_angle(machine, layout), pi / 3 / machine.pole_pairs

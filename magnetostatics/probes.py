@@ -19,7 +19,9 @@ _NEAREST = 12  # elements tried around a point, by distance of their centres
 class ProbeReader:
     """Gradient arrays of all probe points of a model, so that reading a solution is one product.
 
-    dofs (F, n), gradients dx, dy (F, n), weights (n,), probe number (n,), names per probe
+    dofs: indices (F, n); gradient_x, gradient_y: of the functions [1/m], (F, n)
+    weights: share of a point in the mean of its probe (n,); number: index of the probe (n,); names: of the probes
+    elements: indices of those that hold the points (n,)
     """
 
     dofs: np.ndarray
@@ -29,7 +31,7 @@ class ProbeReader:
     number: np.ndarray
     names: tuple[str, ...]
     elements: np.ndarray
-    shares: np.ndarray  # barycentric coordinates (3, n) of the points in their elements
+    shares: np.ndarray  # barycentric coordinates of the points in their elements, dimensionless, (3, n)
 
     def moved(self, model: FieldModel) -> ProbeReader:
         """The same points of the same elements in a model with moved nodes."""

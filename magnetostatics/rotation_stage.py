@@ -35,7 +35,7 @@ class NullFields:
     """Fields of the meshed sector of a machine in the null position.
 
     points: the operating points of ``STATES``; rest: what is left of the rotor's angle between two nodes of the sliding
-    circle [rad]; residuals: of Newton's method, of each state
+    circle [rad]; residuals: relative, of Newton's method, of each state
     data: ``node`` (2, n) [m], ``triangle`` (3, E), ``region`` (E,) as an index into region_names, ``a`` (state, dof) of
         the quadratic elements [Wb/m]
     """
@@ -123,7 +123,7 @@ class RotationArc:
 
 @dataclass(frozen=True, eq=False)
 class SolvedArc:
-    """Torques (angles, 3) [Nm/m] as ``_TORQUES`` and flux densities (angles, probes) [T] of an arc."""
+    """torques (angles, 3) [Nm/m] as ``_TORQUES`` and flux_densities (angles, probes) [T] of an arc."""
 
     torques: np.ndarray
     flux_densities: np.ndarray
@@ -140,7 +140,11 @@ class NullStates:
 
 @dataclass(frozen=True, eq=False)
 class SolvedNullStates:
-    """What ``Rotation`` and ``NullFields`` take over: the mesh error, and the fields as plain arrays."""
+    """What ``Rotation`` and ``NullFields`` take over: the mesh error, and the fields as plain arrays.
+
+    torque_error: [Nm/m]; rest: of the rotor's angle [rad]; residuals: relative, of each state
+    nodes (2, n) [m]; triangles: node indices (3, E); region: index of a name (E,); potentials: [Wb/m], (state, dof)
+    """
 
     torque_error: float
     sectors: int
@@ -210,7 +214,7 @@ def solve_null_states(wanted: NullStates) -> SolvedNullStates:
     for number, elements in enumerate(model.section.mesh.subdomains.values()):
         region[elements] = number
     return SolvedNullStates(
-        torque_error=torque_errors(case.model(machine), [points[STATES.index("nominal")]])[0],
+        torque_error=torque_errors([case.model(machine).solve(points[STATES.index("nominal")])])[0],
         sectors=model.section.sectors,
         antiperiodic=model.section.antiperiodic,
         rest=float(model.unknowns.turn(points[0].angle).rest),

@@ -22,7 +22,10 @@ Reader = Callable[[FieldSolution], np.ndarray]
 
 
 class Variation(Protocol):
-    """A parameter: ``step`` is a small length in its own unit, ``at(model, point, change)`` the changed problem."""
+    """A parameter and the problem with it changed, ``at(model, point, change)``.
+
+    step, change: small and any [unit of the parameter]
+    """
 
     step: float
 
@@ -30,7 +33,7 @@ class Variation(Protocol):
 
 
 def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
-    """Derivative of ``read(solution)`` (k,) with respect to each parameter, in the unit of the result per its own unit.
+    """Derivative of ``read(solution)`` (k,) with respect to each parameter [unit of the result per its own].
 
     variations: parameters by name; their models must share the triangles of the solution (``FieldModel.like``)
     read: results of a solution as a vector, for example torque and flux densities

@@ -27,12 +27,12 @@ FOR_CONTINUOUS = 5  # Gauss points over a continuous skew; 1e-7 for harmonics th
 
 
 def stepped_skew(skew: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
-    """Angles [rad] and weights of ``steps`` equal slices of a skew [rad] from end to end."""
+    """Angles [rad] and weights (sum 1), each (steps,), of equal slices of a skew [rad] from end to end."""
     return skew * ((np.arange(steps) + 0.5) / steps - 0.5), np.full(steps, 1 / steps)
 
 
 def continuous_skew(skew: float, points: int = FOR_CONTINUOUS) -> tuple[np.ndarray, np.ndarray]:
-    """Angles [rad] and weights of the Gauss slices that stand for a continuous skew [rad] from end to end."""
+    """Angles [rad] and weights (sum 1), each (points,), of Gauss slices for a continuous skew [rad] from end to end."""
     nodes, weights = np.polynomial.legendre.leggauss(points)
     return skew / 2 * nodes, weights / 2
 
@@ -45,7 +45,8 @@ def skewed(
 ) -> Values:
     """Mean of ``read(solution)`` over the slices, all of them with the currents that ``point`` has in the middle.
 
-    slices: of ``stepped_skew`` or ``continuous_skew``
+    read: value [any unit], that of the result; skewed: [the same], of its shape
+    slices: angles [rad] and weights, (slices,) each, of ``stepped_skew`` or ``continuous_skew``
     """
     total: Values = 0.0
     held, solution = with_held_currents(point, model), None
@@ -66,9 +67,10 @@ def with_held_currents(
 
 
 def skewed_waveform(values: np.ndarray, period: float, slices: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """A waveform over the rotor angle after skewing, by its harmonics.
+    """A waveform over the rotor angle after skewing, by its harmonics, in its unit and shape.
 
-    values: (..., n) at equal steps over one whole period [rad mechanical], currents zero or held
+    skewed_waveform, values: [any unit], (..., n), at equal steps over one whole period, currents zero or held
+    period: [rad mechanical]; slices: angles [rad] and weights, (slices,) each
     """
     count = values.shape[-1]
     orders = 2 * np.pi / period * np.arange(count // 2 + 1)

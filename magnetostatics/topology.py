@@ -35,7 +35,7 @@ class Topology:
 
     @cached_property
     def linear(self) -> np.ndarray:
-        """Elements of constant reluctivity outside the rotor side of the gap."""
+        """Indices (k,) of the elements of constant reluctivity outside the rotor side of the gap."""
         is_linear = np.ones(self.dofs.shape[1], dtype=bool)
         for name in IRON:
             is_linear[self.regions[name]] = False
@@ -44,12 +44,12 @@ class Topology:
 
     @cached_property
     def iron(self) -> np.ndarray:
-        """Elements of the iron: stator, then rotor."""
+        """Indices (E,) of the elements of the iron: stator, then rotor."""
         return np.concatenate([self.regions[name] for name in IRON])
 
     @cached_property
     def iron_unknowns(self) -> tuple[np.ndarray, np.ndarray]:
-        """Free unknown and sign of every degree of freedom of the iron, each (F, E); the same at every angle."""
+        """Index of the free unknown and sign of every degree of freedom of the iron, each (F, E); of any angle."""
         dofs = self.dofs[:, self.iron]
         return self.unknowns.column[dofs], self.unknowns.sign[dofs]
 

@@ -31,14 +31,15 @@ class Turn:
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """column (n,) and sign (n,) of every degree of freedom with the rotor at angle zero; sign 0 means a = 0."""
+    """column (n,), an index of the unknowns, and sign (n,), dimensionless, of every degree of freedom with the rotor at
+    angle zero; sign 0 means a = 0."""
 
     column: np.ndarray
     sign: np.ndarray
     count: int
-    free_dofs: np.ndarray  # degree of freedom of every free unknown
-    stator_slide: np.ndarray  # in the order of angle, without the end of the sector
-    rotor_slide: np.ndarray  # in the order of angle, with the end of the sector
+    free_dofs: np.ndarray  # index of the degree of freedom of every free unknown, (count,)
+    stator_slide: np.ndarray  # indices (k,) in the order of angle, without the end of the sector
+    rotor_slide: np.ndarray  # indices (k + 1,) in the order of angle, with the end of the sector; (k,) for a whole one
     edge_angle: float  # of one edge of the sliding circle [rad]
     offset: float  # rotor start angle minus stator start angle at rotor angle zero [rad]
     sector_sign: int
@@ -51,7 +52,7 @@ class Unknowns:
         return Turn(edges, rest if abs(rest) > 1e-9 * self.edge_angle else 0.0)
 
     def turned(self, edges: int) -> tuple[np.ndarray, np.ndarray]:
-        """(column, sign) of every degree of freedom with the rotor turned by whole edges."""
+        """(column, sign), index and dimensionless, (n,) each, with the rotor turned by whole edges."""
         position = self.steps_per_edge * edges + np.arange(len(self.rotor_slide))
         sectors_passed, index = np.divmod(position, len(self.stator_slide))
         column, sign = self.column.copy(), self.sign.copy()

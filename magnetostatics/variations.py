@@ -17,7 +17,7 @@ from materials.reluctivity import Reluctivity
 
 @dataclass(frozen=True)
 class Remanence:
-    """Remanence of all magnets [T]."""
+    """Remanence of all magnets; step, change: [T]."""
 
     step: float = 1e-4
 
@@ -28,7 +28,7 @@ class Remanence:
 
 @dataclass(frozen=True)
 class RecoilPermeability:
-    """Relative recoil permeability of all magnets; the remanence stays."""
+    """Recoil permeability of all magnets; the remanence stays; step, change: dimensionless."""
 
     step: float = 1e-4
 
@@ -43,7 +43,7 @@ class RecoilPermeability:
 class OneMagnet:
     """A property of one magnet of a whole machine, by the name of its field in ``Magnet``.
 
-    name: ``remanence`` [T], ``recoil_permeability`` or ``axis_error`` [rad]
+    name: ``remanence`` [T], ``recoil_permeability`` or ``axis_error`` [rad]; step, change: [as the property]
     """
 
     number: int
@@ -58,7 +58,7 @@ class OneMagnet:
 
 @dataclass(frozen=True)
 class CurrentDensity:
-    """Amplitude of the current density [A/m^2]."""
+    """Amplitude of the current density; step, change: [A/m^2]."""
 
     step: float = 1e3
 
@@ -68,7 +68,7 @@ class CurrentDensity:
 
 @dataclass(frozen=True)
 class CurrentAngle:
-    """Current angle gamma [rad]."""
+    """Current angle gamma; step, change: [rad]."""
 
     step: float = 1e-4
 
@@ -78,7 +78,7 @@ class CurrentAngle:
 
 @dataclass(frozen=True)
 class SteelStrength:
-    """Scale of H in both steels: 0.01 means one per cent more field for the same flux density."""
+    """Scale of H in both steels; step, change: relative, 0.01 is 1 % more field for the same flux density."""
 
     step: float = 1e-4
 
@@ -88,7 +88,7 @@ class SteelStrength:
 
 @dataclass(frozen=True)
 class SaturationPolarisation:
-    """Scale of the saturation polarisation of both steels: 0.01 means one per cent more."""
+    """Scale of the saturation polarisation of both steels; step, change: relative, 0.01 is 1 % more."""
 
     step: float = 1e-4
 
@@ -98,7 +98,10 @@ class SaturationPolarisation:
 
 @dataclass(frozen=True)
 class StackingFactor:
-    """Share of the steel in both stacks, from a solid one on: -0.03 is a stacking factor of 0.97 times the present."""
+    """Share of the steel in both stacks, from a solid one on.
+
+    step, change: relative, -0.03 is a stacking factor of 0.97 times the present
+    """
 
     step: float = 1e-4
 
@@ -116,7 +119,8 @@ def _with_steels(model: FieldModel, change: Callable[[Reluctivity], Reluctivity]
 class Materials:
     """Anything that changes the materials.
 
-    change: (materials of the solution, amount) -> materials, for example
+    step: [unit of the amount]
+    change: (materials of the solution, amount [any unit]) -> materials, for example
         ``lambda m, d: replace(m, stator_steel=CutEdge(steel, 0.5e-3, 0.3 + d))``
     """
 
@@ -132,12 +136,12 @@ class Dimension:
     """Anything that changes the drawn machine: the nodes of the mesh follow.
 
     morpher: of the cross-section that the solution was made on, or was moved from
-    machine: change -> machine, for example ``lambda d: replace(base, airgap=base.airgap + d)``
+    machine: change [m, or its unit] -> machine, for example ``lambda d: replace(base, airgap=base.airgap + d)``
     """
 
     morpher: Morpher
     machine: Callable[[float], Machine]
-    step: float = 1e-6  # m
+    step: float = 1e-6  # [m]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(self.morpher.to(self.machine(change))), point
@@ -147,12 +151,12 @@ class Dimension:
 class Shape:
     """Anything that moves nodes, defects of one machine among them.
 
-    section: change -> cross-section on the same triangles, for example
+    section: change [m or rad] -> cross-section on the same triangles, for example
         ``lambda d: morpher.to(machine, [StaticEccentricity(0.1e-3 + d, 0.3)])``
     """
 
     section: Callable[[float], CrossSection]
-    step: float = 1e-6  # m or rad
+    step: float = 1e-6  # [m or rad]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(self.section(change)), point
@@ -160,7 +164,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class PhaseCurrent:
-    """Current of one phase of ``PhaseCurrents`` [A]."""
+    """Current of one phase of ``PhaseCurrents``; step, change: [A]."""
 
     phase: int  # 0 A, 1 B, 2 C
     step: float = 1e-2
@@ -172,7 +176,7 @@ class PhaseCurrent:
 
 @dataclass(frozen=True)
 class CoilTurns:
-    """Turns of one coil, relative to those of the design; a whole machine."""
+    """Turns of one coil of a whole machine; step, change: relative to those of the design."""
 
     coil: int  # its index in the winding
     step: float = 1e-4

@@ -43,31 +43,34 @@ _SMALLEST_STEP = 1.0 / 1024
 
 @LinearForm
 def field_forces(v: DiscreteField, w: FormExtraParams) -> np.ndarray:
-    """integral nu grad A . grad v."""
+    """Integrand [A/m^2], (E, Q), of integral nu grad A . grad v."""
     return w.nu * dot(grad(w.a), grad(v))
 
 
 @BilinearForm
 def tangent(u: DiscreteField, v: DiscreteField, w: FormExtraParams) -> np.ndarray:
-    """integral nu grad u . grad v + 2 nu' (grad A . grad u) (grad A . grad v)."""
+    """Integrand [1/(H m)], (E, Q), of integral nu grad u . grad v + 2 nu' (grad A . grad u) (grad A . grad v)."""
     return w.nu * dot(grad(u), grad(v)) + 2 * w.slope * dot(grad(w.a), grad(u)) * dot(grad(w.a), grad(v))
 
 
 @LinearForm
 def current(v: DiscreteField, w: FormExtraParams) -> np.ndarray:
-    """integral J v."""
+    """Integrand [A/m^2], (E, Q), of integral J v."""
     return w.density * v
 
 
 @LinearForm
 def magnets(v: DiscreteField, w: FormExtraParams) -> np.ndarray:
-    """integral nu_m (B_rx dv/dy - B_ry dv/dx)."""
+    """Integrand [A/m^2], (E, Q), of integral nu_m (B_rx dv/dy - B_ry dv/dx)."""
     return w.coercive_field[0] * grad(v)[1] - w.coercive_field[1] * grad(v)[0]
 
 
 @Functional
 def ring_torque(w: FormExtraParams) -> np.ndarray:
-    """integral of the Maxwell stress times grad h about the axis, h from 0 to 1 over the stator half of the gap."""
+    """integral of the Maxwell stress times grad h about the axis, h from 0 to 1 over the stator half of the gap.
+
+    ring_torque: the integrand [N/m^2], (E, Q)
+    """
     (x, y), b = w.x, np.stack([grad(w.a)[1], -grad(w.a)[0]])
     force = (b * dot(b, w.upwards) - dot(b, b) / 2 * w.upwards) / MU_0
     return x * force[1] - y * force[0]

@@ -20,25 +20,30 @@ LARGEST_FILL = 1.001  # a hair above the physical bound of 1, so that a derivati
 
 @dataclass(frozen=True)
 class ScaledReluctivity(Reluctivity):
-    """Another law with H multiplied by a factor at every flux density."""
+    """Another law with H multiplied by a factor (dimensionless) at every flux density."""
 
     law: Reluctivity
     factor: float
 
     def nu(self, b2: Values) -> np.ndarray:
+        """Reluctivity [m/H] at b2 [T^2], of its shape."""
         return self.factor * self.law.nu(b2)
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
+        """Reluctivity [m/H] and its derivative [m/(H T^2)] at b2 [T^2], both of its shape."""
         nu, slope = self.law.nu_and_derivative(b2)
         return self.factor * nu, self.factor * slope
 
     def field_strength(self, b: Values) -> np.ndarray:
+        """H [A/m] at b [T], of its shape."""
         return self.factor * self.law.field_strength(b)
 
     def flux_density(self, h: Values) -> np.ndarray:
+        """B [T] at h [A/m], of its shape."""
         return self.law.flux_density(h / self.factor)
 
     def energy_density(self, b: Values) -> np.ndarray:
+        """w(B) [J/m^3] at b [T], of its shape."""
         return self.factor * self.law.energy_density(b)
 
 
@@ -50,25 +55,30 @@ class ScaledSaturation(Reluctivity):
     """
 
     law: Reluctivity
-    factor: float  # s
+    factor: float  # s, dimensionless
 
     def __post_init__(self) -> None:
         _check_positive("scale of the saturation polarisation", self.factor)
 
     def nu(self, b2: Values) -> np.ndarray:
+        """Reluctivity [m/H] at b2 [T^2], of its shape."""
         return self.law.nu(b2 / self.factor**2)
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
+        """Reluctivity [m/H] and its derivative [m/(H T^2)] at b2 [T^2], both of its shape."""
         nu, slope = self.law.nu_and_derivative(b2 / self.factor**2)
         return nu, slope / self.factor**2
 
     def field_strength(self, b: Values) -> np.ndarray:
+        """H [A/m] at b [T], of its shape."""
         return self.factor * self.law.field_strength(np.asarray(b, dtype=float) / self.factor)
 
     def flux_density(self, h: Values) -> np.ndarray:
+        """B [T] at h [A/m], of its shape."""
         return self.factor * self.law.flux_density(np.asarray(h, dtype=float) / self.factor)
 
     def energy_density(self, b: Values) -> np.ndarray:
+        """w(B) [J/m^3] at b [T], of its shape."""
         return self.factor**2 * self.law.energy_density(np.asarray(b, dtype=float) / self.factor)
 
 
@@ -82,7 +92,7 @@ class MixedReluctivity(Reluctivity):
     dnu/d(B^2) = k a nu_s' / (D^2 (D^2 + 2 c mu_0 b^2 D nu_s')),  w(B) = k (a w_s(b) + c mu_0 H_s^2/2).
     b follows from B by Newton's method to rounding. Build it with ``stacked`` or ``hardened``.
 
-    steel, air, ratio: a > 0, c, k > 0; numbers, or arrays that match the flux densities
+    steel, air, ratio: a > 0, c, k > 0, dimensionless, scalar or arrays that match the flux densities
     """
 
     law: Reluctivity
@@ -91,22 +101,27 @@ class MixedReluctivity(Reluctivity):
     ratio: float | np.ndarray
 
     def nu(self, b2: Values) -> np.ndarray:
+        """Reluctivity [m/H] at b2 [T^2], of its shape."""
         return self.nu_and_derivative(b2)[0]
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
+        """Reluctivity [m/H] and its derivative [m/(H T^2)] at b2 [T^2], both of its shape."""
         b = self._in_steel(np.sqrt(np.asarray(b2, dtype=float)))
         nu, slope = self.law.nu_and_derivative(b * b)
         d, a, c, k = self.steel + self.air * MU_0 * nu, self.steel, self.air, self.ratio
         return k * nu / d, k * a * slope / (d**2 * (d**2 + 2 * c * MU_0 * b * b * d * slope))
 
     def field_strength(self, b: Values) -> np.ndarray:
+        """H [A/m] at b [T], of its shape."""
         return self.ratio * self.law.field_strength(self._in_steel(b))
 
     def flux_density(self, h: Values) -> np.ndarray:
+        """B [T] at h [A/m], of its shape."""
         inside = np.asarray(h, dtype=float) / self.ratio
         return self.steel * self.law.flux_density(inside) + self.air * MU_0 * inside
 
     def energy_density(self, b: Values) -> np.ndarray:
+        """w(B) [J/m^3] at b [T], of its shape."""
         b = self._in_steel(b)
         air = MU_0 / 2 * self.law.field_strength(b) ** 2
         return self.ratio * (self.steel * self.law.energy_density(b) + self.air * air)
@@ -140,7 +155,7 @@ def hardened(law: Reluctivity, hardness: float | np.ndarray) -> Reluctivity:
     """Steel that needs k times the field for the same polarisation, J(H) = J_s(H/k), and saturates at the same one.
 
     B = J_s(H/k) + mu_0 H: what strain by cutting or pressing does; the saturation polarisation belongs to the alloy.
-    hardness: k, a number or an array that matches the flux densities; 1 changes nothing
+    hardness: k, dimensionless, scalar or of a shape that matches the flux densities; 1 changes nothing
     """
     if not np.all(np.asarray(hardness) > 0):
         raise MaterialError(f"a hardness is positive, found {np.min(hardness):g}")

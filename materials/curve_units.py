@@ -22,7 +22,7 @@ _FLUX_UNITS = {"mT": FACTORS["mT"], "gauss": FACTORS["G"], "kilogauss": FACTORS[
 def wrong_unit(fields: Sequence[float], fluxes: Sequence[float]) -> str | None:
     """What is said about a curve whose column looks wrong, None where both look right.
 
-    fields: H as stated, in A/m by its column; fluxes: B as stated, in T by its column; both rising, from zero
+    fields: H as stated, [A/m] by its column; fluxes: B as stated, [T] by its column; both (n,), rising, from zero
     """
     points = [(h, b) for h, b in zip(fields, fluxes) if h > 0 and b > 0]
     if not points:

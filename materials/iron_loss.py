@@ -38,8 +38,8 @@ _SCALES = (1e-2, 1e-5, 1e-4, 1.0, 1.0)  # size of the five numbers of a fit
 class IronLossLaw:
     """Loss law of one grade.
 
-    hysteresis: k_h [W/kg s T^-alpha], exponent: alpha; eddy: k_c [W/kg s^2/T^2], saturation: k_s [1/T^2];
-    excess: k_e [W/kg s^1.5/T^1.5]; density: [kg/m^3]
+    hysteresis: k_h [W/kg s T^-alpha], exponent: alpha, dimensionless; eddy: k_c [W/kg s^2/T^2]
+    saturation: k_s [1/T^2]; excess: k_e [W/kg s^1.5/T^1.5]; density: [kg/m^3]
     grade, source: where the numbers come from
     frequencies, peaks: range of the data they were fitted to [Hz], [T]
     rms_error, largest_error: relative, of the law against the data from 0.2 T up
@@ -94,7 +94,8 @@ def fit_iron_loss(
 ) -> IronLossLaw:
     """Fit the law to measured losses in relative error, each point weighted by its rounding.
 
-    frequency [Hz], peak [T], loss [W/kg]: arrays (n,); resolution: last digit of the losses [W/kg], scalar or (n,)
+    frequency [Hz], peak [T], loss [W/kg]: arrays (n,); density: [kg/m^3]
+    resolution: last digit of the losses [W/kg], scalar or (n,)
     Raises MaterialError for fewer points than coefficients or values that are not positive.
     """
     f, b, p = (np.asarray(x, dtype=float) for x in (frequency, peak, loss))

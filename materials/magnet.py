@@ -24,7 +24,7 @@ class Magnet:
     """
 
     remanence: float  # B_r at the reference temperature [T]
-    recoil_permeability: float = 1.05  # mu_r; 1.05 for NdFeB, the thesis's field model takes 1.0
+    recoil_permeability: float = 1.05  # mu_r, dimensionless; 1.05 for NdFeB, the thesis's field model takes 1.0
     temperature_coefficient: float = NDFEB_REMANENCE_COEFFICIENT  # alpha [1/K]
     reference_temperature: float = ROOM_TEMPERATURE  # T_ref [degC]
     axis_error: float = 0.0  # of the direction of magnetisation, counter-clockwise from the drawn one [rad]

@@ -36,27 +36,27 @@ class Reluctivity:
     """An isotropic anhysteretic law H(B). Arrays of any shape go in, arrays of the same shape come out."""
 
     def nu(self, b2: Values) -> np.ndarray:
-        """Reluctivity H/B [m/H] at the squared flux density b2 = |B|^2 [T^2], b2 >= 0."""
+        """Reluctivity H/B [m/H] at the squared flux density b2 = |B|^2 [T^2], b2 >= 0, of its shape."""
         return self.nu_and_derivative(b2)[0]
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
-        """Reluctivity H/B [m/H] and its derivative with respect to b2 = |B|^2 [m/(H T^2)]."""
+        """Reluctivity H/B [m/H] and its derivative [m/(H T^2)] at b2 = |B|^2 [T^2], both of its shape."""
         raise NotImplementedError
 
     def field_strength(self, b: Values) -> np.ndarray:
-        """H [A/m] at the flux density b [T]; odd in b."""
+        """H [A/m] at the flux density b [T], of its shape; odd in b."""
         raise NotImplementedError
 
     def flux_density(self, h: Values) -> np.ndarray:
-        """B [T] at the field strength h [A/m]; the inverse of ``field_strength``, odd in h."""
+        """B [T] at the field strength h [A/m], of its shape; the inverse of ``field_strength``, odd in h."""
         raise NotImplementedError
 
     def energy_density(self, b: Values) -> np.ndarray:
-        """w(B) = integral of H dB from 0 to B [J/m^3]; even in b."""
+        """w(B) = integral of H dB from 0 to B [J/m^3] at b [T], of its shape; even in b."""
         raise NotImplementedError
 
     def coenergy_density(self, b: Values) -> np.ndarray:
-        """w'(B) = integral of B dH from 0 to H(B) = H B - w [J/m^3]; the argument is the flux density b [T]."""
+        """w'(B) = integral of B dH from 0 to H(B) = H B - w [J/m^3] at the flux density b [T], of its shape."""
         return self.field_strength(b) * np.asarray(b, dtype=float) - self.energy_density(b)
 
 
@@ -64,7 +64,7 @@ class Reluctivity:
 class LinearReluctivity(Reluctivity):
     """B = mu_0 mu_r H: air, copper, an unmagnetised magnet, or steel in a linear comparison."""
 
-    relative_permeability: float  # mu_r
+    relative_permeability: float  # mu_r, dimensionless
 
     def __post_init__(self) -> None:
         if not (isfinite(self.relative_permeability) and self.relative_permeability > 0):
@@ -76,16 +76,20 @@ class LinearReluctivity(Reluctivity):
         return NU_0 / self.relative_permeability
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
+        """Reluctivity [m/H] and its derivative [m/(H T^2)] at b2 [T^2], both of its shape."""
         b2 = np.asarray(b2, dtype=float)
         return np.full_like(b2, self.reluctivity), np.zeros_like(b2)
 
     def field_strength(self, b: Values) -> np.ndarray:
+        """H [A/m] at b [T], of its shape."""
         return self.reluctivity * np.asarray(b, dtype=float)
 
     def flux_density(self, h: Values) -> np.ndarray:
+        """B [T] at h [A/m], of its shape."""
         return np.asarray(h, dtype=float) / self.reluctivity
 
     def energy_density(self, b: Values) -> np.ndarray:
+        """w(B) [J/m^3] at b [T], of its shape."""
         return 0.5 * self.reluctivity * np.asarray(b, dtype=float) ** 2
 
 
@@ -97,20 +101,20 @@ class PiecewiseCubic:
     inside the bin: some four times faster than a binary search for the many unsorted points of a mesh.
     """
 
-    starts: np.ndarray  # B_k [T], one per interval, as all arrays below
-    ends: np.ndarray  # B_(k+1) [T]; infinite for the last, which so takes every larger flux density
-    a0: np.ndarray  # A/m
-    a1: np.ndarray
-    a2: np.ndarray
-    a3: np.ndarray
-    energies: np.ndarray  # integral of H dB up to B_k [J/m^3]
-    bins_per_tesla: float
-    interval_of_bin: np.ndarray  # interval that holds the lower edge of a bin
+    starts: np.ndarray  # B_k [T], (n - 1,): one per interval
+    ends: np.ndarray  # B_(k+1) [T], (n - 1,); infinite for the last, which so takes every larger flux density
+    a0: np.ndarray  # [A/m], (n - 1,)
+    a1: np.ndarray  # [m/H], (n - 1,)
+    a2: np.ndarray  # [m/(H T)], (n - 1,)
+    a3: np.ndarray  # [m/(H T^2)], (n - 1,)
+    energies: np.ndarray  # integral of H dB up to B_k [J/m^3], (n - 1,)
+    bins_per_tesla: float  # [1/T]
+    interval_of_bin: np.ndarray  # index of the interval that holds the lower edge of a bin, (bins,)
     points_per_bin: int  # at most
 
     @classmethod
     def hermite(cls, B: np.ndarray, H: np.ndarray, slopes: np.ndarray) -> PiecewiseCubic:
-        """Cubic Hermite interpolant through (B, H) with the given slopes dH/dB [m/H] at the points."""
+        """Cubic Hermite interpolant through points B [T], H [A/m] with slopes dH/dB [m/H] there, all (n,)."""
         h = np.diff(B)
         secants = np.diff(H) / h
         a2 = (3 * secants - 2 * slopes[:-1] - slopes[1:]) / h
@@ -121,25 +125,25 @@ class PiecewiseCubic:
         return cls(B[:-1], ends, H[:-1], slopes[:-1], a2, a3, energies, *_bin_table(B))
 
     def locate(self, b: np.ndarray) -> np.ndarray:
-        """Index of the interval of each flux density b >= 0 [T]."""
+        """Index of the interval of each flux density b >= 0 [T], (m,) both."""
         k = self.interval_of_bin.take((b * self.bins_per_tesla).astype(np.intp), mode="clip")
         for _ in range(self.points_per_bin):
             k += b >= self.ends[k]
         return k
 
     def value(self, b: np.ndarray, k: np.ndarray) -> np.ndarray:
-        """H(b) [A/m]; b [T] in interval k."""
+        """H(b) [A/m], (m,), for b [T], (m,), in intervals k (indices), (m,)."""
         t = b - self.starts[k]
         return self.a0[k] + t * (self.a1[k] + t * (self.a2[k] + t * self.a3[k]))
 
     def value_and_slope(self, b: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """H(b) [A/m] and dH/dB [m/H]."""
+        """H(b) [A/m] and dH/dB [m/H], both (m,), for b [T], (m,), in intervals k (indices), (m,)."""
         t = b - self.starts[k]
         a1, a2t, a3tt = self.a1[k], t * self.a2[k], t * t * self.a3[k]
         return self.a0[k] + t * (a1 + a2t + a3tt), a1 + 2 * a2t + 3 * a3tt
 
     def integral(self, b: np.ndarray, k: np.ndarray) -> np.ndarray:
-        """Integral of H dB from 0 to b [J/m^3]."""
+        """Integral of H dB from 0 to b [J/m^3], (m,), for b [T], (m,), in intervals k (indices), (m,)."""
         t = b - self.starts[k]
         quartic = self.a1[k] / 2 + t * (self.a2[k] / 3 + t * self.a3[k] / 4)
         return self.energies[k] + t * (self.a0[k] + t * quartic)
@@ -169,7 +173,7 @@ class ApproachToSaturation:
 
     @classmethod
     def continuing(cls, last_field: float, last_flux: float, slope: float) -> ApproachToSaturation:
-        """Law that leaves the last point with the slope dH/dB [m/H]."""
+        """Law that leaves the last point, last_field [A/m] and last_flux [T], with the slope dH/dB [m/H]."""
         permeability = 1.0 / slope if slope > 0 else inf
         return cls(last_field, last_flux, max(0.0, last_field * (permeability - MU_0)))
 
@@ -179,20 +183,20 @@ class ApproachToSaturation:
         return self.last_flux - MU_0 * self.last_field + self.rise
 
     def value(self, b: np.ndarray) -> np.ndarray:
-        """H [A/m] at b [T], b >= B_l: the positive root of mu_0 H^2 - (b - J_s) H - c H_l = 0."""
+        """H [A/m] at b [T], b >= B_l, of its shape: the positive root of mu_0 H^2 - (b - J_s) H - c H_l = 0."""
         u = b - self.saturation_polarisation
         return (u + np.sqrt(u * u + 4 * MU_0 * self.rise * self.last_field)) / (2 * MU_0)
 
     def slope(self, h: np.ndarray) -> np.ndarray:
-        """dH/dB [m/H] at h [A/m]."""
+        """dH/dB [m/H] at h [A/m], of its shape."""
         return 1.0 / (MU_0 + self.rise * self.last_field / (h * h))
 
     def inverse(self, h: np.ndarray) -> np.ndarray:
-        """B [T] at h [A/m], h >= H_l."""
+        """B [T] at h [A/m], h >= H_l, of its shape."""
         return MU_0 * h + self.saturation_polarisation - self.rise * self.last_field / h
 
     def integral(self, b: np.ndarray) -> np.ndarray:
-        """Integral of H dB from B_l to b [J/m^3], as H B - H_l B_l minus the integral of B dH."""
+        """Integral of H dB from B_l to b [T], of its shape [J/m^3]: H B - H_l B_l minus the integral of B dH."""
         h, h_l = self.value(b), self.last_field
         logarithm = self.rise * h_l * np.log(h / h_l)
         coenergy = MU_0 / 2 * (h * h - h_l**2) + self.saturation_polarisation * (h - h_l) - logarithm
@@ -246,6 +250,7 @@ class SplineReluctivity(Reluctivity):
         return self.tail.last_flux
 
     def nu(self, b2: Values) -> np.ndarray:
+        """Reluctivity [m/H] at b2 [T^2], of its shape."""
         b2, shape = _flat(b2)
         b = np.sqrt(b2)
         k = self.table.locate(b)
@@ -257,7 +262,7 @@ class SplineReluctivity(Reluctivity):
         return nu.reshape(shape)
 
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
-        """nu and dnu/d(b2) = (dH/dB - nu)/(2 b2), exact in every piece; see ``Reluctivity``."""
+        """nu [m/H] and dnu/d(b2) = (dH/dB - nu)/(2 b2) [m/(H T^2)] at b2 [T^2], of its shape; exact in every piece."""
         b2, shape = _flat(b2)
         b = np.sqrt(b2)
         k = self.table.locate(b)
@@ -279,6 +284,7 @@ class SplineReluctivity(Reluctivity):
         return numerator / np.maximum(divisor, self.table.ends[0] ** power)
 
     def field_strength(self, b: Values) -> np.ndarray:
+        """H [A/m] at b [T], of its shape."""
         b, shape = _flat(b)
         size = np.abs(b)
         H = self.table.value(size, self.table.locate(size))
@@ -287,6 +293,7 @@ class SplineReluctivity(Reluctivity):
         return np.copysign(H, b).reshape(shape)
 
     def energy_density(self, b: Values) -> np.ndarray:
+        """w(B) [J/m^3] at b [T], of its shape."""
         b, shape = _flat(b)
         inside = np.minimum(np.abs(b), self.tail.last_flux)
         energy = self.table.integral(inside, self.table.locate(inside))
@@ -295,6 +302,7 @@ class SplineReluctivity(Reluctivity):
         return energy.reshape(shape)
 
     def flux_density(self, h: Values) -> np.ndarray:
+        """B [T] at h [A/m], of its shape."""
         h, shape = _flat(h)
         size = np.abs(h)
         B = _invert_monotone(self.table, np.minimum(size, self.tail.last_field), self.tail)
@@ -333,7 +341,7 @@ def _invert_monotone(table: PiecewiseCubic, h: np.ndarray, tail: ApproachToSatur
 
 
 def check_curve(name: str, H: np.ndarray, B: np.ndarray) -> None:
-    """Raise MaterialError, with the number of the point, unless (H [A/m], B [T]) is a usable magnetisation curve."""
+    """Raise MaterialError, with the number of the point, unless (H [A/m], B [T]), both (n,), is a usable curve."""
     if H.ndim != 1 or H.shape != B.shape:
         raise MaterialError(f"{name}: expected as many H as B in two lists, found shapes {H.shape} and {B.shape}")
     if len(H) < FEWEST_POINTS:

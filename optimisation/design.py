@@ -150,9 +150,10 @@ class DesignSolver:
         )
 
     def gradient(self, machine_of: Callable[[np.ndarray], Machine], steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of torque and limited flux density of the last design, each (k,), per unit of the k changes.
+        """Derivatives of torque [Nm/m] and limited flux density [T] of the last design per change, each (k,).
 
-        machine_of: changes (k,) -> machine, zero for the last design; steps: small size of each change
+        machine_of: changes [any units], (k,) -> machine, zero for the last design
+        steps: small size of each change [as the change], (k,)
         """
         if self._morpher is None:
             raise ValueError("no design has been judged yet, so there is none to take derivatives of")
@@ -260,7 +261,7 @@ def _most_central(machines: list[Machine]) -> Machine:
 
 @dataclass(frozen=True)
 class Design:
-    """What the optimisation knows of one design; torques in Nm/m, flux densities in T (worst of the reading's states).
+    """What the optimisation knows of one design.
 
     torque: what designs are compared by, the mean over one electrical period with the current on the q axis unless the
         judge's objective is another one. By the consistent fluxes on the mid-gap circle, or by flux linkages, which
@@ -268,6 +269,8 @@ class Design:
         average within 0.4 % (40 designs of 9 and 12 slots)
     torque_null: in the thesis's null state, by the consistent fluxes; NaN where the reading does not look at it
     torque_ring: as ``torque`` by the ring average (``arkkio_torque``); NaN where the torque is by flux linkages
+    torque, torque_null, torque_ring: [Nm/m]
+    tooth_aligned, tooth_worst, back_iron_worst, limited: flux densities [T], worst of the reading's states
     """
 
     machine: Machine

@@ -23,7 +23,7 @@ class BestPoint:
 class DesignMap:
     """Torque [Nm/m] and limited flux density [T] on a grid; NaN where a machine cannot be built.
 
-    widths (n,), radii (m,) [m]; torque, limited (n, m)
+    widths (n,), radii (m,) [m]; torque, limited: (n, m)
     """
 
     widths: np.ndarray
@@ -32,7 +32,7 @@ class DesignMap:
     limited: np.ndarray
 
     def best_point(self, limit: float) -> BestPoint | None:
-        """The largest torque with limited <= limit, between the grid lines.
+        """The largest torque with limited <= limit [T], between the grid lines.
 
         Along every rotor radius both quantities are interpolated over the width; the best torques of the radii are
         interpolated once more. None when no point of the map holds the limit.

@@ -12,7 +12,10 @@ from optimisation.polynomial_fits import FitRefused, PolynomialFit, fit_polynomi
 
 @dataclass(frozen=True)
 class FittedSection:
-    """The best cross-section at one stator radius; lengths in m, area in m^2, torques in Nm/m (see ``Optimum``)."""
+    """The best cross-section at one stator radius, see ``Optimum``; lengths in m, area in m^2.
+
+    torque_nominal, torque_overload, torque_overload_linear: [Nm/m]
+    """
 
     back_iron_width: float
     rotor_outer_radius: float

@@ -45,7 +45,7 @@ class LimitComparison:
 
 @dataclass(frozen=True)
 class LimitRow:
-    """The study's own stator with one rotor radius and all back-iron widths [m]."""
+    """The study's own stator with one rotor radius and all back_iron_widths [m]."""
 
     case: FieldCase
     rotor_outer_radius: float

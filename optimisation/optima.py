@@ -27,10 +27,12 @@ class Optimum:
     """The best cross-section of one slot count and stator radius under the limit; lengths in m, torques in Nm/m.
 
     half_slot_area: of one coil side [m^2]
-    torque_nominal, torque_overload: mean over one electrical period (``MeanTorque``) at the two current densities, with
-        the bound of their mesh errors; torque_nominal_ring: the first by the ring average
-    torque_overload_linear: scaled from the nominal one (thesis eq. 3.68)
-    torque_null: in the thesis's null state at the nominal current density; NaN where the reading does not look at it
+    torque_nominal, torque_overload: mean over one electrical period (``MeanTorque``) [Nm/m], at the two current
+        densities
+    torque_nominal_error, torque_overload_error: bounds of their mesh errors [Nm/m]
+    torque_nominal_ring: the first by the ring average [Nm/m]
+    torque_overload_linear: scaled from the nominal one (thesis eq. 3.68) [Nm/m]
+    torque_null: in the thesis's null state at the nominal current density [Nm/m]; NaN where the reading looks elsewhere
     limited, tooth_worst, back_iron_worst: flux densities in the states of the reading [T]
     field_solutions: designs solved on the way; newton_iterations: of the last one
     """
@@ -221,7 +223,7 @@ def _torques(case: FieldCase, machine: Machine) -> _Torques:
     """Mean torques at both current densities and their mesh errors in the first position, all on one mesh."""
     model = case.model(machine)
     nominal, overload = (_over_period(case, model, density) for density in _densities(case))
-    errors = torque_errors(model, [nominal[0].point, overload[0].point])
+    errors = torque_errors([nominal[0], overload[0]])
     return _Torques(
         _mean([maxwell_torque(solution) for solution in nominal]),
         _mean([arkkio_torque(solution) for solution in nominal]),

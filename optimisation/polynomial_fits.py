@@ -25,7 +25,8 @@ class PolynomialFit:
     """y = c2 t^2 + c1 t + c0 with t = (R - centre)/scale, over the fitted range of the stator radius R [m].
 
     The radius is centred and scaled, so that the coefficients are of one size and well determined.
-    coefficients (c2, c1, c0), rms_residual, largest_residual: in the unit of y; centre, scale, x_range [m]
+    coefficients: (c2, c1, c0) [unit of y]; rms_residual, largest_residual: [unit of y]; centre, scale, x_range [m]
+    r_squared: dimensionless
     refused: the reason why the fit must not be used, empty when it may
     """
 
@@ -41,7 +42,7 @@ class PolynomialFit:
 
     @property
     def powers(self) -> tuple[float, float, float]:
-        """(p2, p1, p0) of y = p2 R^2 + p1 R + p0 with R in metres."""
+        """(p2, p1, p0) [unit of y over m^2, m, 1] of y = p2 R^2 + p1 R + p0 with R in metres."""
         c2, c1, c0 = self.coefficients
         p2, p1 = c2 / self.scale**2, c1 / self.scale
         return p2, p1 - 2 * p2 * self.centre, c0 - p1 * self.centre + p2 * self.centre**2
@@ -62,6 +63,8 @@ class PolynomialFit:
 
 def fit_polynomial(quantity: str, radii: Values, values: Values) -> PolynomialFit:
     """Least-squares second-order polynomial over the stator radius [m] with its residuals and R^2.
+
+    radii: [m], (n,); values: of the quantity [any unit], (n,)
 
     The fit is marked as refused when there are too few points for its order to be tested, or when a
     residual exceeds 3 % of the mean (a flat quantity may have a low R^2 and still be described well).

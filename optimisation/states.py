@@ -27,7 +27,10 @@ class SaturationReading:
         raise NotImplementedError
 
     def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
-        """The limited flux density from those of the aligned teeth, the worst tooth and the worst back iron [T]."""
+        """The limited flux density [T] from those of the aligned teeth, the worst tooth and the worst back iron.
+
+        aligned, tooth, back_iron: [T]
+        """
         raise NotImplementedError
 
 
@@ -37,6 +40,7 @@ class NullStateReading(SaturationReading):
     def states(
         self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
     ) -> list[OperatingPoint]:
+        """The null state; amplitude: of the current density in the copper [A/m^2]."""
         return [null_point(machine, layout, amplitude, packing)]
 
 
@@ -47,6 +51,7 @@ class AlignedTooth(NullStateReading):
     name: str = "aligned_tooth"
 
     def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
+        """That of the aligned teeth [T]; aligned, tooth, back_iron: [T]."""
         return aligned
 
 
@@ -57,6 +62,7 @@ class EveryTooth(NullStateReading):
     name: str = "every_tooth"
 
     def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
+        """That of the worst tooth [T]; aligned, tooth, back_iron: [T]."""
         return tooth
 
 
@@ -73,9 +79,11 @@ class EveryToothAndBackIronOverPeriod(SaturationReading):
     def states(
         self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
     ) -> list[OperatingPoint]:
+        """Positions of the period; amplitude: of the current density in the copper [A/m^2]."""
         return period_points(machine, layout, amplitude, packing, STEPS_OVER_PERIOD)
 
     def limited(self, aligned: float, tooth: float, back_iron: float) -> float:
+        """The larger one [T] of worst tooth and back iron; aligned, tooth, back_iron: [T]."""
         return max(tooth, back_iron)
 
 

@@ -114,7 +114,7 @@ class DesignMaps:
 
 @dataclass(frozen=True)
 class SweepBlock:
-    """All back-iron widths [m] at some rotor radii [m] of one slot count and stator radius [m]."""
+    """All back_iron_widths [m] at some rotor_outer_radii [m] of one slot count and stator radius [m]."""
 
     case: FieldCase
     reading: SaturationReading
@@ -136,12 +136,12 @@ class SweepBlock:
 
 def sweep_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> DesignMaps:
     """Solve every design of the grid at the nominal current density."""
-    solved = workers.map("sweep", solve_block, _blocks(case, grid, limit.reading))
+    solved = workers.map("sweep", solve_block, blocks_of(case, grid, limit.reading))
     return DesignMaps(grid, limit, _dataset(grid, list(solved.values())))
 
 
 def solve_block(block: SweepBlock) -> np.ndarray:
-    """``VARIABLES`` of a block's designs (radii, widths, variables), NaN where no machine can be built."""
+    """``VARIABLES`` of a block's designs [Nm/m, T], (radii, widths, variables), NaN where no machine can be built."""
     machines = {}
     for place in product(block.rotor_outer_radii, block.back_iron_widths):
         with suppress(GeometryError):
@@ -155,7 +155,8 @@ def _row(design: Design | None) -> list[float]:
     return [nan if design is None else getattr(design, name) for name in VARIABLES]
 
 
-def _blocks(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
+def blocks_of(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
+    """The tasks of a sweep by name: some rotor radii together, because they share a mesh."""
     blocks = {}
     for slots, outer in grid.sections:
         widths, radii = (tuple(lengths.tolist()) for lengths in (grid.widths(outer), grid.radii(outer)))
@@ -167,7 +168,7 @@ def _blocks(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dic
 
 
 def _dataset(grid: SweepGrid, blocks: list[np.ndarray]) -> xr.Dataset:
-    """The labelled map from the blocks of ``_blocks``, in their order."""
+    """The labelled map from the blocks of ``blocks_of``, in their order."""
     outer = np.array(grid.stator_outer_radii)
     shape = len(grid.slots), len(outer), grid.rotor_radius_steps, grid.back_iron_steps, len(VARIABLES)
     values = np.concatenate(blocks).reshape(shape).swapaxes(2, 3)

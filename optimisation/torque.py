@@ -55,7 +55,10 @@ class TorqueObjective:
         return maxwell_torque(solution)
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
-        """The torque [Nm/m] from what ``read`` gives in the states of the reading and in the further ones."""
+        """The torque [Nm/m] from what ``read`` gives.
+
+        known: in the states of the reading [Nm/m], (states,); further: in the further ones [Nm/m], (further,)
+        """
         raise NotImplementedError
 
     def torque(self, known: Sequence[FieldSolution], further: Sequence[FieldSolution]) -> float:
@@ -77,6 +80,7 @@ class MeanTorque(TorqueObjective):
         return _period_of(known[0], self.steps)
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
+        """Mean of the further ones [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
         return float(further.mean())
 
 
@@ -106,9 +110,11 @@ class QuickMeanTorque(TorqueObjective):
         return [self.model(known[0].model).solve(known[0].point) if coarse is None else coarse]
 
     def read(self, solution: FieldSolution) -> float:
+        """Torque by flux linkages [Nm/m]."""
         return flux_linkage_torque(solution)
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
+        """The known one, scaled [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
         return float(known[0] * further[1:].mean() / further[0])
 
 
@@ -122,6 +128,7 @@ class TorqueOfReading(TorqueObjective):
         return []
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
+        """Mean of the known ones [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
         return float(known.mean())
 
 
@@ -138,6 +145,7 @@ class NullTorque(TorqueObjective):
         return []
 
     def combined(self, known: np.ndarray, further: np.ndarray) -> float:
+        """That of the one known [Nm/m]; known: [Nm/m], (states,); further: [Nm/m], (further,)."""
         return float(known[0])
 
 

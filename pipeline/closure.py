@@ -11,38 +11,29 @@ import sys
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
-from typing import Callable
 
-PROJECT = Path(__file__).resolve().parent.parent
-
-
-@cache
-def module_file(name: str) -> Path | None:
-    """The file of a module of the project, None for one from elsewhere."""
-    place = PROJECT.joinpath(*name.split("."))
-    if place.with_suffix(".py").is_file():
-        return place.with_suffix(".py")
-    initial = place / "__init__.py"
-    return initial if initial.is_file() else _file_of_package_without_init(place, name)
-
-
-def _file_of_package_without_init(place: Path, name: str) -> Path | None:
-    """A module that is loaded from a folder outside the project's root, such as one of its tests."""
-    loaded = getattr(sys.modules.get(name), "__file__", None)
-    own = loaded is not None and Path(loaded).resolve().is_relative_to(PROJECT)
-    return Path(loaded) if own and ".venv" not in loaded else None
-
+from pipeline.modules import PROJECT, module_file
 
 @cache
 def _imported(path: Path) -> frozenset[str]:
     """Every module name that a file may import, anywhere in it; ``from a import b`` counts as a and a.b."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_bytes())):
+    for node in _statements(ast.parse(path.read_bytes()).body):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
     return frozenset(names)
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Every statement, inside functions, classes and branches too; expressions hold no imports and take most of the time."""
+    for node in body:
+        yield node
+        for inner in ("body", "orelse", "finalbody"):
+            yield from _statements(getattr(node, inner, []))
+        for branch in (*getattr(node, "handlers", ()), *getattr(node, "cases", ())):
+            yield from _statements(branch.body)
 
 
 @cache
@@ -84,7 +75,12 @@ def packages_of(*functions: Callable) -> dict[str, str]:
     files = frozenset().union(*(files_of(function.__module__) for function in functions))
     names = {name.partition(".")[0] for path in files if path.suffix == ".py" for name in _imported(path)}
     found = {owner for name in names for owner in _distributions().get(name, ())}
-    return {"python": sys.version.split()[0], **{owner: version(owner) for owner in sorted(found)}}
+    return {"python": sys.version.split()[0], **{owner: _version(owner) for owner in sorted(found)}}
+
+
+@cache
+def _version(owner: str) -> str:
+    return version(owner)
 
 
 @cache

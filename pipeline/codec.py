@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pipeline.closure import module_file
+from pipeline.modules import module_file
 
 _PLAIN = (str, int, bool, type(None))
 

@@ -15,6 +15,7 @@ from collections import Counter
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from tempfile import TemporaryDirectory
 from typing import Any, Callable, Mapping
 
 from tqdm import tqdm
@@ -156,7 +157,8 @@ class DaskCluster(Pool):
             ) from None
         dask.config.set({"distributed.scheduler.allowed-failures": MOST_LOST_WORKERS - 1})
         self._lost = distributed.scheduler.KilledWorker
-        self._cluster = None if address else _local_cluster(distributed, size or default_workers())
+        self._scratch = TemporaryDirectory(prefix="airgap-dask-")
+        self._cluster = None if address else _local_cluster(distributed, size or default_workers(), self._scratch.name)
         self.client = _client(distributed, address or self._cluster)
         self.client.wait_for_workers(1, timeout=60)
         self.size = max(1, 2 * sum(self.client.nthreads().values()))  # one task runs, the next is on its way
@@ -177,13 +179,19 @@ class DaskCluster(Pool):
         self.client.close()
         if self._cluster is not None:
             self._cluster.close()
+        self._scratch.cleanup()
 
 
-def _local_cluster(distributed: Any, size: int) -> Any:
+def _local_cluster(distributed: Any, size: int, scratch: str) -> Any:
     for variable in ONE_THREAD:
         os.environ[variable] = "1"
     return distributed.LocalCluster(
-        n_workers=size, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, silence_logs="ERROR"
+        n_workers=size,
+        threads_per_worker=1,
+        host="127.0.0.1",
+        dashboard_address=None,
+        silence_logs="ERROR",
+        local_directory=scratch,
     )
 
 

@@ -11,8 +11,8 @@ import pandas as pd
 
 from magnetostatics.model import OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from pipeline.closure import PROJECT
-from pipeline.results import write_atomically
+from disk import write_atomically
+from pipeline.modules import PROJECT
 from study.inputs_field import field_case
 from study.read import read_study
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE

@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,8 @@ from typing import Any, Callable, Iterator
 
 import xarray as xr
 
-from pipeline.closure import PROJECT
+from disk import PART, write_atomically
+from pipeline.modules import PROJECT
 from pipeline.codec import CodecError, decoded, encoded
 from study.schema import Study
 
@@ -25,9 +25,6 @@ try:
     import fcntl
 except ImportError:  # pragma: no cover - Windows has no advisory locks of this kind
     fcntl = None  # type: ignore[assignment]
-
-_PART = ".part"
-
 
 class ResultsError(RuntimeError):
     """A results folder that cannot be used; one sentence says why and what to do."""
@@ -55,7 +52,7 @@ class Results:
 
     def _sweep_up(self) -> None:
         """Temporary files of a run that was killed."""
-        for path in self.folder.rglob(f".*{_PART}*"):
+        for path in self.folder.rglob(f".*{PART}*"):
             with suppress(OSError):
                 path.unlink()
 
@@ -164,33 +161,3 @@ def said_of(path: Path) -> Iterator[None]:
             f"{path} cannot be written ({error.strerror or error}); free space or rights there and run the same command "
             "again, what was finished is kept"
         ) from error
-
-
-def write_atomically(path: Path, writer: Callable[[Path], object]) -> None:
-    """Let ``writer`` fill a temporary file beside ``path``, bring it to the disk, then put it in place in one step.
-
-    The temporary name is nobody else's and keeps the ending, from which libraries take the format. Nothing is left
-    behind on failure.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}{_PART}", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        writer(temporary)
-        temporary.chmod(0o666 & ~_umask())
-        _to_disk(temporary)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _to_disk(path: Path) -> None:
-    with open(path, "rb") as file:
-        os.fsync(file.fileno())

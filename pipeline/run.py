@@ -18,7 +18,8 @@ from typing import Any, Callable, Iterator
 from figures.files import File
 from figures.report import Section
 from pipeline.checkpoint import Checkpoint
-from pipeline.closure import PROJECT, code_digest, packages_of
+from pipeline.closure import code_digest, packages_of
+from pipeline.modules import PROJECT
 from pipeline.codec import digest
 from pipeline.graph import Export, Graph, Source, Stage, Step, View, parameters, takes_workers
 from pipeline.pools import Pool, PooledWorkers, TaskError

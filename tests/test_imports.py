@@ -4,12 +4,13 @@ import ast
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
-# Each room may import those named after it; everything may import units and tasks. From top to bottom as in README.md.
+# Each room may import those named after it; everything may import units, tasks and disk. From top to bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
 _DESIGN = _FIELD | {"optimisation", "electrical", "losses", "gearbox", "drivetrain", "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
+    "disk": set(),
     "materials": set(),
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
@@ -26,7 +27,7 @@ ALLOWED = {
     "report": {*_DESIGN, "figures"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "report", "effects", "workbench"},
 }
-BOTTOM = {"units", "tasks"}
+BOTTOM = {"units", "tasks", "disk"}
 
 
 def modules():

@@ -32,7 +32,7 @@ class ForceSpeedLimit:
             )
 
     def at(self, velocity: ArrayLike) -> np.ndarray:
-        """Largest force [N] at these velocities [m/s]."""
+        """Largest force [N] at these velocities [m/s], of their shape."""
         return np.interp(np.abs(velocity), self.speed, self.force, right=0.0)
 
 

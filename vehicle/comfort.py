@@ -11,12 +11,18 @@ WEIGHTING = ((80.03, 989.0, 0.02108), (1.0, 78.92, 2412.0, 5614.0))
 
 
 def weighting_gain(frequency: ArrayLike) -> np.ndarray:
-    """|H_2631| at these frequencies [Hz]; within 15 % of the standard's W_k between 0.5 and 2 Hz."""
+    """|H_2631|, dimensionless, at these frequencies [Hz], of their shape.
+
+    Within 15 % of the standard's W_k between 0.5 and 2 Hz.
+    """
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
     numerator, denominator = WEIGHTING
     return np.abs(np.polyval(numerator, s) / np.polyval(denominator, s))
 
 
 def weighted_acceleration(acceleration: np.ndarray, step: float) -> np.ndarray:
-    """Acceleration as it is felt, from rest; samples along the last axis, step between them [s]."""
+    """Acceleration as it is felt [m/s^2], (..., t), from rest; step between samples [s].
+
+    acceleration: [m/s^2], samples along the last axis, (..., t)
+    """
     return lfilter(*bilinear(*WEIGHTING, fs=1 / step), acceleration, axis=-1)

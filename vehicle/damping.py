@@ -53,7 +53,7 @@ class DamperCurve:
             )
 
     def at(self, velocity: float | np.ndarray) -> np.ndarray:
-        """Force [N] at these velocities [m/s], any shape."""
+        """Force [N] at the velocity [m/s], of its shape."""
         return np.asarray(np.interp(velocity, self.velocity, self.force))
 
     @property
@@ -109,7 +109,7 @@ def bounded(
 ) -> DamperCurve:
     """The curve with |F| <= bound(v); exact, since the points where the two cross are added.
 
-    bound: force [N] over velocity, straight between the knots [m/s]
+    bound: force [N], (n,), over velocity [m/s], (n,), straight between the knots [m/s]
     """
     v = np.unique([*curve.velocity, *(k for k in knots if curve.velocity[0] < k < curve.velocity[-1]), 0.0])
     excess = np.abs(curve.at(v)) - bound(v)

@@ -10,12 +10,15 @@ from vehicle.ride import RideHistory
 
 
 def rms(values: np.ndarray) -> float:
-    """Root mean square over the whole run, its start from rest included."""
+    """Root mean square [as the values] over the whole run, its start from rest included.
+
+    values: [any unit], any shape
+    """
     return float(np.sqrt(np.mean(np.square(values))))
 
 
 def at_largest(values: np.ndarray) -> int:
-    """Position of the value of largest magnitude."""
+    """Position of the value of largest magnitude; values: [any unit], (n,)."""
     return int(np.argmax(np.abs(values)))
 
 
@@ -38,7 +41,8 @@ class RideSummary:
 
     scenario, damping: names; seed: of a random road, None where the scenario has none
     comfort_rms, comfort_peak: weighted acceleration [m/s^2]; road_holding_rms, road_holding_peak: dimensionless;
-    stroke_peak [m]; force_rms [N], velocity_rms [m/s], power_rms, power_mean [W]; energy_error: of the balance.
+    stroke_peak [m]; force_rms [N], velocity_rms, velocity_peak [m/s], power_rms, power_mean [W];
+    energy_error: of the balance, relative.
     """
 
     scenario: str

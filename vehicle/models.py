@@ -30,7 +30,10 @@ class Tyre:
 
 @dataclass(frozen=True)
 class EndStops:
-    """Springs that act beyond the free stroke (thesis eq. 3.16); strokes from static equilibrium [m], k_stop [N/m]."""
+    """Springs that act beyond the free stroke (thesis eq. 3.16).
+
+    bump, rebound: strokes from static equilibrium [m]; stiffness: k_stop [N/m]
+    """
 
     bump: float
     rebound: float
@@ -121,6 +124,8 @@ class Vehicle:
     def delays(self, speed: float) -> tuple[float, ...]:
         """Time after the first wheel at which each wheel meets the same point of the road [s] (3.18-3.19).
 
+        speed: of the vehicle [m/s]
+
         z_r,r(t) = z_r(t - (l_f + l_r) / v): the thesis prints t + Delta t, but the rear wheel comes later.
         """
         first = self.axles[0].position
@@ -128,14 +133,17 @@ class Vehicle:
 
     @property
     def stretch_matrix(self) -> np.ndarray:
-        """Suspension strokes from body height, sine of the pitch and wheel heights, (n, 2 + n) (3.10-3.11, 3.15)."""
+        """Suspension strokes from body height, sine of the pitch, wheel heights [1, m, 1], (n, 2 + n).
+
+        Thesis eqs 3.10-3.11, 3.15.
+        """
         positions = np.array([[axle.position] for axle in self.axles])
         count = len(self.axles)
         return np.hstack([np.ones((count, 1)), positions, -np.eye(count)])
 
     @property
     def natural_frequencies(self) -> np.ndarray:
-        """Undamped natural frequencies about static equilibrium [Hz], rising."""
+        """Undamped natural frequencies about static equilibrium [Hz], (2 + n,), rising."""
         strokes = self.stretch_matrix
         stiffness = strokes.T @ np.diag([axle.spring_stiffness for axle in self.axles]) @ strokes
         stiffness += np.diag([0.0, 0.0, *(axle.tyre.stiffness for axle in self.axles)])
@@ -144,7 +152,7 @@ class Vehicle:
 
     @property
     def rigid_tyre_frequencies(self) -> np.ndarray:
-        """The same of the body alone, with the wheels held [Hz]."""
+        """The same of the body alone, with the wheels held [Hz], (2,)."""
         body = self.stretch_matrix[:, :2]
         stiffness = body.T @ np.diag([axle.spring_stiffness for axle in self.axles]) @ body
         return _frequencies(stiffness, np.diag([self.sprung_mass, self.pitch_inertia]))
@@ -247,5 +255,5 @@ class QuarterCar(Vehicle):
 
     @property
     def natural_frequencies(self) -> np.ndarray:
-        """Undamped natural frequencies of body and wheel [Hz], rising."""
+        """Undamped natural frequencies of body and wheel [Hz], (2,), rising."""
         return super().natural_frequencies[1:]  # the first is the pitch, which nothing turns

@@ -34,7 +34,7 @@ class SetBy:
 
 @dataclass(frozen=True)
 class Demand:
-    """A value, SI and signed, and what set it."""
+    """A value [of the demand, SI], signed, and what set it."""
 
     value: float
     set_by: SetBy

@@ -37,7 +37,7 @@ class Hinges:
         self.highest = np.where(self.knots < 0, 0.0, np.inf)
 
     def at(self, velocity: np.ndarray) -> np.ndarray:
-        """Forces [N] at velocities [m/s], (axles, runs)."""
+        """Forces [N], (axles, runs); velocity: [m/s], (axles, runs)."""
         ramps = np.minimum(np.maximum(velocity - self.knots, self.lowest), self.highest)
         ramps *= self.changes
         return self.slope * velocity + np.add.reduce(ramps)
@@ -81,7 +81,10 @@ class ClippedSum:
         self._low, self._high, self._offset, self._weight = columns
 
     def accelerations(self, heights: np.ndarray, road: np.ndarray) -> np.ndarray:
-        """Of the coordinates (2 + n, runs), with the pitch as if level; heights (2, 2 + n, runs) and their rates."""
+        """Of the coordinates [m/s^2, rad/s^2], (2 + n, runs), with the pitch as if level.
+
+        heights: of the coordinates and their rates [m, rad, per s], (2, 2 + n, runs); road: heights [m], (n, runs)
+        """
         pieces = self._see @ heights.reshape(-1, heights.shape[-1])
         pieces[self._first_tyre :] -= road
         np.maximum(pieces, self._low, out=pieces)
@@ -129,9 +132,10 @@ def _push_on_wheel(motion: Motion, axle: int) -> np.ndarray:
 
 
 class AxleForces(NamedTuple):
-    """Strokes [m], their rates [m/s] and forces [N], each (axles, runs); positive forces pull body and wheel together.
+    """Strokes, their rates and forces; positive forces pull body and wheel together.
 
-    tyre: force that the tyre adds to the static load, downwards on the wheel.
+    stroke [m], rate [m/s], spring [N], stop [N], damper [N]: (axles, runs)
+    tyre: force that the tyre adds to the static load, downwards on the wheel [N], (axles, runs)
     """
 
     stroke: np.ndarray
@@ -184,14 +188,20 @@ class Motion:
         self.sum = ClippedSum(self)
 
     def forces(self, state: np.ndarray, road: np.ndarray) -> AxleForces:
-        """Forces at every axle; state (2, 2 + n, runs), road heights (n, runs)."""
+        """Forces at every axle.
+
+        state: heights and pitch, and their rates [m, rad, per s], (2, 2 + n, runs); road: heights [m], (n, runs)
+        """
         stroke, rate = self.strokes @ self._vertical(state)
         stop = self.stop * (stroke - np.minimum(np.maximum(stroke, self.bump), self.rebound))
         tyre = np.minimum(self.tyre * (state[0, 2:] - road), self.load)
         return AxleForces(stroke, rate, self.spring * stroke, stop, self.dampers.at(rate), tyre)
 
     def derivative(self, state: np.ndarray, road: np.ndarray) -> np.ndarray:
-        """Time derivative of the state."""
+        """Time derivative [per s] of the state, (2, 2 + n, runs).
+
+        state: as in ``forces`` [m, rad, per s], (2, 2 + n, runs); road: heights [m], (n, runs)
+        """
         change = np.empty_like(state)
         change[0] = state[1]
         change[1] = self.sum.accelerations(self._vertical(state), road)
@@ -203,7 +213,10 @@ class Motion:
         return change
 
     def inertia_force(self, state: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Force of the equivalent mass [N], (runs,), from the derivative that ``derivative`` gives."""
+        """Force of the equivalent mass [N], (runs,).
+
+        state, change: as in ``forces`` and its derivative [m, rad, per s], (2, 2 + n, runs)
+        """
         return self.equivalent_mass * self._relative_acceleration(state, change)
 
     def _add_inertia(self, state: np.ndarray, change: np.ndarray) -> None:
@@ -229,7 +242,10 @@ class Motion:
         return heights
 
     def energy(self, state: np.ndarray, road: np.ndarray) -> np.ndarray:
-        """Kinetic and elastic energy above static equilibrium [J], (runs,)."""
+        """Kinetic and elastic energy above static equilibrium [J], (runs,).
+
+        state: as in ``forces`` [m, rad, per s], (2, 2 + n, runs); road: heights [m], (n, runs)
+        """
         vehicle, forces = self.vehicle, self.forces(state, road)
         masses = np.array([vehicle.sprung_mass, vehicle.pitch_inertia, *self.unsprung[:, 0]])
         kinetic = masses @ state[1] ** 2 + self.equivalent_mass * forces.rate[-1] ** 2
@@ -257,8 +273,9 @@ def _column(values: Iterable[float]) -> np.ndarray:
 def integrate(motion: Motion, road: np.ndarray, step: float) -> np.ndarray:
     """States at every step from rest, classical Runge-Kutta of fourth order.
 
-    road: heights (steps + 1, n, runs), straight between the steps; step [s]
-    Returns the states (steps + 1, 2, 2 + n, runs). The step is divided where the stiffest part of the motion needs it.
+    road: heights [m], (steps + 1, n, runs), straight between the steps; step [s]
+    integrate: the states [m, rad, per s], (steps + 1, 2, 2 + n, runs)
+    The step is divided where the stiffest part of the motion needs it.
     Raises VehicleError when the motion grows beyond all bounds.
     """
     parts = ceil(step * motion.fastest_rate / _STABLE)

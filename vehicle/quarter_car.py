@@ -23,6 +23,7 @@ TO_STROKE_STATES = np.array([[1.0, -1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0,
 def state_space(car: QuarterCar) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A, B, C, D of z' = A z + B [z_r, F_s], y = C z + D [z_r, F_s] (4.8-4.13).
 
+    state_space: [SI], (4, 4), (4, 2), (7, 4) and (7, 2), with z = [z_s, z_u, z_s', z_u']
     y = [z_s, z_u, z_s', z_u', z_s'', z_u - z_r, z_s - z_u]; F_s = -k_s (z_s - z_u) - F_act (4.6).
     """
     wheel = car.tyre_stiffness / car.unsprung_mass
@@ -50,26 +51,29 @@ def damping_feedback(damping: float) -> Feedback:
 
 
 def skyhook(damping: float, skyhook_damping: float) -> Feedback:
-    """F_act = c_SH z_s' + c (z_s' - z_u') (4.14); [Ns/m]."""
+    """F_act = c_SH z_s' + c (z_s' - z_u') (4.14); damping: c [Ns/m], skyhook_damping: c_SH [Ns/m]."""
     require_not_negative("skyhook", damping=damping, skyhook_damping=skyhook_damping)
     return Feedback((0.0, 0.0, damping + skyhook_damping, -damping))
 
 
 def groundhook(damping: float, groundhook_damping: float) -> Feedback:
-    """F_act = -c_GH z_u' + c (z_s' - z_u') (4.16); [Ns/m]."""
+    """F_act = -c_GH z_u' + c (z_s' - z_u') (4.16); damping: c [Ns/m], groundhook_damping: c_GH [Ns/m]."""
     require_not_negative("groundhook", damping=damping, groundhook_damping=groundhook_damping)
     return Feedback((0.0, 0.0, damping, -damping - groundhook_damping))
 
 
 def spring_negation(damping: float, stiffness: float) -> Feedback:
-    """F_act = -k_SN (z_s - z_u) + c (z_s' - z_u') (4.18); [Ns/m, N/m]."""
+    """F_act = -k_SN (z_s - z_u) + c (z_s' - z_u') (4.18); damping: c [Ns/m], stiffness: k_SN [N/m]."""
     require_not_negative("spring negation", damping=damping, stiffness=stiffness)
     return Feedback((-stiffness, 0.0, damping, -damping))
 
 
 @dataclass(frozen=True)
 class LqrWeights:
-    """Weights of the stroke r_s and of the wheel height r_h in Q = diag(r_s, r_h, 0, 0) (4.24)."""
+    """Weights in Q = diag(r_s, r_h, 0, 0) (4.24).
+
+    stroke: r_s, of the squared stroke [kg/s^4]; wheel: r_h, of the squared wheel height [kg/s^4]
+    """
 
     stroke: float
     wheel: float
@@ -79,7 +83,9 @@ class LqrWeights:
 
 
 def lqr_gain(car: QuarterCar, weights: LqrWeights) -> np.ndarray:
-    """K of F_s = -K x that minimises the integral of x'Q x + R F_s^2 (4.22-4.24), (4,).
+    """K of F_s = -K x that minimises the integral of x'Q x + R F_s^2 (4.22-4.24).
+
+    lqr_gain: [N/m, N/m, Ns/m, Ns/m], (4,)
 
     R = 1 / m_s as printed in 4.24; the gains of eqs 4.25-4.27 follow from it, not from the square that the text to
     4.24 describes.
@@ -91,7 +97,7 @@ def lqr_gain(car: QuarterCar, weights: LqrWeights) -> np.ndarray:
 def lqr_problem(
     car: QuarterCar, weights: LqrWeights
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """A_x, B_x, Q, R of the Riccati equation (4.20-4.24)."""
+    """A_x, B_x, Q, R of the Riccati equation (4.20-4.24): [SI], (4, 4), (4, 1), (4, 4) and (1, 1)."""
     a, b, _, _ = state_space(car)
     a_x = TO_STROKE_STATES @ a @ np.linalg.inv(TO_STROKE_STATES)
     b_x = TO_STROKE_STATES @ b[:, 1:]
@@ -105,7 +111,7 @@ def lqr(car: QuarterCar, weights: LqrWeights) -> Feedback:
 
 
 def printed_form(feedback: Feedback) -> dict[str, float]:
-    """The four coefficients with which the thesis writes a law.
+    """The four coefficients with which the thesis writes a law, a1, a2 [N/m], a3, a5 [Ns/m].
 
     F_act = -a1 (z_s - z_u) - a2 z_u + a3 (z_s' - z_u') + a5 z_s'. Eq. 4.25 prints -a4 z_u' where the numbers are
     those of +a4 z_s', so its a4 is a5 here; eq. 4.26 has a3 and a5 exchanged; eqs 4.26 and 4.27 leave a2 out.
@@ -119,7 +125,9 @@ class LinearRide:
     """Closed loop on a random road with comfort filter: s' = A s + B w, w white with a density of 0.5 /Hz two-sided.
 
     s: the four states x, the road height z_r and three states of the comfort filter, (8,)
-    Outputs are rows (8,): comfort [m/s^2], road_holding (dimensionless, 4.10), stroke [m], force [N], velocity [m/s].
+    a: A [SI], (8, 8); b: B [SI], (8,)
+    Outputs are rows (8,) times s: comfort [m/s^2], (8,), road_holding (dimensionless, 4.10), (8,), stroke [m], (8,),
+    force [N], (8,), velocity [m/s], (8,)
     """
 
     a: np.ndarray

@@ -66,9 +66,9 @@ class Run:
 class EnergyBalance:
     """Where the energy of a run came from and went to [J].
 
-    road: work of the road on the tyres above the static load; propulsion: of the propulsion force on the pitch;
-    passive: taken by the dampers of the other axles; actuator: by the actuated axle (machine and friction);
-    stored: left in masses, springs and tyres at the end.
+    road: work of the road on the tyres above the static load [J]; propulsion: of its force on the pitch [J]
+    passive: taken by the dampers of the other axles [J]; actuator: by the actuated axle (machine and friction) [J]
+    stored: left in masses, springs and tyres at the end [J]
     """
 
     road: float
@@ -84,7 +84,7 @@ class EnergyBalance:
 
     @property
     def error(self) -> float:
-        """Residual over the energy that was dissipated or stored; zero for a vehicle that nothing moves."""
+        """Residual relative to the energy that was dissipated or stored; zero for a vehicle that nothing moves."""
         moved = self.passive + self.actuator + abs(self.stored)
         return abs(self.residual) / moved if moved or self.residual else 0.0
 
@@ -94,9 +94,10 @@ class RideHistory:
     """A run over time, arrays (t,) unless noted.
 
     time [s]; road: heights under the wheels [m], (n, t); body_height [m], pitch [rad] and wheel_heights [m], (n, t),
-    above static equilibrium; body_acceleration [m/s^2], vertical; tyre_loads: on the road [N], (n, t).
-    Of the actuated axle: stroke [m] and velocity [m/s], positive in rebound; actuator_force: of the machine [N];
-    suspension_force: with friction and reflected inertia [N]; stop_force [N].
+    above static equilibrium; body_acceleration [m/s^2], (t,), vertical; tyre_loads: on the road [N], (n, t).
+    Of the actuated axle: stroke [m], (t,), and velocity [m/s], (t,), positive in rebound
+    actuator_force: of the machine [N], (t,); suspension_force: with friction and reflected inertia [N], (t,)
+    stop_force [N], (t,)
     """
 
     run: Run
@@ -116,17 +117,17 @@ class RideHistory:
 
     @property
     def actuator_power(self) -> np.ndarray:
-        """P = F v [W], positive from the suspension to the actuator."""
+        """P = F v [W], (t,), positive from the suspension to the actuator."""
         return self.actuator_force * self.velocity
 
     @property
     def weighted_acceleration(self) -> np.ndarray:
-        """Acceleration of the body as it is felt [m/s^2] (3.23)."""
+        """Acceleration of the body as it is felt [m/s^2], (t,) (3.23)."""
         return weighted_acceleration(self.body_acceleration, self.run.scenario.time_step)
 
     @property
     def road_holding(self) -> np.ndarray:
-        """Missing tyre load of the actuated axle over its static load (3.24), (t,): 1 when the wheel is in the air."""
+        """Missing tyre load of the actuated axle relative to its static load (3.24), (t,): 1 in the air."""
         return 1 - self.tyre_loads[-1] / self.run.vehicle.actuated.static_load
 
 
@@ -170,7 +171,7 @@ def _together(runs: Sequence[Run]) -> Iterator[RideHistory]:
 
 
 def road_under_wheels(run: Run, time: np.ndarray) -> np.ndarray:
-    """Heights of the road under each wheel [m], (n, t)."""
+    """Heights of the road under each wheel [m], (n, t); time: [s], (t,)."""
     scenario = run.scenario
     if scenario.speed == 0:
         return np.zeros((len(run.vehicle.axles), len(time)))

@@ -33,7 +33,7 @@ class Road:
     """Heights that a wheel meets; the concrete roads are below."""
 
     def heights(self, time: np.ndarray, speed: float) -> np.ndarray:
-        """Height [m] at these times [s], zero before t = 0; speed [m/s]."""
+        """Height [m], (t,), at these times, zero before t = 0; time: [s], (t,); speed [m/s]."""
         raise NotImplementedError
 
     @property
@@ -47,6 +47,7 @@ class FlatRoad(Road):
     """No unevenness."""
 
     def heights(self, time: np.ndarray, speed: float) -> np.ndarray:
+        """Zero [m], (t,); time: [s], (t,); speed: [m/s]."""
         return np.zeros(np.shape(time))
 
 
@@ -84,14 +85,15 @@ class IsoRoad(Road):
         return 2 * pi * speed / self.cutoff_wavelength
 
     def noise_gain(self, speed: float) -> float:
-        """2 pi sqrt(G_r v), from the noise to the velocity of the road."""
+        """2 pi sqrt(G_r v) [m/s^0.5], from the noise [1/s^0.5] to the velocity of the road; speed: [m/s]."""
         return 2 * pi * sqrt(self.roughness * speed)
 
     def noise(self, count: int) -> np.ndarray:
-        """Samples of w, held for the sample time each: variance 0.5 / T_s."""
+        """Samples of w [1/s^0.5], (count,), held for the sample time each: variance 0.5 / T_s."""
         return np.random.default_rng(self.seed).standard_normal(count) * sqrt(NOISE_INTENSITY / self.sample_time)
 
     def heights(self, time: np.ndarray, speed: float) -> np.ndarray:
+        """Height [m], (t,); time: [s], (t,); speed: [m/s]."""
         require_positive("random road", speed=speed)
         count = int(np.ceil(np.max(time) / self.sample_time)) + 1
         decay = exp(-self.cutoff(speed) * self.sample_time)
@@ -155,6 +157,7 @@ class Obstacle(Road):
             )
 
     def heights(self, time: np.ndarray, speed: float) -> np.ndarray:
+        """Height [m], (t,); time: [s], (t,); speed: [m/s]."""
         require_positive("obstacle", speed=speed)
         shape = self.shape
         return self.amplitude * np.interp(np.asarray(time) * speed, shape.distance, shape.height, left=0.0, right=0.0)

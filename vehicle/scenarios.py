@@ -24,7 +24,7 @@ def road_scenarios(roughness: float, speed: float, duration: float, seeds: Seque
 def obstacle_scenarios(
     shape: ObstacleShape, speeds: Sequence[float], amplitudes: Sequence[float], duration: float
 ) -> list[Scenario]:
-    """Every speed [m/s] with every amplitude [m]; positive amplitudes are bumps, negative ones potholes."""
+    """Each of the speeds [m/s] with each of the amplitudes [m]; positive ones are bumps, negative ones potholes."""
     return [
         Scenario(obstacle_name(speed, amplitude), speed, duration, Obstacle(shape, amplitude), time_step=OBSTACLE_STEP)
         for speed in speeds

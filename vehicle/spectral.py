@@ -92,6 +92,7 @@ def _indices(ride: LinearRide, covariance: np.ndarray) -> RideIndices:
 def mean_power_theorem(tyre_stiffness: float, road: IsoRoad, speed: float) -> float:
     """Mean power that a white road gives to a tyre, and any stabilising control without energy source dissipates [W].
 
+    speed: of the vehicle [m/s]
     E[P] = 1/2 k_u (2 pi)^2 G_r v 1/2: half the stiffness times the intensity of the road's velocity
     """
     return tyre_stiffness / 2 * NOISE_INTENSITY * road.noise_gain(speed) ** 2
@@ -99,7 +100,11 @@ def mean_power_theorem(tyre_stiffness: float, road: IsoRoad, speed: float) -> fl
 
 @dataclass(frozen=True, eq=False)
 class EnsembleIndices:
-    """Indices of many simulated roads as in ``RideIndices``, arrays (seeds,); stroke_peak: largest magnitude [m]."""
+    """Indices of many simulated roads as in ``RideIndices``.
+
+    comfort: [m/s^2], (seeds,); road_holding: dimensionless, (seeds,)
+    stroke_peak: largest magnitude [m], (seeds,); mean_power: [W], (seeds,)
+    """
 
     comfort: np.ndarray
     road_holding: np.ndarray
@@ -137,7 +142,11 @@ def _noise(seeds: Sequence[int], steps: int, sample_time: float) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Carpet:
-    """Indices over two tuning parameters, (first, second); NaN where there are none."""
+    """Indices over two tuning parameters; NaN where there are none.
+
+    first, second: parameters [unit of the law], (n,), (m,); comfort: [m/s^2], (n, m)
+    road_holding: dimensionless, (n, m); stroke: [m], (n, m)
+    """
 
     first: np.ndarray
     second: np.ndarray
@@ -146,7 +155,10 @@ class Carpet:
     stroke: np.ndarray
 
     def best(self, index: np.ndarray) -> tuple[float, float, float]:
-        """Both parameters where an index, ``comfort`` or ``road_holding``, is least, and its value there."""
+        """Both parameters where an index, ``comfort`` or ``road_holding``, is least, and its value there [its unit].
+
+        index: [its unit], (n, m)
+        """
         i, j = np.unravel_index(np.nanargmin(index), index.shape)
         return float(self.first[i]), float(self.second[j]), float(index[i, j])
 
@@ -162,7 +174,9 @@ def carpet(
 ) -> Carpet:
     """A control law over its two tuning parameters (thesis Figs 4.13-4.17).
 
-    law: the control law of a first and a second parameter; indices: how a ride is judged, refusing with VehicleError
+    first, second: parameters [unit of the law], (n,), (m,); speed: of the vehicle [m/s]
+    law: the control law of a first and a second parameter [its units]
+    indices: how a ride is judged, refusing with VehicleError
     """
     found = np.full((3, len(first), len(second)), np.nan)
     for i, one in enumerate(first):

@@ -13,7 +13,7 @@ DATA = Path(str(files("vehicle") / "data"))  # curves that stand in for what the
 
 
 def read_columns(path: Path, *names: str) -> tuple[tuple[float, ...], ...]:
-    """The named columns of a CSV file with a header line; lines that begin with # are comments.
+    """The named columns of a CSV file with a header line [as in the file]; lines that begin with # are comments.
 
     Raises VehicleError for a missing file or column, fewer than two rows, or a cell that is not a finite number.
     """

@@ -15,8 +15,9 @@ from vehicle.ride import RideHistory
 class Trace:
     """One run over time; road and tyre loads (wheels, t), front first, all else (t,).
 
-    time [s]; road: heights under the wheels [m]; stroke [m] and velocity [m/s] of the actuated axle, positive in
-    rebound; actuator_force: of the machine [N]; tyre_loads: on the road [N]
+    time [s], (t,); road: heights under the wheels [m], (wheels, t); stroke [m], (t,), and velocity [m/s], (t,), of the
+    actuated axle, positive in rebound
+    actuator_force: of the machine [N], (t,); tyre_loads: on the road [N], (wheels, t)
     """
 
     time: np.ndarray

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.checkpoint import Checkpoint
-from pipeline.closure import PROJECT
+from pipeline.modules import PROJECT
 from pipeline.pools import DaskCluster, PooledWorkers, Processes, TaskError, WorkersHere
 
 HERE = Path(__file__).parent

@@ -13,6 +13,7 @@ import pytest
 from toy_graph import GRAPH, SQUARES, SUMMARY, Extra, Inputs, Largest, NoFit, Squares, StudyOfToys, Summary, inputs, largest
 
 import pipeline.closure
+import pipeline.modules
 import pipeline.run
 from figures.files import text_file
 from pipeline.graph import Graph, Source, Stage, View
@@ -138,14 +139,14 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
     go(tmp_path)
     capsys.readouterr()
     hashed = pipeline.closure._file_hash
-    changed = pipeline.closure.PROJECT / "figures" / "style.py"  # which figures.files imports
+    changed = pipeline.modules.PROJECT / "figures" / "style.py"  # which figures.files imports
     monkeypatch.setattr(pipeline.closure, "_file_hash", lambda p: "other" if p == changed else hashed(p))
     go(tmp_path)
     assert said(capsys)[0] == "squares: code changed"
 
 
 def test_the_closure_finds_what_no_list_names():
-    names = {path.relative_to(pipeline.closure.PROJECT).as_posix() for path in pipeline.closure.files_of("magnetostatics.case")}
+    names = {path.relative_to(pipeline.modules.PROJECT).as_posix() for path in pipeline.closure.files_of("magnetostatics.case")}
     assert {"magnetostatics/assembly.py", "materials/steels/35PN270_bh.csv", "geometry/plane_mesh.py", "units.py"} <= names
     assert not any(name.startswith(("workbench", "vehicle", "tests")) for name in names)
 
@@ -204,7 +205,7 @@ def _refusing(largest: Largest) -> Summary:
 def test_a_second_run_on_one_folder_ends_in_a_sentence(tmp_path):
     with Results(tmp_path).held():
         code = f"from pathlib import Path; from pipeline.results import Results\nwith Results(Path({str(tmp_path)!r})).held(): pass"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=pipeline.closure.PROJECT)
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=pipeline.modules.PROJECT)
     assert done.returncode == 1 and "another run is at work in" in done.stderr.splitlines()[-1]
 
 

@@ -1,153 +1,150 @@
-"""All stages on a small study: files, a second run without work, the report's sections, and a wrong study."""
+"""All stages on a small study by the command: files, a second run without work, the report's sections, a wrong study."""
 
-import json
+
 import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pandas as pd
 import pytest
-import xarray as xr
+from small_study import PROJECT, small_study
 
-PROJECT = Path(__file__).resolve().parents[2]
-STAGES = "requirements linkage sweep optima limits fits match gearbox winding flux_map drive".split()
-STAGES += "fields figures outcome report".split()
-SMALL = {
-    'id = "motorcycle"': 'id = "small-test-study"',
-    "slots = [9, 12]": "slots = [12]",
-    "[70, 75, 80, 85, 90, 95, 100, 105, 110, 115]": "[75, 80, 85, 90]",
-    "back_iron_steps = 7": "back_iron_steps = 4",
-    "rotor_radius_steps = 6": "rotor_radius_steps = 4",
-    "road_seeds = [0, 1, 2, 3, 4, 5]": "road_seeds = [0]",
-    "road_duration_s = 30.0": "road_duration_s = 5.0",
-    "amplitudes_mm = [-50, -40, -30, -20, -10, 10, 20, 30, 40, 50]": "amplitudes_mm = [-50, 50]",
-    "speeds_km_per_h = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]": "speeds_km_per_h = [50]",
-    "\nseeds = [1, 2, 3, 4]": "\nseeds = [1]",
-    "population = 100": "population = 24",
-    "generations = 150": "generations = 20",
-    "[flux_map]": "[flux_map]\nangles = 2\ncurrents = 5",
-    "ratio_tolerance = 0.03": "ratio_tolerance = 0.015",
-    "dc_bus_voltage_V = 48.0": "dc_bus_voltage_V = 90.0",
-}
+from pipeline.results import Results
+from pipeline.stages import graph_of
+from study.read import read_study
+
 FOLDER = PROJECT / "results" / "small-test-study"
 
 
-def run(stage, study):
-    return subprocess.run(
-        [sys.executable, "-m", f"pipeline.{stage}", str(study)], cwd=PROJECT, capture_output=True, text=True
-    )
+def airgap(*arguments):
+    command = [sys.executable, "-m", "pipeline.cli", *map(str, arguments)]
+    return subprocess.run(command, cwd=PROJECT, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
-    for old, new in SMALL.items():
-        assert old in text
-        text = text.replace(old, new)
-    path = tmp_path_factory.mktemp("study") / "small.toml"
-    path.write_text(text, encoding="utf-8")
+    path = small_study(tmp_path_factory.mktemp("study") / "small.toml")
     shutil.rmtree(FOLDER, ignore_errors=True)
-    for stage in STAGES:
-        done = run(stage, path)
-        assert done.returncode == 0, f"{stage}: {done.stdout}\n{done.stderr}"
+    done = airgap("run", path)
+    assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     yield path
     shutil.rmtree(FOLDER, ignore_errors=True)
 
 
-def test_results_are_labelled_and_have_their_provenance(study):
-    with xr.open_dataset(FOLDER / "design_map.nc") as data:
-        assert data.torque_Nm_per_m.dims == ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
-        assert int(data.torque_Nm_per_m.notnull().sum()) > 40
-    for file in (
-        "design_map.nc",
-        "optima.csv",
-        "winding.json",
-        "reference_nominal.vtu",
-        "figures/fits.png",
-        "requirements.json",
-        "linkage_front.csv",
-        "gearbox.json",
-        "outcome.json",
-        "figures/axial_section.png",
-        "report.html",
-    ):
-        provenance = json.loads((FOLDER / f"{file}.provenance.json").read_text())
-        assert provenance["inputs"] and provenance["packages"] and provenance["wall_time_s"] >= 0
+@pytest.fixture(scope="module")
+def results(study):
+    return Results(FOLDER)
 
 
-def test_every_optimum_holds_the_limit(study):
+def test_every_stage_is_there_with_its_provenance(study, results):
+    for stage in graph_of(read_study(study)).usual:
+        record = results.record(stage.name)
+        assert record["inputs"]["code"] and record["inputs"]["package numpy"] and record["wall_time_s"] >= 0
+    for file in ("optima.csv", "windings.csv", "reference_nominal.vtu", "figures/fits.png", "figures/losses.png",
+                 "linkage_front.csv", "figures/axial_section.png", "flux_map_export.mat", "report.html"):  # fmt: skip
+        assert (FOLDER / file).is_file(), file
+    assert not (FOLDER / "checkpoints").exists() or not list((FOLDER / "checkpoints").iterdir())
+
+
+def test_every_optimum_holds_the_limit(results):
     optima = pd.read_csv(FOLDER / "optima.csv")
     assert len(optima) == 4
     assert optima.limited_T.to_numpy() == pytest.approx(1.2, rel=1e-3)
     assert (optima.torque_overload_linear_Nm_per_m > 1.2 * optima.torque_overload_Nm_per_m).all()
 
 
-def test_a_second_run_does_no_work(study):
-    for stage in STAGES:
-        assert "unchanged" in run(stage, study).stdout
+def test_a_second_run_does_no_work_and_an_edited_byte_is_noticed(study, results):
+    done = airgap("run", study)
+    assert done.returncode == 0 and "done in" not in done.stdout and "report: unchanged" in done.stdout
+    table = FOLDER / "match.csv"
+    good = table.read_bytes()
+    table.write_bytes(good.replace(b"1", b"2", 1))
+    done = airgap("run", study, "--to", "match")
+    assert "match.files: not there" in done.stdout and "match: unchanged" in done.stdout
+    assert table.read_bytes() == good
 
 
 def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     html = (FOLDER / "report.html").read_text(encoding="utf-8")
     titles = [re.sub(r"^\d+\. ", "", title) for title in re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)]
     assert titles[:3] == ["Outcome", "Requirements from the vehicle", "Linkage"]
-    assert titles[-4:-2] == ["Planetary gearbox", "Winding"]  # whole teeth first: they decide about the length
+    assert titles.index("Planetary gearbox") < titles.index("Winding")  # whole teeth first: they decide about the length
     assert titles[-1] == "The vehicle with the designed actuator"
-    assert html.count("data:image/png;base64") == 15 + 5 + 3 + 3 + 3 + 3
-    assert re.search(r"At full current the flux map gives [\d.]+ ± 0\.\d+ Nm", html)
-    assert "regenerative damping 27.7 kNs/m is 12.3 kNs/m below the requirement" in html
+    pictures = {path.stem for path in (FOLDER / "figures").glob("*.png")}
+    assert html.count("data:image/png;base64") == len(pictures)
 
 
-def test_the_computed_requirements_feed_the_match_and_the_stated_ones_stand_beside_it(study):
-    required = json.loads((FOLDER / "requirements.json").read_text())
-    linkage = json.loads((FOLDER / "linkage.json").read_text())
-    match = json.loads((FOLDER / "match.json").read_text())
-    inputs = json.loads((FOLDER / "match.json.provenance.json").read_text())["values"]
-    assert inputs["requirements"]["force_peak_N"] == required["values"]["force_peak_N"] != 2614.0
-    assert inputs["linkage"]["ratio_nominal_mm_per_rad"] == linkage["section"]["ratio_nominal_mm_per_rad"] < 170
-    torque = required["values"]["force_peak_N"] * match["transmission_ratio_mm_per_rad"]  # Nm/1000
-    needed = torque / match["torque_overload_Nm_per_m"]  # the overload force binds (3.66)
-    assert match["active_length_mm"] == pytest.approx(needed, rel=1e-3)
-    assert match["stated_feed"]["active_length_mm"] != pytest.approx(match["active_length_mm"], rel=1e-3)
+def test_the_peak_torque_is_one_number(results):
+    """In the winding, the outcome, the tables and the text of the report."""
+    winding, outcome = results.load("winding"), results.load("outcome")
+    torque = winding.peak_torque
+    assert outcome.features.machine_torque == pytest.approx(torque, rel=1e-6)
+    assert winding.chosen.peak_torque == pytest.approx(torque, rel=1e-6)
+    envelope = pd.read_csv(FOLDER / "flux_map_envelope.csv")
+    assert envelope.torque_field_Nm[0] == pytest.approx(torque, rel=1e-4)
+    html = (FOLDER / "report.html").read_text(encoding="utf-8")
+    assert html.count(f"{torque:.3f} ± {winding.peak_torque_error:.3f} Nm") >= 1
 
 
-def test_what_was_designed_goes_back_into_the_vehicle(study):
-    outcome = json.loads((FOLDER / "outcome.json").read_text())
-    features = {row["feature"]: row["ours"] for row in outcome["features"]}
-    overall = features["linkage, nominal / (mm/rad)"] / features["gearbox, fast over slow speed"]
-    assert features["overall transmission ratio / (mm/rad)"] == pytest.approx(overall)
-    assert {row["actuator"] for row in outcome["worst"]} == {"ideal", "designed"} and len(outcome["ride"]) == 6
-    failing = {row["requirement"] for row in outcome["requirements"] if not row["holds"]}
-    assert {row["requirement"] for row in outcome["remedies"]} == {one for one in failing if "gears" not in one}
+def test_the_computed_requirements_feed_the_match_and_the_stated_ones_stand_beside_it(results):
+    required, linkage, match = (results.load(name) for name in ("requirements", "linkage", "match"))
+    force = abs(required.demands.force_peak.value)
+    assert force != 2614.0 and linkage.built.ratio_nominal < 0.170
+    chosen = match.chosen
+    needed = force * chosen.transmission_ratio / chosen.section.torque_per_length_overload  # the overload binds (3.66)
+    assert chosen.active_length == pytest.approx(needed, rel=1e-3)
+    assert match.stated.match.active_length != pytest.approx(chosen.active_length, rel=1e-3)
 
 
-def test_the_length_makes_up_for_whole_turns_and_teeth(study):
+def test_what_was_designed_goes_back_into_the_vehicle(results):
+    outcome, ride = results.load("outcome"), results.load("ride")
+    features = outcome.features
+    assert features.transmission_ratio == pytest.approx(features.linkage_ratio / features.gear_ratio)
+    assert len(ride.road_ideal) == len(ride.road_designed) == 3
+    assert ride.designed.force_peak <= ride.ideal.force_peak * 1.001
+
+
+def test_the_length_makes_up_for_whole_turns_and_teeth(results):
     """Where the linkage ratio is largest the peak force at rest is what is asked, by the flux map, to its rounding."""
-    outcome = json.loads((FOLDER / "outcome.json").read_text())
-    linkage = json.loads((FOLDER / "match.json.provenance.json").read_text())["values"]["linkage"]
-    (row,) = [row for row in outcome["requirements"] if row["requirement"] == "peak force at rest"]
-    at_largest = row["reached"] * linkage["ratio_nominal_mm_per_rad"] / linkage["ratio_max_mm_per_rad"]
-    assert 1.0 < at_largest / row["needed"] < 1.02
-    length = json.loads((FOLDER / "winding.json").read_text())["length"]
-    assert "set by the peak force" in length["reason"] and length["final_mm"] != pytest.approx(length["matched_mm"])
+    winding, linkage, required = (results.load(name) for name in ("winding", "linkage", "requirements"))
+    outcome = results.load("outcome")
+    at_largest = outcome.features.effort_peak * linkage.built.ratio_nominal / linkage.built.ratio_range[1]
+    assert 1.0 < at_largest / abs(required.demands.force_peak.value) < 1.02
+    assert winding.length.set_by.name == "the peak torque"
 
 
-def test_a_stage_without_its_input_says_what_to_run(study, tmp_path):
-    other = tmp_path / "other.toml"
-    other.write_text(
-        study.read_text(encoding="utf-8").replace("small-test-study", "small-test-never-run"), encoding="utf-8"
-    )
-    done = run("fits", other)
-    assert done.returncode == 1
-    assert "which does not exist; run the stage that writes it" in done.stderr and "Traceback" not in done.stderr
+def test_one_radius_keeps_its_unit_from_the_study_to_the_outcome(study, results):
+    """In metres wherever a stage reads it; in millimetres only in the file and in what people read."""
+    match, winding = results.load("match"), results.load("winding")
+    radius = match.machine.stator_outer_radius
+    assert radius == pytest.approx(read_study(study).match.chosen_stator_diameter_mm / 2e3)
+    assert winding.wound.machine.stator_outer_radius == radius == match.chosen.section.machine.stator_outer_radius
+    assert f">{1e3 * radius:g}<" in (FOLDER / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_wrong_study_stops_the_pipeline_with_one_sentence(tmp_path):
-    path = tmp_path / "wrong.toml"
-    text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
-    path.write_text(text.replace("airgap_mm = 0.5", "airgap_mm = -0.5"), encoding="utf-8")
-    done = run("sweep", path)
+def test_an_unknown_stage_is_named_with_those_there_are(study):
+    done = airgap("run", study, "--to", "fit")
+    assert done.returncode == 2 and "give one of requirements, linkage" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_wrong_study_stops_the_run_with_one_sentence(tmp_path):
+    path = small_study(tmp_path / "wrong.toml", **{"airgap_mm = 0.5": "airgap_mm = -0.5"})
+    done = airgap("run", path)
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1 and "machine.airgap_mm = -0.5" in done.stderr
+
+
+def test_make_knows_the_stages_of_the_graph():
+    lines = (PROJECT / "Makefile").read_text(encoding="utf-8").splitlines()
+    named = next(line for line in lines if line.startswith("STAGES :=")).split(":=")[1].split()
+    stages = [stage.name for stage in graph_of(read_study("motorcycle")).stages]
+    assert sorted(named) == sorted(name for name in stages if name != "optimise")
+
+
+def test_readme_shows_the_graph_as_it_is():
+    from pipeline.graph import drawing
+
+    text = (PROJECT / "README.md").read_text(encoding="utf-8")
+    shown = re.search(r"<!-- graph -->\n```mermaid\n(.*?)\n```\n<!-- /graph -->", text, flags=re.S)
+    assert shown is not None and shown.group(1) == drawing(graph_of(read_study("motorcycle")))

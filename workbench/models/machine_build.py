@@ -6,6 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from zipfile import BadZipFile
 from typing import Callable, Mapping, Sequence
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 import geometry
 import magnetostatics
 import materials
+from disk import write_atomically
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
 from materials.library import load_steel
@@ -130,17 +132,18 @@ class SurrogateBuilder:
     # ---- on disk ------------------------------------------------------------------------------------------------
 
     def _load(self, name: str) -> dict[str, np.ndarray] | None:
-        if self.folder is None or not (self.folder / f"{name}.npz").is_file():
+        """What was kept; None where nothing was, or where it cannot be read."""
+        if self.folder is None:
             return None
-        with np.load(self.folder / f"{name}.npz", allow_pickle=False) as data:
-            return dict(data)
+        try:
+            with np.load(self.folder / f"{name}.npz", allow_pickle=False) as data:
+                return dict(data)
+        except (OSError, ValueError, EOFError, KeyError, BadZipFile):
+            return None
 
     def _save(self, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         if self.folder is not None:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            part = self.folder / f"{name}.part.npz"
-            np.savez(part, **found)
-            part.replace(self.folder / f"{name}.npz")  # whole or not at all
+            write_atomically(self.folder / f"{name}.npz", lambda path: np.savez(path, **found))
         return found
 
 

@@ -1,0 +1,87 @@
+"""Sweep, optima, flux map and blind score on a local cluster give the bytes of one process, a worker killed on the way."""
+
+import os
+import signal
+import threading
+import time
+
+import pytest
+from small_study import small_study
+from test_run import Here
+
+from benchmarks import blind_score
+from pipeline.pools import DaskCluster
+from pipeline.results import Results
+from pipeline.run import Run
+from pipeline.stages import graph_of
+from study.read import read_study
+
+TINY = {
+    "back_iron_steps = 4": "back_iron_steps = 3",
+    "rotor_radius_steps = 4": "rotor_radius_steps = 3",
+    'requirements = "vehicle"': 'requirements = "stated"',
+    'linkage = "optimised"': 'linkage = "stated"',
+}
+FILES = ("sweep.json", "sweep.nc", "optima.json", "fits.json", "match.json", "flux_map.json", "flux_map.nc")
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    pool = DaskCluster(3)
+    yield pool
+    pool.end()
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = small_study(tmp_path_factory.mktemp("study") / "tiny.toml")
+    text = path.read_text(encoding="utf-8")
+    for old, new in TINY.items():
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+    return read_study(path)
+
+
+def run_to_the_flux_map(study, folder, pool):
+    graph = graph_of(study)
+    run = Run(graph, study, Results(folder), pool)
+    with run.results.held():
+        run.all(graph.before(graph.stage("flux_map")))
+    assert not run.failures
+    return {name: (folder / name).read_bytes() for name in FILES}
+
+
+def kill_a_worker_after(checkpoint, cluster):
+    """End one worker process of the cluster as soon as the first tasks are finished."""
+    first = next(iter(cluster.client.run(os.getpid).values()))
+
+    def wait_and_kill():
+        end = time.monotonic() + 120
+        while time.monotonic() < end and not (checkpoint.is_file() and checkpoint.read_bytes().count(b"\n") > 2):
+            time.sleep(0.02)
+        os.kill(first, signal.SIGKILL)
+        killed.append(first)
+
+    killed = []
+    threading.Thread(target=wait_and_kill, daemon=True).start()
+    return killed
+
+
+def test_the_design_chain_is_the_same_to_the_byte(study, cluster, tmp_path):
+    alone = run_to_the_flux_map(study, tmp_path / "alone", Here())
+    killed = kill_a_worker_after(tmp_path / "cluster" / "checkpoints" / "sweep, sweep.jsonl", cluster)
+    together = run_to_the_flux_map(study, tmp_path / "cluster", cluster)
+    assert killed, "no worker was killed on the way"
+    assert [name for name in FILES if alone[name] != together[name]] == []
+
+
+def test_the_blind_score_is_the_same(cluster, tmp_path):
+    chosen = blind_score.tasks(12000, {"damper": {"null": 2, "single": 2}})
+    found = [
+        blind_score.all_cases(chosen, tmp_path / f"{name}.jsonl", "cases", pool)
+        for name, pool in (("here", Here()), ("cluster", cluster))
+    ]
+    for cases in found:
+        assert [case.pop("wall_s") > 0 for case in cases] == [True] * 4
+    assert found[0] == found[1]
