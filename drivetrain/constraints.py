@@ -1,16 +1,19 @@
 """What a machine of given cross-section must be able to do, each as a smallest active length over the ratio.
 
 A constraint does not know whether it is enforced: the caller hands it to the match among the enforced or among the
-reported ones.
+reported ones. What it violates is data; an ``Output`` words it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi, sin
+from typing import ClassVar
 
 import numpy as np
 
+from drivetrain.finding import Finding
+from drivetrain.output import Output, amount
 from units import MILLIMETRE
 
 CAPABILITY_SLACK = 1e-6  # relative; a capability this close below its requirement is met
@@ -18,9 +21,37 @@ Numbers = float | np.ndarray  # one value or an array of any shape
 
 
 class Constraint:
-    """One limit on the pair (transmission ratio tau_t [m/rad], active length l_em [m])."""
+    """One limit on the pair (transmission ratio tau_t [m/rad], active length l_em [m]).
 
-    name: str = "constraint"
+    at_most: whether what is reached must not exceed what is needed
+    """
+
+    at_most: ClassVar[bool] = False
+
+    def name(self, output: Output) -> str:
+        """What is limited, in words."""
+        raise NotImplementedError
+
+    def quantity(self, output: Output) -> str:
+        """What is reached and needed, in words."""
+        return self.name(output)
+
+    def unit(self, output: Output) -> str:
+        """Drawing unit of that quantity, a key of ``units.FACTORS``; empty for a pure number."""
+        raise NotImplementedError
+
+    @property
+    def needed(self) -> float:
+        """The limit, in the unit of the limited quantity [SI]."""
+        raise NotImplementedError
+
+    def capability(self, ratio: float, length: float) -> float:
+        """What is reached, in the unit of ``needed``; ratio: tau_t [m/rad]; length: l_em [m]."""
+        raise NotImplementedError
+
+    def remedy(self, violation: Violation, output: Output) -> str:
+        """What it would take, as the end of a sentence."""
+        raise NotImplementedError
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
         """Smallest active length allowed at these ratios [m], same shape as ``ratio``; not falling in the ratio."""
@@ -34,12 +65,47 @@ class Constraint:
         """Smallest transmission ratio allowed [m/rad]."""
         return 0.0
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        """Sentence on what is missing and what it would take, or None when the constraint is met.
+    def violation(self, ratio: float, length: float) -> Violation | None:
+        """What is missing, None when the constraint is met; ratio: tau_t [m/rad]; length: l_em [m]."""
+        reached = self.capability(ratio, length)
+        if self.at_most:
+            met = reached <= self.needed * (1 + CAPABILITY_SLACK)
+        else:
+            met = reached >= self.needed * (1 - CAPABILITY_SLACK)
+        return None if met else Violation(self, reached, ratio, length)
 
-        ratio: tau_t [m/rad]; length: l_em [m]
-        """
-        raise NotImplementedError
+
+@dataclass(frozen=True)
+class Violation(Finding):
+    """A constraint that is not met.
+
+    reached: [SI], in the unit of ``constraint.needed``; ratio: tau_t [m/rad]; length: l_em [m]
+    """
+
+    constraint: Constraint
+    reached: float
+    ratio: float
+    length: float
+
+    def words(self, output: Output) -> str:
+        """What is missing and what it would take."""
+        constraint = self.constraint
+        reached, needed, apart = (
+            amount(value, constraint.unit(output))
+            for value in (self.reached, constraint.needed, abs(constraint.needed - self.reached))
+        )
+        limit = f"above the limit of {needed}" if constraint.at_most else f"{apart} below the requirement of {needed}"
+        remedy = constraint.remedy(self, output)
+        return f"{constraint.quantity(output)} {reached} is {limit}" + (f"; {remedy}" if remedy else "")
+
+
+def _longer(violation: Violation, output: Output) -> str:
+    """The active length at which a constraint would be met."""
+    wanted = violation.constraint.minimum_length(violation.ratio)
+    return (
+        f"at {output.ratio(violation.ratio)} it would need {wanted / MILLIMETRE:.1f} mm of active length instead of "
+        f"{violation.length / MILLIMETRE:.1f} mm"
+    )
 
 
 class _Force(Constraint):
@@ -52,18 +118,18 @@ class _Force(Constraint):
         return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Force at the wheel, r_Tl l_em / tau_t [N]; ratio: tau_t [m/rad]."""
+        """Force (on a shaft: torque) at the output, r_Tl l_em / tau_t [N]; ratio: tau_t [m/rad]."""
         return self.torque_per_length * length / ratio
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        reached = self.capability(ratio, length)
-        if reached >= self.force * (1 - CAPABILITY_SLACK):
-            return None
-        return (
-            f"{self.name} {reached:.0f} N is {self.force - reached:.0f} N below the requirement of {self.force:.0f} N; "
-            f"at {ratio / MILLIMETRE:.3g} mm/rad it would need {self.minimum_length(ratio) / MILLIMETRE:.1f} mm of "
-            f"active length instead of {length / MILLIMETRE:.1f} mm"
-        )
+    @property
+    def needed(self) -> float:
+        return self.force
+
+    def unit(self, output: Output) -> str:
+        return output.effort_unit
+
+    def remedy(self, violation: Violation, output: Output) -> str:
+        return _longer(violation, output)
 
 
 @dataclass(frozen=True)
@@ -72,7 +138,9 @@ class NominalForce(_Force):
 
     force: float
     torque_per_length: float
-    name: str = "nominal force"
+
+    def name(self, output: Output) -> str:
+        return f"nominal {output.effort}"
 
 
 @dataclass(frozen=True)
@@ -81,7 +149,9 @@ class OverloadForce(_Force):
 
     force: float
     torque_per_length: float
-    name: str = "overload force"
+
+    def name(self, output: Output) -> str:
+        return f"overload {output.effort}"
 
 
 @dataclass(frozen=True)
@@ -96,7 +166,16 @@ class RegenerativeDamping(Constraint):
     damping: float
     alpha: float
     end_turn_length: float
-    name: str = "regenerative damping"
+
+    @property
+    def needed(self) -> float:
+        return self.damping
+
+    def name(self, output: Output) -> str:
+        return "regenerative damping"
+
+    def unit(self, output: Output) -> str:
+        return output.damping_unit
 
     def minimum_length(self, ratio: Numbers) -> Numbers:
         """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping.
@@ -109,43 +188,43 @@ class RegenerativeDamping(Constraint):
         return ((1 + np.sqrt(1 + 4 * self.end_turn_length * a)) / (2 * a))[()]
 
     def capability(self, ratio: float, length: float) -> float:
-        """Largest damping coefficient at the wheel [Ns/m] (3.92); ratio: tau_t [m/rad]."""
+        """Largest damping coefficient at the output [Ns/m] (3.92); ratio: tau_t [m/rad]."""
         return self.alpha * length**2 / (length + self.end_turn_length) / ratio**2
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        """See ``Constraint``; ratio: tau_t [m/rad]."""
-        reached = self.capability(ratio, length)
-        if reached >= self.damping * (1 - CAPABILITY_SLACK):
-            return None
-        return (
-            f"{self.name} {reached / 1e3:.1f} kNs/m is {(self.damping - reached) / 1e3:.1f} kNs/m below the "
-            f"requirement of {self.damping / 1e3:g} kNs/m; at {ratio / MILLIMETRE:.3g} mm/rad it would need "
-            f"{self.minimum_length(ratio) / MILLIMETRE:.1f} mm of active length instead of "
-            f"{length / MILLIMETRE:.1f} mm, or {self.damping / reached:.2f} times the squared torque per length for "
-            "the same copper"
-        )
+    def remedy(self, violation: Violation, output: Output) -> str:
+        share = self.damping / violation.reached
+        return f"{_longer(violation, output)}, or {share:.2f} times the squared torque per length for the same copper"
 
 
 @dataclass(frozen=True)
 class SpeedLimit(Constraint):
-    """tau_t >= v_max / omega_max (3.64): velocity [m/s] at the wheel, speed [rad/s] of the rotor."""
+    """tau_t >= v_max / omega_max (3.64): velocity [m/s] at the output (on a shaft its speed), speed [rad/s] of the
+    rotor."""
 
     velocity: float
     speed: float
-    name: str = "rotor speed"
+    at_most: ClassVar[bool] = True
+
+    @property
+    def needed(self) -> float:
+        return self.speed
+
+    def name(self, output: Output) -> str:
+        return "rotor speed"
+
+    def unit(self, output: Output) -> str:
+        return "rad_per_s"
 
     def minimum_ratio(self) -> float:
         """v_max / omega_max [m/rad]."""
         return abs(self.velocity) / self.speed
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        """See ``Constraint``; ratio: tau_t [m/rad]."""
-        if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
-            return None
-        return (
-            f"{self.name} {abs(self.velocity) / ratio:.0f} rad/s is above the limit of {self.speed:.0f} rad/s; it "
-            f"would need a transmission ratio of {self.minimum_ratio() / MILLIMETRE:.3f} mm/rad at least"
-        )
+    def capability(self, ratio: float, length: float) -> float:
+        """Speed of the rotor [rad/s]; ratio: tau_t [m/rad]."""
+        return abs(self.velocity) / ratio
+
+    def remedy(self, violation: Violation, output: Output) -> str:
+        return f"it would need a transmission ratio of {output.ratio(self.minimum_ratio())} at least"
 
 
 @dataclass(frozen=True)
@@ -153,16 +232,27 @@ class LengthLimit(Constraint):
     """l_em <= l_max (3.62): packaging and a rotor that is not too slender; length [m]."""
 
     length: float
-    name: str = "active length"
+    at_most: ClassVar[bool] = True
+
+    @property
+    def needed(self) -> float:
+        return self.length
+
+    def name(self, output: Output) -> str:
+        return "active length"
+
+    def unit(self, output: Output) -> str:
+        return "mm"
 
     def maximum_length(self) -> float:
         return self.length
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        """See ``Constraint``; ratio: tau_t [m/rad]."""
-        if length <= self.length * (1 + CAPABILITY_SLACK):
-            return None
-        return f"{self.name} {length / MILLIMETRE:.1f} mm is above the limit of {self.length / MILLIMETRE:.1f} mm"
+    def capability(self, ratio: float, length: float) -> float:
+        """The length itself [m]; ratio: tau_t [m/rad]."""
+        return length
+
+    def remedy(self, violation: Violation, output: Output) -> str:
+        return ""
 
 
 def largest_stage_ratio(planets: int) -> float:
@@ -187,7 +277,20 @@ class PlanetClearance(Constraint):
     stage_count: int
     planets: int
     linkage_ratio: float
-    name: str = "planet clearance"
+    at_most: ClassVar[bool] = True
+
+    @property
+    def needed(self) -> float:
+        return largest_stage_ratio(self.planets)
+
+    def name(self, output: Output) -> str:
+        return "planet clearance"
+
+    def quantity(self, output: Output) -> str:
+        return "stage ratio"
+
+    def unit(self, output: Output) -> str:
+        return ""
 
     def minimum_ratio(self) -> float:
         """tau_l / i_max^N [m/rad], 0 for a direct drive."""
@@ -196,16 +299,13 @@ class PlanetClearance(Constraint):
         touching = self.linkage_ratio / largest_stage_ratio(self.planets) ** self.stage_count
         return touching * (1 + CAPABILITY_SLACK)
 
-    def violation(self, ratio: float, length: float) -> str | None:
-        """See ``Constraint``; ratio: tau_t [m/rad]."""
-        if ratio >= self.minimum_ratio() * (1 - CAPABILITY_SLACK):
-            return None
-        stage_ratio = (self.linkage_ratio / ratio) ** (1 / self.stage_count)
-        return (
-            f"{self.planets} planets overlap at a stage ratio of {stage_ratio:.2f}, they clear each other below "
-            f"{largest_stage_ratio(self.planets):.2f}; it would need more stages, or "
-            f"{self.minimum_ratio() / MILLIMETRE:.3f} mm/rad at least"
-        )
+    def capability(self, ratio: float, length: float) -> float:
+        """The ratio of one of the equal stages, dimensionless; ratio: tau_t [m/rad]."""
+        return (self.linkage_ratio / ratio) ** (1 / self.stage_count) if self.stage_count else 1.0
+
+    def remedy(self, violation: Violation, output: Output) -> str:
+        least = output.ratio(self.minimum_ratio())
+        return f"above it {self.planets} planets overlap, it would need more stages or {least} at least"
 
 
 def damping_coefficient(

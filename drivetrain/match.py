@@ -22,9 +22,12 @@ from drivetrain.constraints import (
     PlanetClearance,
     RegenerativeDamping,
     SpeedLimit,
+    Violation,
     damping_coefficient,
 )
+from drivetrain.finding import Finding, Sentence
 from drivetrain.masses import CopperBars, MassModel
+from drivetrain.output import Output
 from drivetrain.planetary import Gearbox, GearboxDesign
 from drivetrain.requirements import Requirements
 from electrical.end_turn import end_turn_length
@@ -37,7 +40,15 @@ BOUND_SLACK = 1e-6  # relative; an optimum this close to a bound counts as lying
 
 
 class MatchError(ValueError):
-    """No gearbox and motor satisfy the enforced constraints; the message names them and the key to move."""
+    """Nothing can be matched; the message says why and which key to move."""
+
+
+class Infeasible(ValueError):
+    """No gearbox and motor satisfy the enforced constraints; finding: which, and the key to move."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding)
+        self.finding = finding
 
 
 @dataclass(frozen=True)
@@ -165,8 +176,8 @@ class Match:
     """The optimum for one cross-section.
 
     binding: the enforced constraint whose length curve the optimum lies on
-    bound: sentence when the optimum lies on an end of the allowed ratios, else None
-    notes: violated reported constraints and gearbox remarks, in words
+    bound: when the optimum lies on an end of the allowed ratios, else None
+    notes: violated reported constraints and gearbox remarks
     """
 
     section: SizedSection
@@ -176,8 +187,8 @@ class Match:
     gearbox: Gearbox
     binding: Constraint
     ratio_bounds: tuple[float, float]  # [m/rad]
-    bound: str | None
-    notes: tuple[str, ...]
+    bound: Finding | None
+    notes: tuple[Finding, ...]
 
     @property
     def total_cost(self) -> float:
@@ -186,11 +197,26 @@ class Match:
 
 
 @dataclass(frozen=True)
+class LengthCurve:
+    """What a constraint asks for.
+
+    length: active length [m], (n,), over the transmission ratios of ``MatchCurves``
+    """
+
+    constraint: Constraint
+    length: np.ndarray
+
+    def name(self, output: Output) -> str:
+        """Of the constraint."""
+        return self.constraint.name(output)
+
+
+@dataclass(frozen=True)
 class MatchCurves:
-    """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio``."""
+    """The match over the transmission ratio, for plotting (thesis Fig. 3.25); arrays over ``ratio`` (n,)."""
 
     ratio: np.ndarray  # [m/rad], (n,)
-    minimum_length: dict[str, np.ndarray]  # [m], (n,), by name of the constraint, enforced and reported
+    lengths: tuple[LengthCurve, ...]  # of the constraints that ask for one, enforced and reported
     active_length: np.ndarray  # [m], (n,), the largest of the enforced ones
     feasible: np.ndarray  # whether inside ratio and length bounds, (n,)
     radius_term: np.ndarray  # dimensionless, (n,)
@@ -217,7 +243,7 @@ class RadiusMatches:
     transmission_ratio: np.ndarray
     active_length: np.ndarray
     cost: np.ndarray
-    refusals: tuple[str | None, ...]
+    refusals: tuple[Finding | None, ...]
     best: Match
     at_edge: str | None
 
@@ -338,11 +364,11 @@ def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
 def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
     """Smallest and largest transmission ratio that the enforced constraints and the gear geometry leave [m/rad].
 
-    Raises MatchError when they leave none, naming the constraint that asks for too much length.
+    Raises Infeasible when they leave none, naming the constraint that asks for too much length.
     """
     low, high = _gear_bounds(enforced, gearbox)
     longest = min(constraint.maximum_length() for constraint in enforced)
-    _check_start(enforced, low, high, longest)
+    _check_start(enforced, gearbox, low, high, longest)
     if low == high or active_length(enforced, high) <= longest:
         return low, high
     return low, brentq(lambda ratio: active_length(enforced, ratio) - longest, low, high, xtol=1e-15)
@@ -368,11 +394,11 @@ def match(
     """Transmission ratio and active length of least cost for one cross-section.
 
     enforced: constraints that shape the length curve and the bounds; at least one must ask for a length
-    reported: constraints that are only checked at the optimum; a violated one becomes a sentence in ``notes``
+    reported: constraints that are only checked at the optimum; a violated one is among the ``notes``
     gearbox: at the linkage that drives it; model: what is made small
 
     Scans the allowed ratios, then refines round the best sample; the ends of the range take part.
-    Raises MatchError when the enforced constraints leave no ratio.
+    Raises Infeasible when the enforced constraints leave no ratio.
     Source: thesis, "Optimization approach" of the match, Fig. 3.25.
     """
     bounds = ratio_bounds(enforced, gearbox)
@@ -388,8 +414,8 @@ def match(
         gearbox=box,
         binding=max(enforced, key=lambda constraint: constraint.minimum_length(ratio)),
         ratio_bounds=bounds,
-        bound=_bound_sentence(ratio, bounds, enforced),
-        notes=_violations(reported, ratio, length) + box.notes,
+        bound=_on_bound(ratio, bounds, enforced),
+        notes=(*_violations(reported, ratio, length), *(Sentence(note) for note in box.notes)),
     )
 
 
@@ -407,16 +433,16 @@ def match_curves(
     ratio: [m/rad], (n,)
 
     The cost is given outside the bounds too, for the curve; ``feasible`` tells where it counts. Constraints without
-    a length curve (speed, length) are left out of ``minimum_length``.
+    a length curve (speed, length) are left out of ``lengths``.
     """
     ratio = np.asarray(ratio, dtype=float)
     design = _Design(section, enforced, gearbox, model)
     costs = [design.evaluate(value) for value in ratio]
-    lengths = {c.name: np.asarray(c.minimum_length(ratio)) for c in enforced + reported}
+    lengths = (LengthCurve(one, np.asarray(one.minimum_length(ratio))) for one in enforced + reported)
     low, high = ratio_bounds(enforced, gearbox)
     return MatchCurves(
         ratio=ratio,
-        minimum_length={name: length for name, length in lengths.items() if np.any(length > 0)},
+        lengths=tuple(one for one in lengths if np.any(one.length > 0)),
         active_length=np.asarray(active_length(enforced, ratio)),
         feasible=(ratio >= low) & (ratio <= high),
         radius_term=np.array([cost.radius_term for cost in costs]),
@@ -438,7 +464,7 @@ def match_over_radius(
     section_at: stator outer radius [m] -> cross-section, for example from the polynomial fits
     radii: [m], (n,), two or more, rising
     constraints_of: cross-section -> constraints, for example of a ``DampingReading``
-    Raises MatchError when no radius has a match.
+    Raises Infeasible when no radius has a match.
     Source: thesis, "Optimization output" of the match, Fig. 3.26.
     """
     radii = _increasing(radii)
@@ -449,10 +475,10 @@ def match_over_radius(
         return match(section, enforced=chosen.enforced, reported=chosen.reported, gearbox=gearbox, model=model)
 
     results = [_attempt(at, radius) for radius in radii]
-    refusals = tuple(result if isinstance(result, str) else None for result in results)
+    refusals = tuple(result if isinstance(result, Finding) else None for result in results)
     ratio, length, cost = np.array([_numbers(result) for result in results]).T
-    if None not in refusals:
-        raise MatchError(f"no stator radius has a match; at {radii[-1] / MILLIMETRE:g} mm: {refusals[-1]}")
+    if refusals[-1] is not None and None not in refusals:
+        raise Infeasible(NoRadius(float(radii[-1]), refusals[-1]))
     best = at(_best_radius(at, radii, cost))
     return RadiusMatches(radii, ratio, length, cost, refusals, best, _edge_sentence(best, radii))
 
@@ -492,27 +518,18 @@ def _refine(cost: Callable[[float], float], grid: np.ndarray, best: int) -> floa
     return min((float(inner.x), float(grid[best])), key=cost)
 
 
-def _check_start(enforced: tuple[Constraint, ...], low: float, high: float, longest: float) -> None:
-    """Raise MatchError where not even the smallest allowed ratio has a machine."""
+def _check_start(
+    enforced: tuple[Constraint, ...], gearbox: GearboxDesign, low: float, high: float, longest: float
+) -> None:
+    """Raise Infeasible where not even the smallest allowed ratio has a machine."""
     lowest = _sets_the_smallest_ratio(enforced)
     if low > high:
-        raise MatchError(
-            f"the {lowest.name} asks for at least {low / MILLIMETRE:.4g} mm/rad, the planets vanish at "
-            f"{high / MILLIMETRE:.4g} mm/rad (stage ratio 2, none in a direct drive): use fewer gear stages "
-            "(match.gearbox_stages) or allow a faster rotor (match.speed_max_rad_per_s)"
-        )
+        raise Infeasible(NoRatio(lowest, low, high, gearbox.stage_count))
     if not active_length(enforced, high) > 0:
-        raise MatchError(
-            "no enforced constraint asks for an active length; require a force, or a damping with match.enforce_damping"
-        )
+        raise Infeasible(NoLength())
     hardest = max(enforced, key=lambda constraint: constraint.minimum_length(low))
     if hardest.minimum_length(low) > longest:
-        raise MatchError(
-            f"{hardest.name} needs {hardest.minimum_length(low) / MILLIMETRE:.1f} mm of active length at the smallest "
-            f"allowed ratio of {low / MILLIMETRE:.3f} mm/rad, set by the {lowest.name}; the limit is "
-            f"{longest / MILLIMETRE:.1f} mm: relax one of the two ({_lowers(lowest)}, match.length_max_mm) or take a "
-            "larger stator (sweep.stator_diameters_mm)"
-        )
+        raise Infeasible(TooLong(hardest, float(hardest.minimum_length(low)), longest, lowest, low))
 
 
 def _sets_the_smallest_ratio(enforced: tuple[Constraint, ...]) -> Constraint:
@@ -524,29 +541,123 @@ def _lowers(lowest: Constraint) -> str:
     return "more match.gearbox_stages" if isinstance(lowest, PlanetClearance) else "match.speed_max_rad_per_s"
 
 
-def _bound_sentence(ratio: float, bounds: tuple[float, float], enforced: tuple[Constraint, ...]) -> str | None:
+def _on_bound(ratio: float, bounds: tuple[float, float], enforced: tuple[Constraint, ...]) -> Finding | None:
     low, high = bounds
     if low == high:
         return None
     if ratio <= low * (1 + BOUND_SLACK):
-        lowest = _sets_the_smallest_ratio(enforced)
-        return (
-            f"the optimum lies on the smallest allowed transmission ratio, {low / MILLIMETRE:.3f} mm/rad, set by the "
-            f"{lowest.name} ({_lowers(lowest)})"
-        )
+        return OnSmallestRatio(_sets_the_smallest_ratio(enforced), low)
     if ratio >= high * (1 - BOUND_SLACK):
         length = float(active_length(enforced, high))
         longest = min(constraint.maximum_length() for constraint in enforced)
-        key = "match.length_max_mm" if length >= longest * (1 - BOUND_SLACK) else "fewer match.gearbox_stages"
-        return (
-            f"the optimum lies on the largest allowed transmission ratio, {high / MILLIMETRE:.3f} mm/rad "
-            f"({length / MILLIMETRE:.1f} mm of active length; {key})"
-        )
+        return OnLargestRatio(high, length, longest)
     return None
 
 
-def _violations(reported: tuple[Constraint, ...], ratio: float, length: float) -> tuple[str, ...]:
-    return tuple(filter(None, (constraint.violation(ratio, length) for constraint in reported)))
+# ---- what is found --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class NoRatio(Finding):
+    """A constraint asks for a larger ratio than so many gear stages can have; least: [m/rad]; largest: [m/rad]."""
+
+    lowest: Constraint
+    least: float
+    largest: float
+    stage_count: int
+
+    def words(self, output: Output) -> str:
+        asked = f"the {self.lowest.name(output)} asks for at least {output.ratio(self.least)}"
+        largest = output.ratio(self.largest)
+        if self.stage_count == 0:
+            return (
+                f"{asked}, a direct drive has {largest}: allow a faster rotor (match.speed_max_rad_per_s) or take "
+                "gears (match.gearbox_stages)"
+            )
+        return (
+            f"{asked}, the planets vanish at {largest} (stage ratio 2): use fewer gear stages (match.gearbox_stages) "
+            "or allow a faster rotor (match.speed_max_rad_per_s)"
+        )
+
+
+@dataclass(frozen=True)
+class NoLength(Finding):
+    """Nothing that is enforced needs a machine."""
+
+    def words(self, output: Output) -> str:
+        return (
+            f"no enforced constraint asks for an active length; require a {output.effort}, or a damping with "
+            "match.enforce_damping"
+        )
+
+
+@dataclass(frozen=True)
+class TooLong(Finding):
+    """A constraint needs more length than the longest allowed, even at the smallest ratio that the other leaves.
+
+    needed: [m]; longest: [m]; ratio: the smallest [m/rad]
+    """
+
+    hardest: Constraint
+    needed: float
+    longest: float
+    lowest: Constraint
+    ratio: float
+
+    def words(self, output: Output) -> str:
+        return (
+            f"{self.hardest.name(output)} needs {self.needed / MILLIMETRE:.1f} mm of active length at the smallest "
+            f"allowed ratio of {output.ratio(self.ratio)}, set by the {self.lowest.name(output)}; the limit is "
+            f"{self.longest / MILLIMETRE:.1f} mm: relax one of the two ({_lowers(self.lowest)}, match.length_max_mm) "
+            "or take a larger stator (sweep.stator_diameters_mm)"
+        )
+
+
+@dataclass(frozen=True)
+class NoRadius(Finding):
+    """Not one stator radius has a match; refusal: of the largest, radius [m]."""
+
+    radius: float
+    refusal: Finding
+
+    def words(self, output: Output) -> str:
+        return f"no stator radius has a match; at {self.radius / MILLIMETRE:g} mm: {self.refusal.words(output)}"
+
+
+@dataclass(frozen=True)
+class OnSmallestRatio(Finding):
+    """The optimum lies on the smallest allowed ratio: [m/rad]; lowest: what sets it."""
+
+    lowest: Constraint
+    ratio: float
+
+    def words(self, output: Output) -> str:
+        return (
+            f"the optimum lies on the smallest allowed transmission ratio, {output.ratio(self.ratio)}, set by the "
+            f"{self.lowest.name(output)} ({_lowers(self.lowest)})"
+        )
+
+
+@dataclass(frozen=True)
+class OnLargestRatio(Finding):
+    """The optimum lies on the largest allowed ratio: [m/rad]; length: of the machine there; longest: allowed [m]."""
+
+    ratio: float
+    length: float
+    longest: float
+
+    def words(self, output: Output) -> str:
+        too_long = self.length >= self.longest * (1 - BOUND_SLACK)
+        key = "match.length_max_mm" if too_long else "fewer match.gearbox_stages"
+        return (
+            f"the optimum lies on the largest allowed transmission ratio, {output.ratio(self.ratio)} "
+            f"({self.length / MILLIMETRE:.1f} mm of active length; {key})"
+        )
+
+
+def _violations(reported: tuple[Constraint, ...], ratio: float, length: float) -> tuple[Violation, ...]:
+    found = (constraint.violation(ratio, length) for constraint in reported)
+    return tuple(one for one in found if one is not None)
 
 
 def _increasing(radii: np.ndarray) -> np.ndarray:
@@ -556,17 +667,17 @@ def _increasing(radii: np.ndarray) -> np.ndarray:
     return radii
 
 
-def _attempt(at: Callable[[float], Match], radius: float) -> Match | str:
-    """The match at this radius, or the sentence that says why there is none."""
+def _attempt(at: Callable[[float], Match], radius: float) -> Match | Finding:
+    """The match at this radius, or why there is none."""
     try:
         return at(radius)
-    except MatchError as refusal:
-        return str(refusal)
+    except Infeasible as refusal:
+        return refusal.finding
 
 
-def _numbers(result: Match | str) -> tuple[float, float, float]:
+def _numbers(result: Match | Finding) -> tuple[float, float, float]:
     """Transmission ratio, active length and cost; NaN where there is no match."""
-    if isinstance(result, str):
+    if isinstance(result, Finding):
         return nan, nan, nan
     return result.transmission_ratio, result.active_length, result.cost.total
 
@@ -574,7 +685,7 @@ def _numbers(result: Match | str) -> tuple[float, float, float]:
 def _best_radius(at: Callable[[float], Match], radii: np.ndarray, costs: np.ndarray) -> float:
     def cost(radius: float) -> float:
         result = _attempt(at, radius)
-        return inf if isinstance(result, str) else result.cost.total
+        return inf if isinstance(result, Finding) else result.cost.total
 
     with np.errstate(invalid="ignore"):  # the parabola of the search through a radius without a match
         return _refine(cost, radii, int(np.nanargmin(costs)))

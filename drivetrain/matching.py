@@ -14,6 +14,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from drivetrain.finding import Finding, Sentence
 from drivetrain.masses import DrawnParts, MassModel, PartMasses, PartMaterials, SteelCylinder
 from drivetrain.match import (
     Constraints,
@@ -22,6 +23,7 @@ from drivetrain.match import (
     CostScales,
     CostWeights,
     DampingReading,
+    Infeasible,
     Match,
     MatchCurves,
     MatchError,
@@ -34,6 +36,7 @@ from drivetrain.match import (
     match_over_radius,
     planet_clearance,
 )
+from drivetrain.output import Output
 from drivetrain.planetary import GearboxDesign, GearLaws
 from drivetrain.requirements import Linkage, Requirements
 from geometry.family import MatchedMachine
@@ -167,7 +170,7 @@ class SlotMatches:
     slots: int
     overload: OverloadLaw
     over_radius: RadiusMatches | None
-    refusal: str | None = None
+    refusal: Finding | None = None
 
 
 @dataclass(frozen=True)
@@ -177,7 +180,7 @@ class NamedMatch:
     name: str
     reason: str
     match: Match | None
-    refusal: str | None = None
+    refusal: Finding | None = None
 
 
 @dataclass(frozen=True)
@@ -211,10 +214,10 @@ class MatchOutcome:
     length_limit: float
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Finding, ...]:
         """What must not be overlooked: an optimum outside the range or on a bound, violated constraints."""
-        said = (self.at_edge, self.chosen.bound, *self.chosen.notes)
-        return tuple(sentence for sentence in said if sentence is not None)
+        edge = None if self.at_edge is None else Sentence(self.at_edge)
+        return tuple(one for one in (edge, self.chosen.bound, *self.chosen.notes) if one is not None)
 
 
 @dataclass(frozen=True)
@@ -261,7 +264,7 @@ class Matcher:
         return replace(found, enforced=(*found.enforced, planets))
 
     def match(self, section: SizedSection) -> Match:
-        """Of one cross-section. Raises MatchError."""
+        """Of one cross-section. Raises Infeasible."""
         found = self.constraints(section)
         return match(section, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox, model=self.model)
 
@@ -277,8 +280,10 @@ class Matcher:
                 gearbox=self.gearbox,
                 model=self.model,
             )
-        except (MatchError, FitRefused) as refusal:
-            return SlotMatches(slots, overload, None, str(refusal))
+        except Infeasible as refusal:
+            return SlotMatches(slots, overload, None, refusal.finding)
+        except FitRefused as refusal:
+            return SlotMatches(slots, overload, None, Sentence(str(refusal)))
         return SlotMatches(slots, overload, found)
 
     def curves(self, chosen: Match) -> MatchCurves:
@@ -301,8 +306,8 @@ class Matcher:
         """The match of one cross-section, or why it has none."""
         try:
             return NamedMatch(name, reason, self.match(section))
-        except MatchError as refusal:
-            return NamedMatch(name, reason, None, str(refusal))
+        except Infeasible as refusal:
+            return NamedMatch(name, reason, None, refusal.finding)
 
 
 def sized_section(
@@ -330,24 +335,26 @@ def match_stage(
     linkage: Linkage,
     stated: StatedDemands | None,
     inputs: MatchInputs,
+    output: Output,
 ) -> MatchOutcome:
     """Match gearbox and motor for all slot counts and radii, and choose the machine to go on with.
 
     case: materials, winding and currents of the field solutions of the reference machine
     fits: of the optimised cross-sections; requirements, linkage: what is to be met
     stated: the reference machine is matched with these where they are given, and the chosen one a second time
+    output: in whose words a refusal is said
     Raises MatchError where nothing can be chosen, with the key of the study to move.
     Source: thesis eqs 3.62-3.102, Figs 3.25 and 3.26.
     """
     drawn = DrawnParts(inputs.masses, case.packing)
     matcher = Matcher(case, fits, requirements, linkage, inputs, drawn)
     results = tuple(matcher.over_radius(slots, law) for slots in inputs.slots for law in OVERLOAD_LAWS)
-    best = _least(tuple(one for one in results if one.overload == inputs.overload))
-    chosen, reason = _choose(matcher, best)
+    best = _least(tuple(one for one in results if one.overload == inputs.overload), output)
+    chosen, reason = _choose(matcher, best, output)
     cylinder = SteelCylinder(inputs.gear_laws.density)
     beside = matcher if stated is None else replace(matcher, requirements=stated.requirements, linkage=stated.linkage)
     reference = solved_section(case, case.family.reference)
-    found = MatchOutcome(
+    return MatchOutcome(
         chosen=chosen,
         machine=chosen.section.machine,
         overload=inputs.overload,
@@ -362,9 +369,6 @@ def match_stage(
         curves=matcher.curves(chosen),
         length_limit=inputs.limits.active_length,
     )
-    for line in (reason, *found.notes):
-        print(f"match: {line}")
-    return found
 
 
 def matched_machine(found: MatchOutcome) -> MatchedMachine:
@@ -372,21 +376,36 @@ def matched_machine(found: MatchOutcome) -> MatchedMachine:
     return MatchedMachine(found.machine)
 
 
-def _least(results: tuple[SlotMatches, ...]) -> RadiusMatches:
+def _least(results: tuple[SlotMatches, ...], output: Output) -> RadiusMatches:
     """Those of the slot count with the least cost; MatchError with every reason where no slot count has a match."""
     found = [one.over_radius for one in results if one.over_radius is not None]
     if not found:
-        reasons = "; ".join(f"{one.slots} slots: {one.refusal}" for one in results)
+        said = ((one.slots, one.refusal.words(output)) for one in results if one.refusal is not None)
+        reasons = "; ".join(f"{slots} slots: {words}" for slots, words in said)
         raise MatchError(f"no slot count of sweep.slots has a match: {reasons}")
     return min(found, key=lambda one: one.best.cost.total)
 
 
-def _choose(matcher: Matcher, best: RadiusMatches) -> tuple[Match, str]:
+def _choose(matcher: Matcher, best: RadiusMatches, output: Output) -> tuple[Match, str]:
     """The designer's choice of machine, or the least cost, and why."""
     if matcher.inputs.by_hand.nothing:
         return best.best, "least cost over all radii and slot counts"
-    chosen = matcher.match(_section_by_hand(matcher, best.best.section.machine))
+    section = _section_by_hand(matcher, best.best.section.machine)
+    try:
+        chosen = matcher.match(section)
+    except Infeasible as refusal:
+        raise MatchError(_no_match_by_hand(section.machine, best.best, refusal.finding.words(output))) from None
     return chosen, _comparison(chosen, best)
+
+
+def _no_match_by_hand(machine: Machine, best: Match, why: str) -> str:
+    least = best.section.machine
+    return (
+        f"the machine chosen in the study file ({machine.slots} slots, "
+        f"{2 * machine.stator_outer_radius / MILLIMETRE:g} mm) has no match: {why}; or choose another with "
+        f"match.chosen_slots and match.chosen_stator_diameter_mm, the least cost belongs to {least.slots} slots and "
+        f"{2 * least.stator_outer_radius / MILLIMETRE:.1f} mm"
+    )
 
 
 def _section_by_hand(matcher: Matcher, least: Machine) -> SizedSection:

@@ -23,12 +23,20 @@ def in_unit(value: Any, unit: str) -> Any:
     return value / FACTORS.get(unit, 1.0)
 
 
+def amount(value: float, unit: str) -> str:
+    """``1.64 m/s`` of a number in SI and the unit to show it in."""
+    shown = in_unit(value, unit)
+    digits = f"{shown:.3g}" if abs(shown) < 1000 else f"{shown:.0f}"
+    return f"{digits} {written(unit)}" if unit else digits
+
+
 @dataclass(frozen=True)
 class Output:
     """Words and drawing units of the output; units are keys of ``units.FACTORS``, empty for a pure number.
 
     place: where it is; end: side of the actuator that faces it; effort, speed, inertia: what they are called there
-    axis_unit: of the effort in figures
+    inertia_key: of the study, where the inertia that counts as 1 is stated; axis_unit: of the effort in figures
+    transmission: what may be varied between rotor and output; duty: where the RMS values act; duty_name: in names
     demands: what is asked, attribute of ``drivetrain.requirements.Requirements``, words, unit
     features: what a comparison of actuators shows: attribute of ``drivetrain.outcome.Features``, words, unit
     """
@@ -41,6 +49,10 @@ class Output:
     speed_unit: ClassVar[str]
     inertia: ClassVar[str]
     inertia_unit: ClassVar[str]
+    inertia_key: ClassVar[str]
+    transmission: ClassVar[str]
+    duty: ClassVar[str]
+    duty_name: ClassVar[str]
     damping_unit: ClassVar[str]
     ratio_unit: ClassVar[str]
     axis_unit: ClassVar[str]
@@ -48,8 +60,21 @@ class Output:
     features: ClassVar[tuple[tuple[str, str, str], ...]]
 
     def overall_ratio(self, ratio: float) -> str:
-        """A transmission ratio tau_t [m/rad or 1] in a sentence."""
+        """A transmission ratio tau_t [m/rad or 1] as a sentence."""
         raise NotImplementedError
+
+    def ratio(self, ratio: float) -> str:
+        """A transmission ratio tau_t [m/rad or 1] inside a sentence."""
+        raise NotImplementedError
+
+    def ratio_columns(self, transmission_ratio: float, linkage_ratio: float) -> dict[str, float]:
+        """tau_t and tau_l [m/rad or 1] as columns of a table, in drawing units."""
+        raise NotImplementedError
+
+    @property
+    def inertia_column(self) -> str:
+        """Name of a table's column: ``equivalent_mass_kg``."""
+        return self.column(self.inertia.replace(" ", "_"), self.inertia_unit)
 
     def column(self, quantity: str, unit: str) -> str:
         """Name of a table's column: ``transmission_ratio_mm_per_rad``."""
@@ -57,8 +82,7 @@ class Output:
 
     def at_speed(self, speed: float) -> str:
         """``1.64 m/s`` of a speed in SI [m/s or rad/s]."""
-        shown = speed / FACTORS[self.speed_unit]
-        return f"{shown:.3g} {written(self.speed_unit)}" if shown < 1000 else f"{shown:.0f} {written(self.speed_unit)}"
+        return amount(speed, self.speed_unit)
 
 
 @dataclass(frozen=True)
@@ -69,7 +93,9 @@ class Wheel(Output):
     end = "lever side"
     effort, effort_unit = "force", "N"
     speed, speed_unit = "velocity", "m_per_s"
-    inertia, inertia_unit = "equivalent mass", "kg"
+    inertia, inertia_unit, inertia_key = "equivalent mass", "kg", "match.equivalent_mass_max_kg"
+    transmission = "ratio and linkage"
+    duty, duty_name = "on the road", "road"
     damping_unit = "kNs_per_m"
     ratio_unit = "mm_per_rad"
     axis_unit = "kN"
@@ -102,6 +128,14 @@ class Wheel(Output):
         """ratio: tau_t [m/rad]."""
         return f"Overall ratio {ratio / FACTORS[self.ratio_unit]:.3f} {written(self.ratio_unit)}"
 
+    def ratio(self, ratio: float) -> str:
+        return f"{ratio / FACTORS[self.ratio_unit]:.4g} {written(self.ratio_unit)}"
+
+    def ratio_columns(self, transmission_ratio: float, linkage_ratio: float) -> dict[str, float]:
+        ratios = {"transmission_ratio": transmission_ratio, "linkage_ratio": linkage_ratio}
+        unit = self.ratio_unit
+        return {self.column(name, unit): value / FACTORS[unit] for name, value in ratios.items()}
+
 
 @dataclass(frozen=True)
 class Shaft(Output):
@@ -111,7 +145,9 @@ class Shaft(Output):
     end = "shaft side"
     effort, effort_unit = "torque", "Nm"
     speed, speed_unit = "speed", "rpm"
-    inertia, inertia_unit = "inertia", "kg_m2"
+    inertia, inertia_unit, inertia_key = "inertia", "kg_m2", "drive.inertia_max_kg_m2"
+    transmission = "gear ratio"
+    duty, duty_name = "in service", "service"
     damping_unit = "Nms_per_rad"
     ratio_unit = ""
     axis_unit = "Nm"
@@ -140,3 +176,9 @@ class Shaft(Output):
     def overall_ratio(self, ratio: float) -> str:
         """ratio: of output over rotor speed, dimensionless."""
         return f"The rotor turns {1 / ratio:.3f} times as fast as the shaft"
+
+    def ratio(self, ratio: float) -> str:
+        return f"1:{1 / ratio:.4g}"
+
+    def ratio_columns(self, transmission_ratio: float, linkage_ratio: float) -> dict[str, float]:
+        return {"gear_ratio": linkage_ratio / transmission_ratio}

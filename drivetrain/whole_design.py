@@ -34,7 +34,7 @@ from drivetrain.pareto import non_dominated
 from drivetrain.planetary import GearboxDesign, GearboxError
 from losses.iron import FrequencyTerms
 
-OBJECTIVES = ("mass", "equivalent mass", "regenerative damping", "loss on the road")
+OBJECTIVES = ("mass", "equivalent mass", "damping", "loss")
 _SIGNS = np.array([1.0, 1.0, -1.0, 1.0])  # all are made small but the damping
 _NO_COST = (CostScales(1.0, 1.0, 1.0), CostWeights(0.5, 0.0))
 _FEASIBLE = 1e-6  # relative; a limit exceeded by less is kept
@@ -76,7 +76,11 @@ class WholeDesign:
 
 @dataclass(frozen=True)
 class Values:
-    """objectives: in the order of OBJECTIVES [kg, kg, Ns/m, W]; constraints: relative, satisfied at or below 0."""
+    """What a design is worth.
+
+    objectives: in the order of OBJECTIVES [kg, kg, Ns/m, W], on a shaft [kg, kg m^2, Nms/rad, W]
+    constraints: relative, satisfied at or below 0
+    """
 
     objectives: tuple[float, ...]
     constraints: tuple[float, ...]

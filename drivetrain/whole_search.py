@@ -16,6 +16,7 @@ from drivetrain.linkage_stage import LinkageFront
 from drivetrain.masses import DrawnParts
 from drivetrain.match import MatchError, SizedSection, damping_constraint
 from drivetrain.matching import Matcher, MatchInputs, MatchOutcome, solved_section
+from drivetrain.output import Output
 from drivetrain.requirements import Linkage, Requirements
 from drivetrain.whole_design import (
     OBJECTIVES,
@@ -70,14 +71,39 @@ class FieldTask:
 
 @dataclass(frozen=True)
 class Question:
-    """Which objective (number in OBJECTIVES) is bettered, in words, and what the others may come to.
+    """Which objective (number in OBJECTIVES) is bettered, and what the others may come to.
 
     allowed: [kg, kg, Ns/m, W]; inf: anything
     """
 
-    words: str
     objective: int
     allowed: tuple[float, ...]
+
+    def words(self, output: Output) -> str:
+        """What is asked, for a kind of output."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class OthersKept(Question):
+    """The other three no worse."""
+
+    def words(self, output: Output) -> str:
+        return f"{objective_words(output)[self.objective]}, the other three no worse"
+
+
+@dataclass(frozen=True)
+class DampingAsRequired(Question):
+    """Of mass and inertia one no worse, the damping that is asked for, and a free loss."""
+
+    def words(self, output: Output) -> str:
+        names = objective_words(output)
+        return f"{names[self.objective]}, {names[1 - self.objective]} no worse, damping as required"
+
+
+def objective_words(output: Output) -> tuple[str, ...]:
+    """The OBJECTIVES in words, for a kind of output."""
+    return "mass", output.inertia, "regenerative damping", f"loss {output.duty}"
 
 
 @dataclass(frozen=True)
@@ -92,7 +118,6 @@ class Bettered:
 class SolvedDesign:
     """A design by the model, and the same with torques, slot area and idle loss of the field (``field``)."""
 
-    name: str
     model: RatedDesign
     field: RatedDesign
 
@@ -102,7 +127,7 @@ class WholeSearch:
     """What the searches found.
 
     staged: the design found stage by stage, by the model; bettered: in one objective at a time; front: by the model
-    solved: staged, bettered and some of the front by the field; force_rms: of the road [N]
+    solved: staged, bettered and some of the front by the field, in this order; force_rms: of the road [N]
     """
 
     staged: RatedDesign
@@ -121,11 +146,13 @@ def optimise_stage(
     requirements: Requirements,
     match_inputs: MatchInputs,
     inputs: WholeSearchInputs,
+    output: Output,
     workers: Workers,
 ) -> WholeSearch:
     """Search over all stages at once, and solve what is shown by the field.
 
     match, linkage: the design found stage by stage; linkages: the front it was chosen from, None where it is stated
+    output: in whose words a refusal is said
     Raises MatchError where no design meets the targets, MaterialError where the steel has no loss data, FitRefused.
     """
     drawn = DrawnParts(match_inputs.masses, case.packing)
@@ -133,7 +160,7 @@ def optimise_stage(
     law = iron_loss_law(inputs.loss_grade)
     problem = _problem(matcher, linkages, _idle_sections(matcher, law, inputs.idle_radii, workers))
     staged = _staged(problem, match, linkage)
-    found = _front(problem, staged, inputs)
+    found = _front(problem, staged, inputs, output)
     bettered = tuple(
         Bettered(one, improved(problem, staged.design, one.objective, one.allowed))
         for one in questions(staged.values.objectives, requirements.maximum_damping)
@@ -151,11 +178,9 @@ def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]
     free loss, which is all that the requirements ask for.
     """
     mass, inertia, _, _ = before
-    found = [Question(f"{name}, the other three no worse", k, before) for k, name in enumerate(OBJECTIVES)]
+    kept = (OthersKept(k, before) for k in range(len(OBJECTIVES)))
     bare = (mass, inertia, damping, inf)
-    found.append(Question("mass, inertia no worse, damping as required", 0, bare))
-    found.append(Question("equivalent mass, mass no worse, damping as required", 1, bare))
-    return tuple(found)
+    return (*kept, DampingAsRequired(0, bare), DampingAsRequired(1, bare))
 
 
 # ---- the problem ----------------------------------------------------------------------------------------------------
@@ -233,13 +258,15 @@ def _staged(problem: WholeProblem, match: MatchOutcome, linkage: Linkage) -> Rat
     return RatedDesign(design, problem.values(design))
 
 
-def _front(problem: WholeProblem, staged: RatedDesign, inputs: WholeSearchInputs) -> tuple[RatedDesign, ...]:
+def _front(
+    problem: WholeProblem, staged: RatedDesign, inputs: WholeSearchInputs, output: Output
+) -> tuple[RatedDesign, ...]:
     settings = {"seed": inputs.seed, "population": inputs.population, "generations": inputs.generations}
     found = front(problem, start=staged.design, **settings)
     if not found:
         raise MatchError(
-            "no design meets match.mass_max_kg, match.equivalent_mass_max_kg and the required damping together; relax "
-            "one of them"
+            f"no design meets match.mass_max_kg, {output.inertia_key} and the required damping together; relax one of "
+            "them"
         )
     return found
 
@@ -264,8 +291,8 @@ def _shown(
     staged: RatedDesign, bettered: tuple[Bettered, ...], points: tuple[RatedDesign, ...]
 ) -> tuple[tuple[str, RatedDesign], ...]:
     """(name, design) of all that the field solves."""
-    named = [("stage by stage", staged), *((one.question.words, one.found) for one in bettered)]
-    return (*named, *((f"front {k}", one) for k, one in enumerate(points, start=1)))
+    answers = ((f"answer {k}", one.found) for k, one in enumerate(bettered, start=1))
+    return (("stage by stage", staged), *answers, *((f"front {k}", one) for k, one in enumerate(points, start=1)))
 
 
 def _solved(
@@ -282,6 +309,6 @@ def _solved(
     tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
     found = workers.map("designs", solve_section, tasks)
     return tuple(
-        SolvedDesign(name, one, RatedDesign(one.design, problem.values(one.design, found[name])))
+        SolvedDesign(one, RatedDesign(one.design, problem.values(one.design, found[name])))
         for name, one in shown
     )

@@ -5,6 +5,7 @@ The functions take the results of ``drivetrain.match`` by their attributes and i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -34,6 +35,17 @@ _MOST_MARKERS = 10  # on one line
 _WORST_COST_SHOWN = 1.6  # times the least one; the cost has a pole towards small ratios
 
 
+class LengthCurve(Protocol):
+    """``drivetrain.match.LengthCurve``."""
+
+    @property
+    def length(self) -> np.ndarray:
+        """[m]"""
+
+    def name(self, output: Output) -> str:
+        """Of the constraint."""
+
+
 class Curves(Protocol):
     """``drivetrain.match.MatchCurves``, arrays over the transmission ratio (n,)."""
 
@@ -42,8 +54,8 @@ class Curves(Protocol):
         """[m/rad]"""
 
     @property
-    def minimum_length(self) -> dict[str, np.ndarray]:
-        """Asked for by each constraint [m]."""
+    def lengths(self) -> Sequence[LengthCurve]:
+        """Asked for by each constraint."""
 
     @property
     def active_length(self) -> np.ndarray:
@@ -186,7 +198,7 @@ def _draw_lengths(axes: Axes, curves: Curves, match: Optimum, length_limit: floa
     unit = output.ratio_unit
     ratio, optimum = in_unit(curves.ratio, unit), in_unit(match.transmission_ratio, unit)
     look: Look
-    for number, (name, length) in enumerate(curves.minimum_length.items()):
+    for number, (name, length) in enumerate((one.name(output), one.length) for one in curves.lengths):
         enforced = np.all(length <= curves.active_length * (1 + 1e-9))
         look = {"linestyle": "-", "label": name} if enforced else {"linestyle": ":", "label": f"{name} (not enforced)"}
         axes.plot(ratio, length / MILLIMETRE, color=SERIES[number % len(SERIES)], **look)

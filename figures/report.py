@@ -99,12 +99,15 @@ class Remark:
     text: str
 
 
+Part = str | Table | Picture | KeyNumbers | Remark
+
+
 @dataclass(frozen=True)
 class Section:
     """A heading and what stands under it, in reading order: paragraphs (plain text), tables, pictures, ..."""
 
     title: str
-    content: tuple[str | Table | Picture | KeyNumbers | Remark, ...]
+    content: tuple[Part, ...]
 
     @property
     def anchor(self) -> str:

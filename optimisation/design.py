@@ -87,7 +87,7 @@ class DesignSolver:
     """Solves designs one after another. A design close to the last mesh moves that mesh and starts from the fields of
     the most similar design on it."""
 
-    def __init__(self, judge: Judge):
+    def __init__(self, judge: Judge) -> None:
         self.judge = judge
         self._morpher: Morpher | None = None
         self._solved: list[_Solved] = []  # designs on the mesh of the morpher

@@ -75,12 +75,7 @@ class SectionFits:
 
 def fits_stage(optima: Optima) -> SectionFits:
     """Fit every quantity of every slot count; a bad fit is kept with the reason why it is refused."""
-    found = SectionFits(tuple(SlotFits(slots, _fits(optima, slots)) for slots in optima.slots))
-    for one in found.by_slots:
-        for fit in one.fits:
-            if fit.refused:
-                print(f"fits: refused: {fit.quantity}: {fit.refused}")
-    return found
+    return SectionFits(tuple(SlotFits(slots, _fits(optima, slots)) for slots in optima.slots))
 
 
 def _fits(optima: Optima, slots: int) -> tuple[PolynomialFit, ...]:

@@ -63,7 +63,9 @@ class LimitRow:
 
 
 def limits_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> LimitComparison:
-    """Compare the limits in every reading on the grid of the sweep."""
+    """Compare the limits in every reading on the grid of the sweep; nothing is solved where none is compared."""
+    if not limit.compared:
+        return LimitComparison(limit, ())
     outer = case.family.stator_outer_radius
     widths, radii = grid.widths(outer), grid.radii(outer)
     rows = {

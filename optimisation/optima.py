@@ -134,8 +134,6 @@ def optima_stage(case: FieldCase, maps: DesignMaps, workers: Workers) -> Optima:
     if not found:
         raise NoOptimumError(_nothing(maps.limit, without))
     edges = tuple(edge for optimum in found for edge in edges_at(optimum, maps.grid))
-    for line in (*(one.reason for one in without), *(edge.sentence for edge in edges)):
-        print(f"optima: {line}")
     return Optima(maps.limit, found, without, edges)
 
 

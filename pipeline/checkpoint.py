@@ -21,7 +21,7 @@ class Checkpoint:
     inputs: hash of everything that the points depend on
     """
 
-    def __init__(self, path: Path, inputs: str):
+    def __init__(self, path: Path, inputs: str) -> None:
         self.path = Path(path)
         self.inputs = inputs
         self._results, self._good_bytes = self._read()

@@ -88,6 +88,7 @@ class Stage:
     name: as in ``make <name>``; function: typed values -> artefact; says: what it does, in a few words
     files: typed values -> ``figures.files.File``s, None where people have nothing to read of it
     on_request: runs only when it is named
+    remarks: typed values, this artefact among them -> sentences that the run says at once, None where it has none
     """
 
     name: str
@@ -95,6 +96,7 @@ class Stage:
     says: str
     files: Function | None = None
     on_request: bool = False
+    remarks: Function | None = None
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ class Processes(Pool):
 class _TrackingExecutor(ProcessPoolExecutor):
     """Knows its processes, so that they can be ended at once."""
 
-    def __init__(self, children: set[BaseProcess], *arguments: Any, **named: Any):
+    def __init__(self, children: set[BaseProcess], *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self._ours = children
 
@@ -157,7 +157,7 @@ class DaskCluster(Pool):
     The scheduler gives a task whose worker was lost to another one, ``distributed.scheduler.allowed-failures`` times.
     """
 
-    def __init__(self, size: int | None = None, address: str | None = None):
+    def __init__(self, size: int | None = None, address: str | None = None) -> None:
         try:
             import dask  # noqa: PLC0415 - optional and heavy
             import distributed  # noqa: PLC0415

@@ -137,8 +137,15 @@ class Run:
         made = self._current(step.name, self.inputs(step.function), make)
         if isinstance(step, Stage):
             self._done.add(step.name)
-            if not made:
-                print(f"{step.name}: unchanged, not run again", flush=True)
+            self._say(step, made)
+
+    def _say(self, stage: Stage, made: bool) -> None:
+        """What a stage has to say at once when it ran, and that it did not."""
+        if not made:
+            print(f"{stage.name}: unchanged, not run again", flush=True)
+        elif stage.remarks is not None:
+            for remark in stage.remarks(**self.arguments(stage.remarks)):
+                print(f"{stage.name}: {remark}", flush=True)
 
     def _current(self, name: str, inputs: dict[str, str], make: Callable[[], list[str]]) -> bool:
         """Call ``make`` where the result of this name is not what these inputs give; True when it was called."""

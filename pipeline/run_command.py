@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from figures.files import File
-from figures.report import Remark, Section, write_report
+from figures.report import Part, Picture, Remark, Section, write_report
 from pipeline.closure import packages_of
 from pipeline.graph import Graph
 from pipeline.pools import DaskCluster, Pool, Processes
@@ -85,9 +86,21 @@ def page_of(study: Study, sections: list[Section], failures: list[Failure]) -> F
 
     def write(path: Path) -> None:
         pictures = path.parent  # the temporary file lies where the report will
-        write_report(path, (*told, *sections), pictures, title=title, subtitle=subtitle, provenance=provenance)
+        shown = (*told, *(_with_what_is_there(section, pictures) for section in sections))
+        write_report(path, shown, pictures, title=title, subtitle=subtitle, provenance=provenance)
 
     return File(REPORT, write)
+
+
+def _with_what_is_there(section: Section, folder: Path) -> Section:
+    """The section with a remark in the place of each picture that was not drawn: it is in the failures, too."""
+
+    def there(part: Part) -> Part:
+        if not isinstance(part, Picture) or not isinstance(part.image, (str, Path)) or (folder / part.image).is_file():
+            return part
+        return Remark(f"Not drawn: {part.caption}")
+
+    return replace(section, content=tuple(there(part) for part in section.content))
 
 
 def _failed(failures: list[Failure]) -> Section:

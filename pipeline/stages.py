@@ -79,7 +79,7 @@ _SOURCES = (
 _VEHICLE: tuple[Node, ...] = (
     Source(ride_case),
     Source(requirements_beside),
-    Stage("requirements", requirements_stage, "the vehicle asks", requirements.files),
+    Stage("requirements", requirements_stage, "the vehicle asks", requirements.files, remarks=requirements.remarks),
     View(required),
     View(road_loads),
     Stage("ride", ride_again_stage, "the vehicle with what was designed", ride.files),
@@ -89,27 +89,27 @@ _STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads))
 _SEARCHED: tuple[Node, ...] = (
     Source(linkage_search),
     Source(installation_space),
-    Stage("linkage", linkage_stage, "Pareto front of four-bars", linkage.files),
+    Stage("linkage", linkage_stage, "Pareto front of four-bars", linkage.files, remarks=linkage.remarks),
     View(chosen_linkage),
 )
 _GEARS: tuple[Node, ...] = (
     View(gear_demand),
-    Stage("gearbox", gearbox_stage, "all tooth sets, rated", gearbox.files),
+    Stage("gearbox", gearbox_stage, "all tooth sets, rated", gearbox.files, remarks=gearbox.remarks),
 )
 _MACHINE: tuple[Node, ...] = (
     Stage("sweep", sweep_stage, "designs solved over slots and radii"),
-    Stage("optima", optima_stage, "the best under the limit", sweep.optima_files),
+    Stage("optima", optima_stage, "the best under the limit", sweep.optima_files, remarks=sweep.remarks),
     Stage("limits", limits_stage, "what the limit costs", sweep.limits_files),
-    Stage("fits", fits_stage, "polynomials over the radius", fits.files),
-    Stage("match", match_stage, "ratio, length and radius", match.files),
+    Stage("fits", fits_stage, "polynomials over the radius", fits.files, remarks=fits.remarks),
+    Stage("match", match_stage, "ratio, length and radius", match.files, remarks=match.remarks),
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
     View(shaft_demand),
-    Stage("winding", winding_stage, "turns, wires, final length", winding.files),
+    Stage("winding", winding_stage, "turns, wires, final length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
-    Stage("outcome", outcome_stage, "what holds, what would help", outcome.files),
+    Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
 )
 
@@ -125,7 +125,7 @@ def graph_of(study: Study) -> Graph:
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
-    return Graph(nodes, _sections(driven, searched), REFUSALS)
+    return Graph(nodes, _sections(study), REFUSALS)
 
 
 def _has_loss_data(study: Study) -> bool:
@@ -137,12 +137,13 @@ def _has_loss_data(study: Study) -> bool:
     return True
 
 
-def _sections(driven: bool, searched: bool) -> tuple[Function, ...]:
+def _sections(study: Study) -> tuple[Function, ...]:
     """Of the report, in reading order."""
+    driven = drives(study)
     return (
         outcome.section,
         requirements.section if driven else requirements.stated_section,
-        linkage.section if searched else linkage.stated_section,
+        *_linkage_sections(study),
         fields.machine,
         sweep.section,
         fits.section,
@@ -155,3 +156,10 @@ def _sections(driven: bool, searched: bool) -> tuple[Function, ...]:
         losses.section,
         *((ride.section,) if driven else ()),
     )
+
+
+def _linkage_sections(study: Study) -> tuple[Function, ...]:
+    """None for a load on the shaft."""
+    if study.linkage is None:
+        return ()
+    return (linkage.section if searches_linkage(study) else linkage.stated_section,)

@@ -8,7 +8,7 @@ import pandas as pd
 
 from figures.files import File, figure_file, picture_name, table_file
 from figures.fits import fits as fits_figure
-from figures.report import Picture, Section, Table, heading
+from figures.report import Picture, Remark, Section, Table, heading
 from optimisation.fits import QUANTITIES, SectionFits
 from optimisation.optima import Optima
 from optimisation.polynomial_fits import PolynomialFit
@@ -33,12 +33,18 @@ def section(fits: SectionFits) -> Section:
     table = fits_table(fits)
     shown = table[columns].assign(quantity=table.quantity.map(heading))
     caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
-    refused = [f"Refused: {fit.quantity}: {fit.refused}" for one in fits.by_slots for fit in one.fits if fit.refused]
+    refused = (Remark(f"{said[:1].upper()}{said[1:]}.") for said in remarks(fits))
     words = "Optima (points) and second-order polynomials (lines) over the stator radius."
     picture = Picture(picture_name("fits"), words)
     return Section(
         "Polynomials over the stator radius", (picture, Table(shown, caption, headings={"r_squared": "R²"}), *refused)
     )
+
+
+def remarks(fits: SectionFits) -> Iterator[str]:
+    """What the run says at once: fits that are refused."""
+    for one in fits.by_slots:
+        yield from (f"refused: {fit.quantity}: {fit.refused}" for fit in one.fits if fit.refused)
 
 
 def fits_table(fits: SectionFits) -> pd.DataFrame:

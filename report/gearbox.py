@@ -142,6 +142,20 @@ def _life_lines(train: GearTrain, search: GearSearch) -> list[tuple[str, LifeLin
     ]
 
 
+def remarks(found: GearboxOutcome) -> Iterator[str]:
+    """What the run says at once: the teeth, and what is too weak."""
+    if found.search is None:
+        return
+    if found.search.weakness is not None:
+        yield f"below the wanted safety: {found.search.weakness}"
+    gears = found.search.best[0].train.stages[0].gears
+    teeth = ", ".join(f"{round(count)}" for count in gears.teeth)
+    yield (
+        f"module {gears.sun.module / MILLIMETRE:g} mm, teeth {teeth}, ratio {found.train.ratio:.2f}, the best of "
+        f"{found.search.sets_that_fit} sets that fit"
+    )
+
+
 # ---- section --------------------------------------------------------------------------------------------------------
 
 

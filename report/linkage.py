@@ -51,6 +51,11 @@ def section(found: LinkageFront, search: LinkageSearch) -> Section:
     )
 
 
+def remarks(found: LinkageFront) -> Iterator[str]:
+    """What the run says at once: the choice."""
+    yield f"{found.built.ratio_nominal / _RATIO:.1f} mm/rad, {found.reason}"
+
+
 def stated_section(linkage: Linkage) -> Section:
     """The linkage of a study that states its ratios."""
     text = (

@@ -46,16 +46,22 @@ def section(found: MatchOutcome, output: Output) -> Section:
                 "Best match over the stator radius; solid with solved, dashed with scaled overload torque.",
             ),
             f"Decision: {found.reason}.",
-            *(Remark(f"{_sentence(note)}.") for note in found.notes),
-            *_refusals(found),
+            *(Remark(f"{_sentence(note.words(output))}.") for note in found.notes),
+            *_refusals(found, output),
             *_stated(found, output),
             Table(_machines(found.chosen, beside, output), caption),
-            *(Remark(f"{one.name}: {note}.") for one in beside for note in _notes(one)),
+            *(Remark(f"{one.name}: {note}.") for one in beside for note in _notes(one, output)),
             *_assumption(found),
             _cylinder(found),
             Table(parts_table(found.parts), "Active parts at the matched length; inertias about the rotor's axis."),
         ),
     )
+
+
+def remarks(found: MatchOutcome, output: Output) -> Iterator[str]:
+    """What the run says at once: the decision, and what must not be overlooked."""
+    yield found.reason
+    yield from (note.words(output) for note in found.notes)
 
 
 def over_radius(found: MatchOutcome, output: Output) -> pd.DataFrame:
@@ -85,8 +91,8 @@ def _row(name: str, one: Match, output: Output) -> dict[str, object]:
         "active_length_mm": one.active_length / MILLIMETRE,
         "cost": one.total_cost,
         "mass_kg": one.cost.mass,
-        output.column(output.inertia.replace(" ", "_"), output.inertia_unit): one.cost.equivalent_mass,
-        "binding": one.binding.name,
+        output.inertia_column: one.cost.equivalent_mass,
+        "binding": one.binding.name(output),
     }
 
 
@@ -95,14 +101,16 @@ def _machines(chosen: Match, beside: list[NamedMatch], output: Output) -> pd.Dat
     return pd.DataFrame(rows + [_row(one.name, one.match, output) for one in beside if one.match is not None])
 
 
-def _notes(one: NamedMatch) -> tuple[str, ...]:
+def _notes(one: NamedMatch, output: Output) -> tuple[str, ...]:
     """What a match violates, or why there is none."""
-    return (f"no match, {one.refusal}",) if one.match is None else one.match.notes
+    if one.refusal is not None:
+        return (f"no match, {one.refusal.words(output)}",)
+    return () if one.match is None else tuple(note.words(output) for note in one.match.notes)
 
 
-def _refusals(found: MatchOutcome) -> tuple[Remark, ...]:
+def _refusals(found: MatchOutcome, output: Output) -> tuple[Remark, ...]:
     """Slot counts without a match."""
-    said = [(one, one.refusal) for one in found.over_radius if one.refusal is not None]
+    said = [(one, one.refusal.words(output)) for one in found.over_radius if one.refusal is not None]
     return tuple(Remark(f"{one.slots} slots, overload torque {one.overload.name}: {why}.") for one, why in said)
 
 
@@ -111,12 +119,15 @@ def _stated(found: MatchOutcome, output: Output) -> tuple[Table | Remark, ...]:
     other = found.stated
     if other is None:
         return ()
+    if other.refusal is not None:
+        why = other.refusal.words(output)
+        return (Remark(f"With the stated requirements and linkage there is no match: {why}."),)
     if other.match is None:
-        return (Remark(f"With the stated requirements and linkage there is no match: {other.refusal}."),)
+        return ()
     rows = [_row("vehicle and front", found.chosen, output), _row(other.name, other.match, output)]
     fed = pd.DataFrame(rows).rename(columns={"machine": "fed by"})
     shown = fed.drop(columns=["stator_outer_radius_mm", "torque_nominal_Nm_per_m", "torque_overload_Nm_per_m"])
-    notes = (Remark(f"With the stated values: {note}.") for note in other.match.notes)
+    notes = (Remark(f"With the stated values: {note.words(output)}.") for note in other.match.notes)
     return (Table(shown, "The chosen cross-section, matched with either feed."), *notes)
 
 

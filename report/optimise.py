@@ -7,103 +7,130 @@ from collections.abc import Iterator
 import pandas as pd
 from matplotlib.figure import Figure
 
+from drivetrain.output import Output, in_unit, labelled
 from drivetrain.whole_design import RatedDesign
-from drivetrain.whole_search import Bettered, SolvedDesign, WholeSearch
+from drivetrain.whole_search import Bettered, SolvedDesign, WholeSearch, objective_words
 from figures.files import File, figure_file, table_file, text_file
 from figures.report import Picture, Section, Table, render_report
 from figures.whole_design import whole_designs
-from units import FACTORS, MILLIMETRE
+from units import MILLIMETRE, written
 
 TABLE, PAGE, FIGURE = "optimise.csv", "optimise.html", "whole_designs"
-_UNITS = (("mass_kg", "kg"), ("equivalent_mass_kg", "kg"), ("damping_kNs_per_m", "kNs_per_m"), ("road_loss_W", "W"))
-_TEXT = (
-    "Slot count, radius, active length, ratio and linkage are varied together against the design that match and "
-    "linkage arrived at one after the other. The model is that of the match: fits of the cross-section, masses of the "
-    "drawn parts, scaling laws of the gears. The loss on the road is copper loss of the RMS force and idle loss of "
-    "iron and magnets at the RMS velocity. Copper loss alone would be the inverse of the damping; the idle loss is "
-    "smaller with a larger transmission ratio, which turns the rotor more slowly, and sets the two against each other."
-)
 
 
-def files(found: WholeSearch) -> Iterator[File]:
+def files(found: WholeSearch, output: Output) -> Iterator[File]:
     """Designs solved by the field, the figure of the front, and the page that shows both."""
-    table, figure = solved_table(found), front_figure(found)
+    table, figure = solved_table(found, output), front_figure(found, output)
     yield table_file(TABLE, table)
     yield figure_file(FIGURE, figure)
     title, subtitle = "All stages optimised together", "Against the design found stage by stage"
-    yield text_file(PAGE, render_report(sections(found, figure), title=title, subtitle=subtitle))
+    yield text_file(PAGE, render_report(sections(found, figure, output), title=title, subtitle=subtitle))
 
 
-def sections(found: WholeSearch, figure: Figure) -> tuple[Section, ...]:
+def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Section, ...]:
     """What the stages leave on the table, and the front; figure: as ``front_figure`` draws it."""
-    caption = "Mass and inertia in kg, damping in kNs/m, loss in W; by the model."
+    inertia, damping = written(output.inertia_unit), written(output.damping_unit)
+    caption = f"Mass in kg, {output.inertia} in {inertia}, damping in {damping}, loss in W; by the model."
     solved = "Designs solved by the field. Constraint excess above 0: the fits promised too much."
     return (
-        Section("What the stages leave on the table", (_TEXT, Table(gains(found), caption))),
+        Section("What the stages leave on the table", (_text(output), Table(gains(found, output), caption))),
         Section(
             "The front",
             (
                 f"{len(found.front)} designs, {len(found.solved)} solved by the field. {_fit_error(found)} "
-                f"{idle_share(found)}",
+                f"{idle_share(found, output)}",
                 Picture(figure, "Every pair of objectives."),
-                Table(solved_table(found), solved),
+                Table(solved_table(found, output), solved),
             ),
         ),
     )
 
 
-def solved_table(found: WholeSearch) -> pd.DataFrame:
+def _text(output: Output) -> str:
+    return (
+        f"Slot count, radius, active length, {output.transmission} are varied together against the design that was "
+        "found stage by stage. The model is that of the match: fits of the cross-section, masses of the drawn parts, "
+        f"scaling laws of the gears. The loss {output.duty} is copper loss of the RMS {output.effort} and idle loss of "
+        f"iron and magnets at a {output.speed} that is normally distributed with the RMS value. Copper loss alone "
+        "would be the inverse of the damping; the idle loss is smaller where the rotor turns more slowly for the same "
+        f"{output.speed}, and sets the two against each other."
+    )
+
+
+def solved_table(found: WholeSearch, output: Output) -> pd.DataFrame:
     """Designs solved by the field, in drawing units."""
-    return pd.DataFrame([_row(one) for one in found.solved])
+    rows = zip(_names(found, output), found.solved, strict=True)
+    return pd.DataFrame([_row(name, one, output) for name, one in rows])
 
 
-def gains(found: WholeSearch) -> pd.DataFrame:
+def _names(found: WholeSearch, output: Output) -> list[str]:
+    """Of the designs that the field solved: staged, bettered and some of the front."""
+    questions = [one.question.words(output) for one in found.bettered]
+    points = len(found.solved) - len(questions) - 1
+    return ["stage by stage", *questions, *(f"front {k}" for k in range(1, points + 1))]
+
+
+def gains(found: WholeSearch, output: Output) -> pd.DataFrame:
     """What the stages leave on the table, one row a question."""
-    return pd.DataFrame([_gain(found.staged, one) for one in found.bettered])
+    return pd.DataFrame([_gain(found.staged, one, output) for one in found.bettered])
 
 
-def idle_share(found: WholeSearch) -> str:
+def idle_share(found: WholeSearch, output: Output) -> str:
     """How much of the loss on the road is not F^2 over the damping, in words."""
     shares = [
         100 * (1 - found.force_rms**2 / damping / loss)
         for *_, damping, loss in (one.values.objectives for one in found.front)
     ]
-    return f"Idle loss is {min(shares):.0f} to {max(shares):.0f} % of the loss on the road over the front."
+    return f"Idle loss is {min(shares):.0f} to {max(shares):.0f} % of the loss {output.duty} over the front."
 
 
-def front_figure(found: WholeSearch) -> Figure:
+def front_figure(found: WholeSearch, output: Output) -> Figure:
     """Every pair of objectives: front by the model, points solved by the field, the design found stage by stage."""
-    front = pd.DataFrame([_objectives(one) for one in found.front])
-    staged, *others = ([_objectives(one.field) for one in found.solved])
-    return whole_designs(front, pd.DataFrame(others), pd.Series(staged))
+    front = pd.DataFrame([_objectives(one, output) for one in found.front])
+    staged, *others = ([_objectives(one.field, output) for one in found.solved])
+    words = zip(objective_words(output), (unit for _, unit in _columns(output)), strict=True)
+    labels = {name: labelled(*label) for (name, _), label in zip(_columns(output), words, strict=True)}
+    return whole_designs(front, pd.DataFrame(others), pd.Series(staged), labels)
 
 
-def _objectives(one: RatedDesign) -> dict[str, float]:
+def _columns(output: Output) -> tuple[tuple[str, str], ...]:
+    """(name of the column, unit) of the objectives."""
+    damping = output.column("damping", output.damping_unit)
+    return (
+        ("mass_kg", "kg"),
+        (output.inertia_column, output.inertia_unit),
+        (damping, output.damping_unit),
+        (f"{output.duty_name}_loss_W", "W"),
+    )
+
+
+def _objectives(one: RatedDesign, output: Output) -> dict[str, float]:
     """Objectives in drawing units."""
-    return {name: value / FACTORS[unit] for (name, unit), value in zip(_UNITS, one.values.objectives, strict=True)}
+    columns = zip(_columns(output), one.values.objectives, strict=True)
+    return {name: float(in_unit(value, unit)) for (name, unit), value in columns}
 
 
-def _row(one: SolvedDesign) -> dict[str, object]:
-    design, by_fits = one.model.design, _objectives(one.model)
+def _row(name: str, one: SolvedDesign, output: Output) -> dict[str, object]:
+    design, fitted = one.model.design, list(_objectives(one.model, output).values())
+    damping, loss = (column for column, _ in _columns(output)[2:])
     return {
-        "design": one.name,
+        "design": name,
         "slots": design.slots,
         "stator_diameter_mm": 2 * design.stator_outer_radius / MILLIMETRE,
         "active_length_mm": design.active_length / MILLIMETRE,
-        "transmission_ratio_mm_per_rad": design.transmission_ratio / FACTORS["mm_per_rad"],
-        "linkage_ratio_mm_per_rad": design.linkage_ratio / FACTORS["mm_per_rad"],
-        **_objectives(one.field),
-        "damping_of_the_fits_kNs_per_m": by_fits["damping_kNs_per_m"],
-        "road_loss_of_the_fits_W": by_fits["road_loss_W"],
+        **output.ratio_columns(design.transmission_ratio, design.linkage_ratio),
+        **_objectives(one.field, output),
+        damping.replace("damping", "damping_of_the_fits"): fitted[2],
+        loss.replace("loss", "loss_of_the_fits"): fitted[3],
         "constraint_excess_percent": 100 * max(one.field.values.constraints),
     }
 
 
-def _gain(staged: RatedDesign, one: Bettered) -> dict[str, object]:
-    name, _ = _UNITS[one.question.objective]
-    old, new = (_objectives(rated)[name] for rated in (staged, one.found))
+def _gain(staged: RatedDesign, one: Bettered, output: Output) -> dict[str, object]:
+    name, _ = _columns(output)[one.question.objective]
+    old, new = (_objectives(rated, output)[name] for rated in (staged, one.found))
     return {
-        "what is bettered": one.question.words,
+        "what is bettered": one.question.words(output),
         "stage by stage": old,
         "together": new,
         "change_percent": 100 * (new / old - 1),

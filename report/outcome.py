@@ -52,6 +52,15 @@ def section(found: Outcome, output: Output) -> Section:
     )
 
 
+def remarks(found: Outcome, output: Output) -> Iterator[str]:
+    """What the run says at once: every requirement, and whether it holds."""
+    for row in checks_table(found, output).itertuples():
+        reached, needed = (f"{value:.4g} {row.unit}".rstrip() for value in (row.reached, row.needed))
+        yield f"{row.requirement}: {reached}, {row.sense} {needed} needed: " + (
+            "holds" if row.holds == "yes" else "DOES NOT HOLD"
+        )
+
+
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 

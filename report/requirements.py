@@ -67,6 +67,11 @@ def section(found: RideRequirements, case: RideCase, stated: StatedRequirements 
     )
 
 
+def remarks(found: RideRequirements) -> Iterator[str]:
+    """What the run says at once: every value, and the scenario that set it."""
+    yield from (f"{name} = {value:.4g} ({words})" for name, value, _, words in _bars(found, None))
+
+
 def stated_section(requirements: Requirements, output: Output) -> Section:
     """The requirements of a study that drives no vehicle."""
     rows = [

@@ -47,12 +47,20 @@ def optima_files(optima: Optima, maps: DesignMaps, case: FieldCase) -> Iterator[
 
 
 def limits_files(limits: LimitComparison) -> Iterator[File]:
-    """Table and figure of the optimum over the limit."""
+    """Table and figure of the optimum over the limit; nothing where no limits are compared."""
+    if not limits.points:
+        return
     table = limits_table(limits)
     yield table_file("limits.csv", table)
     chosen = limits.chosen
     drawn = limits_figure(table, chosen_reading=chosen.reading.name, chosen_limit_T=chosen.limit)
     yield figure_file("limits", drawn)
+
+
+def remarks(optima: Optima) -> Iterator[str]:
+    """What the run says at once: where the sweep holds no optimum, or has it at its edge."""
+    yield from (one.reason for one in optima.without)
+    yield from (edge.sentence for edge in optima.edges)
 
 
 def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
@@ -148,7 +156,7 @@ def _overload(case: FieldCase, optima: Optima) -> str:
 
 
 def _readings(limits: LimitComparison | None) -> tuple[str | Picture, ...]:
-    if limits is None:
+    if limits is None or not limits.points:
         return ()
     text = (
         "What the limit means decides about the optimum. The readings differ in which probes and which rotor angles "

@@ -44,6 +44,12 @@ def section(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | 
     )
 
 
+def remarks(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | None) -> Iterator[str]:
+    """What the run says at once: the choice, and the length that it needs."""
+    yield found.reason
+    yield length_reason(found, inputs, match)
+
+
 def length_reason(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | None) -> str:
     """Why the active length is what it is, and not that of the match."""
     instead = "" if match is None else f" instead of the {match.chosen.active_length / MILLIMETRE:.2f} mm of the match"

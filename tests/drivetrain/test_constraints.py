@@ -15,6 +15,7 @@ from drivetrain.constraints import (
     largest_stage_ratio,
 )
 from drivetrain.match import bound_constraints, damping_constraint, force_constraints, linear_overload
+from drivetrain.output import Shaft, Wheel
 from electrical.short_circuit import winding_damping
 from units import MILLIMETRE
 
@@ -41,7 +42,7 @@ def test_damping_coefficient_of_the_thesis(damping):
 
 def test_damping_at_the_printed_optimum_is_not_the_required_one(damping):
     assert damping.capability(RATIO, LENGTH) == pytest.approx(27e3, abs=1e3)
-    sentence = damping.violation(RATIO, LENGTH)
+    sentence = damping.violation(RATIO, LENGTH).words(Wheel())
     assert "regenerative damping 27.4 kNs/m is 12.6 kNs/m below the requirement of 40 kNs/m" in sentence
     assert "would need 48.4 mm" in sentence and "1.46 times" in sentence
 
@@ -87,7 +88,7 @@ def test_speed_limit_of_the_thesis(thesis):
     speed, _ = bound_constraints(thesis.requirements, thesis.limits)
     assert speed.minimum_ratio() == pytest.approx(1.299 * MILLIMETRE, abs=0.0005 * MILLIMETRE)
     assert speed.violation(1.3 * MILLIMETRE, LENGTH) is None
-    assert "at least" in speed.violation(1.2 * MILLIMETRE, LENGTH)
+    assert "at least" in speed.violation(1.2 * MILLIMETRE, LENGTH).words(Wheel())
 
 
 def test_speed_limit_takes_the_magnitude_of_a_signed_velocity():
@@ -97,12 +98,21 @@ def test_speed_limit_takes_the_magnitude_of_a_signed_velocity():
 def test_length_limit():
     limit = LengthLimit(70 * MILLIMETRE)
     assert limit.violation(RATIO, 70 * MILLIMETRE) is None
-    assert "71.0 mm is above the limit of 70.0 mm" in limit.violation(RATIO, 71 * MILLIMETRE)
+    assert limit.violation(RATIO, 71 * MILLIMETRE).words(Wheel()) == "active length 71 mm is above the limit of 70 mm"
 
 
 def test_force_sentences_name_the_missing_newtons():
-    assert "nominal force 200 N is 100 N below" in NominalForce(300.0, 50.0).violation(2.5e-3, 10e-3)
-    assert "overload force" in OverloadForce(2614.0, 100.0).violation(RATIO, LENGTH)
+    said = NominalForce(300.0, 50.0).violation(2.5e-3, 10e-3).words(Wheel())
+    assert "nominal force 200 N is 100 N below" in said and "at 2.5 mm/rad it would need 15.0 mm" in said
+    assert "overload force" in OverloadForce(2614.0, 100.0).violation(RATIO, LENGTH).words(Wheel())
+
+
+def test_on_a_shaft_the_same_numbers_are_a_torque_and_a_damping_in_its_units(damping):
+    said = NominalForce(30.0, 50.0).violation(0.02, 10e-3).words(Shaft())
+    assert said.startswith("nominal torque 25 Nm is 5 Nm below the requirement of 30 Nm; at 1:50 it would need 12.0 mm")
+    said = damping.violation(RATIO, LENGTH).words(Shaft())
+    assert "Nms/rad below the requirement of 40000 Nms/rad" in said and "kNs" not in said and "mm/rad" not in said
+    assert "a transmission ratio of 1:5 at least" in SpeedLimit(100.0, 500.0).violation(0.1, LENGTH).words(Shaft())
 
 
 def test_linear_overload_is_a_proportion():
@@ -123,5 +133,6 @@ def test_planets_bound_the_ratio_of_a_stage():
     one_stage = PlanetClearance(1, 3, 0.170)
     assert one_stage.minimum_ratio() == pytest.approx(0.170 / 14.93, rel=1e-3)
     assert PlanetClearance(2, 3, 0.170).minimum_ratio() == pytest.approx(0.170 / 14.93**2, rel=1e-3)
-    assert "3 planets overlap at a stage ratio of 42.50" in one_stage.violation(4e-3, LENGTH)
+    said = one_stage.violation(4e-3, LENGTH).words(Wheel())
+    assert "stage ratio 42.5 is above the limit of 14.9; above it 3 planets overlap" in said and "11.39 mm/rad" in said
     assert one_stage.violation(12e-3, LENGTH) is None

@@ -30,6 +30,7 @@ from drivetrain.matching import (
     sized_section,
     solved_section,
 )
+from drivetrain.output import Shaft, Wheel
 from drivetrain.planetary import NITRIDED_STEEL
 from drivetrain.requirements import Linkage, Requirements
 from study.schema import Study
@@ -66,8 +67,8 @@ FREE = replace(INPUTS, by_hand=ChosenByHand())
 TWELVE = replace(INPUTS, slots=(12,))
 
 
-def stage(inputs=INPUTS, requirements=REQUIRED, stated=None, fits=MotorcycleFits()):
-    return match_stage(CASE, fits, requirements, LINKAGE, stated, inputs)
+def stage(inputs=INPUTS, requirements=REQUIRED, stated=None, fits=MotorcycleFits(), output=Wheel()):
+    return match_stage(CASE, fits, requirements, LINKAGE, stated, inputs, output)
 
 
 @contextmanager
@@ -146,7 +147,8 @@ def test_the_designer_chooses_and_the_least_cost_is_said(found):
     assert found.machine.stator_outer_radius == pytest.approx(42.5e-3) and found.machine.slots == 12
     assert "chosen in the study file (12 slots, 85 mm" in found.reason
     assert "belongs to 12 slots and 70.0 mm" in found.reason
-    assert "add smaller diameters to sweep.stator_diameters_mm" in found.at_edge and found.at_edge in found.notes
+    assert "add smaller diameters to sweep.stator_diameters_mm" in found.at_edge
+    assert found.at_edge in [note.words(Wheel()) for note in found.notes]
 
 
 def test_without_a_choice_the_least_cost_decides(quick):
@@ -216,6 +218,18 @@ def test_a_force_that_no_machine_has():
     assert "match.length_max_mm" in said and "match.speed_max_rad_per_s" in said
 
 
+def test_a_torque_that_no_machine_has_is_refused_in_the_words_of_a_shaft():
+    said = refusal(requirements=replace(REQUIRED, force_peak=99_999.0), output=Shaft())
+    assert "overload torque needs" in said and "of 1:" in said and "mm/rad" not in said
+
+
+def test_a_machine_chosen_by_hand_that_has_no_match():
+    """3900 N is about what 12 slots reach at 115 mm, but not at 70 mm."""
+    by_hand = replace(TWELVE, by_hand=ChosenByHand(12, 35 * MILLIMETRE), limits=MatchLimits(40 * MILLIMETRE, 2618.0))
+    said = refusal(by_hand, replace(REQUIRED, force_peak=6000.0))
+    assert "the machine chosen in the study file (12 slots, 70 mm) has no match: overload force needs" in said
+
+
 def test_one_stage_that_cannot_be():
     said = refusal(replace(FREE, gear_stages=1))
     assert "set by the planet clearance" in said and "more match.gearbox_stages" in said
@@ -235,22 +249,22 @@ def test_a_choice_outside_the_sweep():
 
 def test_a_slot_count_without_usable_fits_leaves_the_others(quick):
     found = stage(FREE, fits=MotorcycleFits(refused=(9,)))
-    assert found.machine.slots == 12 and "9 slots is refused" in found.over_radius[0].refusal
+    assert found.machine.slots == 12 and "9 slots is refused" in found.over_radius[0].refusal.words(Wheel())
     assert "9 slots is refused" in refusal(fits=MotorcycleFits(refused=(9, 12)))
 
 
 def test_stated_demands_that_have_no_match_are_said(quick):
     hard = replace(STATED, requirements=replace(STATED.requirements, force_peak=50_000.0))
     found = stage(TWELVE, stated=hard)
-    assert found.stated.match is None and "overload force needs" in found.stated.refusal
+    assert found.stated.match is None and "overload force needs" in found.stated.refusal.words(Wheel())
     assert found.reference.match is None and found.chosen is not None
 
 
 @pytest.mark.parametrize("damping", [DampingReported(), DampingEnforced()])
 def test_no_damping_is_asked_for(quick, damping):
     found = stage(replace(TWELVE, damping=damping), replace(REQUIRED, maximum_damping=0.0))
-    assert found.chosen.binding.name == "overload force" and found.chosen.notes == ()
-    assert "regenerative damping" not in found.curves.minimum_length
+    assert found.chosen.binding.name(Wheel()) == "overload force" and found.chosen.notes == ()
+    assert "regenerative damping" not in [one.name(Wheel()) for one in found.curves.lengths]
 
 
 def test_planets_of_the_study_bound_the_ratio():

@@ -27,7 +27,7 @@ from gearbox.train import DirectDrive, GearTrain, Stage
 from geometry.machine import hanselman_machine
 from magnetostatics.flux_map_stage import FluxMap
 from pipeline.codec import decoded, digest, encoded
-from report.outcome import checks_table, features_table, files, masses_table, remedies_table, section
+from report.outcome import checks_table, features_table, files, masses_table, remarks, remedies_table, section
 from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
 
 MM = 1e-3
@@ -154,6 +154,12 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
     for absent in ("wheel", "lever", "force", "m/s", "linkage", "gears"):
         assert absent not in words
     assert "peak torque" in words and "rpm" in words and "kg m²" in words
+
+
+def test_every_requirement_is_said_with_its_verdict(found):
+    table, said = checks_table(found, Wheel()), list(remarks(found, Wheel()))
+    assert len(said) == len(table) and "peak force at rest: " in said[0] and " N needed: " in said[0]
+    assert [one.endswith("DOES NOT HOLD") for one in said] == [holds == "NO" for holds in table.holds]
 
 
 def test_the_outcome_is_written_and_read_again(found):

@@ -1,5 +1,6 @@
 """The search over everything as a stage, small, and what it asks; the reference machine solved by the field."""
 
+import re
 from dataclasses import replace
 from math import inf
 
@@ -8,8 +9,16 @@ import pytest
 
 from drivetrain.match import MatchError
 from drivetrain.matching import match_stage
-from drivetrain.whole_design import OBJECTIVES
-from drivetrain.whole_search import FieldTask, WholeSearchInputs, optimise_stage, questions, solve_idle, solve_section
+from drivetrain.output import Shaft, Wheel
+from drivetrain.whole_search import (
+    FieldTask,
+    WholeSearchInputs,
+    objective_words,
+    optimise_stage,
+    questions,
+    solve_idle,
+    solve_section,
+)
 from geometry.half_cell import MeshDensity
 from losses.iron import FrequencyTerms
 from materials.errors import MaterialError
@@ -43,21 +52,25 @@ def test_the_field_solves_the_reference_machine():
 def test_each_objective_is_asked_for_with_the_others_kept():
     asked = questions(BEFORE, 40e3)
     assert [one.objective for one in asked[:4]] == [0, 1, 2, 3] and all(one.allowed == BEFORE for one in asked[:4])
-    assert all(one.words.startswith(name) for name, one in zip(OBJECTIVES, asked[:4], strict=True))
+    assert all(
+        one.words(Wheel()) == f"{name}, the other three no worse"
+        for name, one in zip(objective_words(Wheel()), asked[:4], strict=True)
+    )
     assert all(one.allowed[2:] == (40e3, inf) for one in asked[4:])  # then the damping that is asked for is enough
 
 
 # ---- the stage ------------------------------------------------------------------------------------------------------
 
 
-def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=TWELVE):
+def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=TWELVE, output=Wheel()):
     coarse = replace(CASE, density=MeshDensity(gap_edges=60, longest_gap_edge=3.0, gap_layers=1, across_iron=1.0))
     with pytest.MonkeyPatch.context() as patch, no_field():
         patch.setattr("drivetrain.whole_design._GENERATIONS", 3)
         patch.setattr("drivetrain.whole_search.solve_idle", lambda task: FrequencyTerms(0.3, 1e-3, 1e-3))
-        found = match_stage(coarse, MotorcycleFits(), requirements, LINKAGE, None, match_inputs)
+        found = match_stage(coarse, MotorcycleFits(), requirements, LINKAGE, None, match_inputs, Wheel())
         return optimise_stage(
-            coarse, MotorcycleFits(), found, LINKAGE, linkages, requirements, match_inputs, inputs, InThisProcess()
+            coarse, MotorcycleFits(), found, LINKAGE, linkages, requirements, match_inputs, inputs, output,
+            InThisProcess(),
         )
 
 
@@ -69,7 +82,7 @@ def found():
 def test_the_staged_design_is_that_of_the_match(found):
     staged = found.staged.design
     assert staged.linkage_ratio == LINKAGE.ratio_nominal and staged.slots == 12
-    assert [one.name for one in found.solved][:2] == ["stage by stage", "mass, the other three no worse"]
+    assert found.solved[0].model == found.staged
     assert len(found.bettered) == 6 and len(found.solved) >= 1 + 6 + SMALL.solved
 
 
@@ -92,30 +105,40 @@ def test_linkages_with_better_ratios_than_the_chosen_one_are_left_out(found):
 
 
 def test_the_report_tells_of_it(found):
-    table, gains = report.solved_table(found), report.gains(found)
+    table, gains = report.solved_table(found, Wheel()), report.gains(found, Wheel())
     assert len(table) == len(found.solved) and (gains.stator_diameter_mm >= 70).all()
     assert table.damping_kNs_per_m[0] == pytest.approx(found.solved[0].field.values.objectives[2] / 1e3)
-    names = {file.name for file in report.files(found)}
+    names = {file.name for file in report.files(found, Wheel())}
     assert names == {"optimise.csv", "optimise.html", "figures/whole_designs.png"}
+
+
+def test_on_a_shaft_the_report_has_its_words(found):
+    table, gains = report.solved_table(found, Shaft()), report.gains(found, Shaft())
+    assert list(table.design)[:2] == ["stage by stage", "mass, the other three no worse"]
+    said = " ".join([*table.columns, *table.design, *gains.columns, *gains["what is bettered"]])
+    assert "gear_ratio" in table and "inertia, mass no worse, damping as required" in said
+    assert not re.search("wheel|road|linkage|mm_per_rad|kNs|equivalent", said)
 
 
 def test_the_idle_share_is_what_the_damping_does_not_explain(found):
     """300 N over 40 kNs/m take 2.25 W in the copper, over 80 half of it."""
     values = [replace(found.staged.values, objectives=(1.0, 1.0, *pair)) for pair in ((40e3, 2.5), (80e3, 2.25))]
     two = replace(found, front=tuple(replace(found.staged, values=one) for one in values), force_rms=300.0)
-    assert "10 to 50 %" in report.idle_share(two)
+    assert "10 to 50 %" in report.idle_share(two, Wheel())
 
 
 def test_no_damping_is_asked_for_and_the_linkage_is_stated():
     found = search(replace(REQUIRED, maximum_damping=0.0), linkages=None)
     assert all(one.design.linkage_ratio == LINKAGE.ratio_nominal for one in found.front)
-    assert report.gains(found).notna().all().all()
+    assert report.gains(found, Wheel()).notna().all().all()
 
 
 def test_targets_that_nothing_meets():
     light = replace(TWELVE, scales=replace(TWELVE.scales, mass=0.1))
     with pytest.raises(MatchError, match="match.mass_max_kg, match.equivalent_mass_max_kg"):
         search(match_inputs=light)
+    with pytest.raises(MatchError, match="match.mass_max_kg, drive.inertia_max_kg_m2"):
+        search(match_inputs=light, output=Shaft())
 
 
 def test_a_steel_without_loss_data():

@@ -8,6 +8,8 @@ import pandas as pd
 import pytest
 from matplotlib.text import Text
 
+from drivetrain.constraints import OverloadForce, RegenerativeDamping
+from drivetrain.match import LengthCurve
 from drivetrain.output import Wheel
 from figures.design_map import constrained_flux_density, design_map, design_maps, in_millimetres, select_optimum
 from figures.fits import QUANTITIES, fits, is_refused
@@ -170,7 +172,7 @@ def test_match_curves_tell_enforced_from_reported(assert_readable):
     terms = {"mass_term": 100 * ratio, "inertia_term": 0.2 * 2e-3 / ratio, "radius_term": np.full(50, 0.17)}
     curves = SimpleNamespace(
         ratio=ratio,
-        minimum_length={"overload force": 15 * ratio, "regenerative damping": 20 * ratio},
+        lengths=(LengthCurve(OverloadForce(1, 1), 15 * ratio), LengthCurve(RegenerativeDamping(1, 1, 0), 20 * ratio)),
         active_length=15 * ratio,
         feasible=(ratio > 1.3e-3) & (ratio < 4.5e-3),
         cost=sum(terms.values()),

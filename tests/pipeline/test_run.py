@@ -10,7 +10,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from toy_graph import GRAPH, SQUARES, SUMMARY, Extra, Largest, NoFit, Squares, StudyOfToys, Summary, inputs, largest
+from toy_graph import (
+    GRAPH,
+    SQUARES,
+    SUMMARY,
+    Extra,
+    Inputs,
+    Largest,
+    NoFit,
+    Squares,
+    StudyOfToys,
+    Summary,
+    inputs,
+    largest,
+)
 
 import pipeline.closure
 import pipeline.modules
@@ -100,6 +113,18 @@ def test_a_changed_input_is_named_and_only_what_reads_it_runs(tmp_path, capsys):
     go(tmp_path, StudyOfToys(count=4))
     assert said(capsys)[:3] == ["squares: Inputs changed", "summary: Largest changed, Inputs changed",
                                 "summary.files: Summary changed"]  # fmt: skip
+
+
+def test_what_a_stage_has_to_say_is_said_when_it_ran(tmp_path, capsys):
+    def remarks(summary: Summary, inputs: Inputs):
+        yield f"{summary.text}, of {inputs.count}"
+
+    nodes = tuple(replace(n, remarks=remarks) if n is SUMMARY else n for n in GRAPH.nodes)
+    graph = replace(GRAPH, nodes=nodes)
+    go(tmp_path, graph=graph)
+    assert "summary: the largest is 4, of 3" in said(capsys)
+    go(tmp_path, graph=graph)
+    assert not any("the largest" in line for line in said(capsys))
 
 
 def test_an_equal_value_of_a_view_stops_the_change(tmp_path, capsys):

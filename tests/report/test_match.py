@@ -1,13 +1,15 @@
 """The match for people: names and columns of the files, and what the section says."""
 
+import re
 from dataclasses import replace
 
 import pytest
 
+from drivetrain.finding import Sentence
 from drivetrain.matching import NamedMatch
-from drivetrain.output import Wheel
+from drivetrain.output import Shaft, Wheel
 from figures.report import Remark, Table
-from report.match import PARTS, TABLE, files, over_radius, parts_table, section
+from report.match import PARTS, TABLE, files, over_radius, parts_table, remarks, section
 from tests.drivetrain.test_matching import STATED, no_field, stage
 
 
@@ -54,9 +56,23 @@ def test_the_section_says_what_must_not_be_overlooked(found):
     ]  # fmt: skip
 
 
+def test_what_the_run_says_at_once(found):
+    said = list(remarks(found, Wheel()))
+    assert said[0].startswith("chosen in the study file")
+    assert "the true minimum is outside: add smaller diameters to sweep.stator_diameters_mm" in said[1]
+
+
+def test_on_a_shaft_nothing_of_a_wheel_is_said(found):
+    page = section(found, Shaft())
+    tables = [part.frame for part in page.content if isinstance(part, Table)]
+    said = " ".join([texts(page), *remarks(found, Shaft()), *(frame.to_csv() for frame in tables)])
+    assert "Nms/rad below the requirement" in said and "overload torque" in said and "inertia_kg_m2" in said
+    assert not re.search("wheel|kNs|mm_per_rad|mm/rad|force|equivalent", said)
+
+
 def test_the_section_without_matches_beside(found):
 
-    none = NamedMatch("reference machine, field torque", "", None, "the force is too large")
-    stated = NamedMatch("stated values", "", None, "too far")
+    none = NamedMatch("reference machine, field torque", "", None, Sentence("the force is too large"))
+    stated = NamedMatch("stated values", "", None, Sentence("too far"))
     said = texts(section(replace(found, reference=none, reference_cylinder=None, printed=None, stated=stated), Wheel()))
     assert "no match, the force is too large" in said and "there is no match: too far" in said
