@@ -163,7 +163,7 @@ class DaskCluster(Pool):
             import distributed  # noqa: PLC0415
         except ImportError:
             raise TaskError(
-                "the executor dask needs the package distributed; install it with `pip install 'airgap[cluster]'`"
+                "the executor dask needs the package distributed; install it with `pip install -e '.[cluster]'`"
             ) from None
         dask.config.set({"distributed.scheduler.allowed-failures": MOST_LOST_WORKERS - 1})
         self._lost = distributed.scheduler.KilledWorker
