@@ -14,6 +14,8 @@ from optimisation.optima import Optima, Optimum, edges_at, optima_stage
 from optimisation.polynomial_fits import FitRefused
 from optimisation.states import AlignedTooth
 from optimisation.sweep import VARIABLES, DesignMaps, SaturationLimit, SweepGrid, sweep_stage
+from report.fits import remarks
+from report.sweep import limits_files
 from study.inputs_field import field_case, saturation_limit, sweep_grid
 from study.read import read_study
 from tasks import InThisProcess
@@ -105,6 +107,11 @@ def test_one_section_without_an_optimum_leaves_the_others(maps):
 # ---- limits ---------------------------------------------------------------------------------------------------------
 
 
+def test_no_limits_need_be_compared():
+    found = limits_stage(CASE, GRID, replace(LIMIT, compared=()), InThisProcess())
+    assert found.points == () and list(limits_files(found)) == []
+
+
 def test_limits_differ_in_the_limit_alone():
     found = limits_stage(CASE, GRID, LIMIT, InThisProcess())
     best = {(point.reading, point.limit): point for point in found.points}
@@ -166,10 +173,11 @@ def test_fits_do_not_care_about_the_order_of_the_optima():
     assert fits_stage(shuffled).at(12, 0.0425) == fits_stage(optima_at(RADII)).at(12, 0.0425)
 
 
-def test_three_diameters_are_refused_with_the_reason(capsys):
+def test_three_diameters_are_refused_with_the_reason():
     fits = fits_stage(optima_at(RADII[:3]))
     assert fits.usable == ()
-    assert "3 points cannot test" in capsys.readouterr().out
+    said = list(remarks(fits))
+    assert len(said) == len(QUANTITIES) and all("3 points cannot test" in one for one in said)
     with pytest.raises(FitRefused, match="add to sweep.stator_diameters_mm"):
         fits.at(12, 0.04)
 

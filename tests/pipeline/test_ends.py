@@ -8,8 +8,10 @@ import pytest
 from small_studies import Here, fitted, small
 
 import pipeline.run_command
+from figures.report import Picture, Section
 from pipeline.results import Results
-from pipeline.run_command import run_command
+from pipeline.run import Failure
+from pipeline.run_command import page_of, run_command
 from study.schema import Study
 from study.sentences import section_class
 
@@ -78,3 +80,12 @@ def test_no_gears_are_found(ended):
     text, said = ended("robot_joint", "gearbox", gearbox__ratio_tolerance="0.0005")
     assert keys(said) and "gear" in said
     assert "Gearbox and motor matched" in text and "The chosen machine beside the machine of the study file" in text
+
+
+def test_a_picture_that_could_not_be_drawn_does_not_cost_the_report(tmp_path):
+    study = small("pump", tmp_path)
+    sections = [Section("Found", ("Text.", Picture("figures/absent.png", "what it would have shown")))]
+    page = page_of(study, sections, [Failure("some.files", "a fault of the program")])
+    page.write(tmp_path / page.name)
+    text = (tmp_path / page.name).read_text(encoding="utf-8")
+    assert "Not drawn: what it would have shown" in text and "some.files: a fault of the program" in text
