@@ -21,10 +21,10 @@ class Command:
 
 COMMANDS = {
     "run": Command("pipeline.run_command", "add_run", "run the stages of a study"),
-    "check": Command("pipeline.study_commands", "add_check", "is a study file usable?"),
+    "check": Command("pipeline.check_command", "add_check", "is a study file usable?"),
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
-    "graph": Command("pipeline.study_commands", "add_graph", "draw the stages of a study and what flows between them"),
+    "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
     "compare": Command("pipeline.workbench_commands", "add_compare", "where does the model fail against a campaign?"),
     "diagnose": Command("pipeline.workbench_commands", "add_diagnose",
                         "which effect is missing, how sure, what to measure next?"),

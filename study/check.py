@@ -1,14 +1,9 @@
-"""``python -m study.check STUDY``: is this study file usable? Prints a summary, or what is wrong (exit code 2)."""
+"""A study in a few lines."""
 
 from __future__ import annotations
 
-import argparse
-
 from study.chain import drives, searches_linkage
-from study.errors import exit_on_wrong_study
-from study.read import read_study
 from study.schema import Study
-from study.usable import check_study
 
 
 def summary(study: Study) -> str:
@@ -59,18 +54,3 @@ def _linkage(study: Study) -> str:
     if study.linkage_search is not None and searches_linkage(study):
         return f"searched, choice {study.linkage_search.choice}"
     return f"{study.linkage.ratio_nominal_mm_per_rad:g} mm/rad, as stated"
-
-
-def main(arguments: list[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(prog="python -m study.check", description=__doc__)
-    parser.add_argument("study", help="path of a study file, or the name of one in studies/")
-    parser.add_argument("--set", action="append", default=[], metavar="SECTION.KEY=VALUE", help="replace one value")
-    chosen = parser.parse_args(arguments)
-    with exit_on_wrong_study():
-        study = read_study(chosen.study, chosen.set)
-        check_study(study)
-        print(summary(study))
-
-
-if __name__ == "__main__":
-    main()

@@ -120,7 +120,7 @@ def test_one_radius_keeps_its_unit_from_the_study_to_the_outcome(study, results)
     radius = match.machine.stator_outer_radius
     assert radius == pytest.approx(read_study(study).match.chosen_stator_diameter_mm / 2e3)
     assert winding.wound.machine.stator_outer_radius == radius == match.chosen.section.machine.stator_outer_radius
-    assert f">{1e3 * radius:g}<" in (FOLDER / "report.html").read_text(encoding="utf-8")
+    assert f"{1e3 * radius:.2f}" in (FOLDER / "report.html").read_text(encoding="utf-8")
 
 
 def test_an_unknown_stage_is_named_with_those_there_are(study):

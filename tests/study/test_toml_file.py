@@ -101,7 +101,7 @@ def test_one_sentence_about_anything_that_is_no_study(tmp_path, make, named):
 @posix
 @pytest.mark.parametrize("kind", ["named pipe", "symlink loop", "lists 3000 deep", "folder"])
 def test_the_command_exits_with_2_and_one_line(tmp_path, kind):
-    command = [sys.executable, "-m", "study.check", str(FILES[kind][0](tmp_path))]
+    command = [sys.executable, "-m", "pipeline.cli", "check", str(FILES[kind][0](tmp_path))]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=WAIT)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and done.stdout == ""
 

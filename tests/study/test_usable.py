@@ -6,7 +6,7 @@ import re
 import pytest
 
 from materials.library import read_curve, steel_file
-from study.check import main
+from pipeline.cli import main
 from study.errors import StudyError
 from study.inputs_machine import machine_family
 from study.operating_point import asked_point
@@ -102,7 +102,7 @@ def test_three_slots_and_two_poles_can_be_meshed():
 
 def test_the_check_says_it_and_exits_with_2(capsys):
     with pytest.raises(SystemExit) as caught:
-        main(["motorcycle", "--set", "sweep.stator_diameters_mm=[80, 90, 100]"])
+        main(["check", "motorcycle", "--set", "sweep.stator_diameters_mm=[80, 90, 100]"])
     assert caught.value.code == 2
     out, said = capsys.readouterr()
     assert out == "" and re.fullmatch(r"studies/motorcycle\.toml: .*\n", said)
@@ -110,7 +110,7 @@ def test_the_check_says_it_and_exits_with_2(capsys):
 
 @pytest.mark.parametrize("study", sorted(path.stem for path in STUDIES.glob("*.toml")))
 def test_the_shipped_studies_are_usable(study, capsys):
-    main([study])
+    main(["check", study])
     assert capsys.readouterr().out.endswith("usable\n")
 
 

@@ -146,7 +146,7 @@ def test_a_wrong_override_gives_one_sentence(override, named):
     ],
 )
 def test_the_command_exits_with_2_and_one_line(tmp_path, old, new, code, named):
-    command = [sys.executable, "-m", "study.check", str(changed(tmp_path, old, new))]
+    command = [sys.executable, "-m", "pipeline.cli", "check", str(changed(tmp_path, old, new))]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert done.returncode == code
     assert named in done.stderr and "Traceback" not in done.stderr
