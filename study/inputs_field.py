@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import sqrt
-from typing import TypeVar
 
-from geometry.family import MachineFamily
 from geometry.half_cell import MeshDensity
-from geometry.machine import Magnetisation, ParallelMagnetisation, RadialMagnetisation
 from magnetostatics.case import FieldCase
 from magnetostatics.model import MachineMaterials
 from materials.library import load_steel
 from materials.magnet import Magnet
 from optimisation.states import READINGS
 from optimisation.sweep import SaturationLimit, SweepGrid
-from study.schema import MachineSection, MeshSection, Study
+from study.inputs_machine import machine_family, mesh_density
+from study.schema import Study
 
-Number = TypeVar("Number", int, float)
-
-_MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 # Twice the resolution of the sweep, for single states that are looked at.
 _DETAIL = MeshDensity(gap_edges=360, longest_gap_edge=0.75, gap_layers=2, across_iron=3.0)
 
@@ -40,49 +34,11 @@ def field_case(study: Study) -> FieldCase:
     )
 
 
-def machine_family(section: MachineSection) -> MachineFamily:
-    """The machine that the study states, and those that differ from it in four numbers."""
-    m = section.si
-    return MachineFamily(
-        slots=m.slots,
-        pole_pairs=m.poles // 2,
-        stator_outer_radius=m.stator_outer_radius,
-        rotor_outer_radius=m.rotor_outer_radius,
-        back_iron_width=m.back_iron_width,
-        magnet_length=m.magnet_length,
-        airgap=m.airgap,
-        slot_opening=m.slot_opening,
-        shoe_depth_fraction=m.shoe_depth_fraction,
-        shoe_aspect_ratio=m.shoe_aspect_ratio,
-        shaft_radius=m.shaft_radius,
-        magnet_arc_fraction=m.magnet_arc_fraction,
-        magnetisation=_MAGNETISATIONS[m.magnetisation],
-        tooth_width=m.tooth_width,
-        shoe_d1=m.shoe_d1,
-        shoe_d2=m.shoe_d2,
-    )
-
-
 def machine_materials(study: Study) -> MachineMaterials:
     """Steel, whose path counts from the study file, and magnet with the remanence at the working temperature."""
     steel = load_steel(study.materials.steel, study.path.parent)
     section = study.materials.si
     return MachineMaterials(steel, steel, Magnet(section.remanence, section.recoil_permeability))
-
-
-def mesh_density(section: MeshSection) -> MeshDensity:
-    """What the study states of the mesh, the rest as it is by itself."""
-    default = MeshDensity()
-    return replace(
-        default,
-        gap_edges=_stated(section.gap_edges_per_revolution, default.gap_edges),
-        gap_layers=_stated(section.gap_layers, default.gap_layers),
-        across_iron=_stated(section.elements_across_tooth, default.across_iron),
-    )
-
-
-def _stated(value: Number | None, otherwise: Number) -> Number:
-    return otherwise if value is None else value
 
 
 def sweep_grid(study: Study) -> SweepGrid:

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from geometry.family import MachineFamily
+from geometry.half_cell import MeshDensity
 from geometry.machine import Magnetisation, ParallelMagnetisation, RadialMagnetisation
-from study.schema import MachineSection
+from study.schema import MachineSection, MeshSection
 
+# Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.
+MESH_NAMES = {
+    "gap_edges": "gap_edges_per_revolution",
+    "gap_layers": "gap_layers",
+    "across_iron": "elements_across_tooth",
+}
 _MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 
 
@@ -30,3 +37,9 @@ def machine_family(section: MachineSection) -> MachineFamily:
         shoe_d1=si.shoe_d1,
         shoe_d2=si.shoe_d2,
     )
+
+
+def mesh_density(section: MeshSection) -> MeshDensity:
+    """Resolution of the mesh of the sweep; what the study does not state has its default."""
+    stated = {name: getattr(section, key) for name, key in MESH_NAMES.items()}
+    return MeshDensity(**{name: value for name, value in stated.items() if value is not None})

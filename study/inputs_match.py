@@ -16,9 +16,9 @@ from drivetrain.matching import (
 from drivetrain.planetary import NITRIDED_STEEL, PLANETS, GearLaws, PrintedDynamicFactor
 from drivetrain.requirements import Linkage, Requirements
 from drivetrain.whole_search import WholeSearchInputs
-from materials.conductor import Conductor
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
+from study.inputs_electrical import winding_resistivity
 from study.needed import needed
 from study.schema import MatchSection, Study
 
@@ -37,7 +37,7 @@ def match_inputs(study: Study) -> MatchInputs:
         gear_stages=section.gearbox_stages,
         planets=PLANETS if study.gearbox is None else study.gearbox.planets,
         gear_laws=gear_laws(study.match),
-        resistivity=_winding_resistivity(study),
+        resistivity=winding_resistivity(study),
         overload=_OVERLOADS[section.overload_torque],
         damping=_DAMPING[section.enforce_damping],
         masses=part_materials(study),
@@ -92,17 +92,6 @@ def stated_demands(study: Study) -> StatedDemands | None:
 def whole_search_inputs(study: Study) -> WholeSearchInputs:
     """What the search over everything needs beside the match."""
     return WholeSearchInputs(loss_grade=study.materials.loss_grade)
-
-
-def _winding_resistivity(study: Study) -> float:
-    """Of the copper at the temperature of the winding [ohm m]."""
-    copper = study.materials.si
-    conductor = Conductor(
-        reference_resistivity=copper.copper_resistivity,
-        temperature_coefficient=copper.copper_temperature_coefficient,
-        reference_temperature=copper.copper_reference_temperature,
-    )
-    return float(conductor.resistivity(study.winding_selection.si.winding_temperature))
 
 
 def _by_hand(section: MatchSection) -> ChosenByHand:

@@ -15,19 +15,13 @@ from geometry.machine import GeometryError
 from geometry.winding import star_of_slots
 from study.chain import check_chain
 from study.errors import StudyError
-from study.inputs_machine import machine_family
+from study.inputs_machine import MESH_NAMES, machine_family
 from study.schema import MachineSection, Study
 from study.sentences import Location, sections_with, sentences
 from study.toml_file import parsed, read_table
 from units import split_unit
 
 STUDIES = Path(__file__).resolve().parent.parent / "studies"
-# Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.
-MESH_NAMES = {
-    "gap_edges": "gap_edges_per_revolution",
-    "gap_layers": "gap_layers",
-    "across_iron": "elements_across_tooth",
-}
 _LONGEST_SHOWN = 200
 _BARE_WORD = re.compile(r"[\w./-]+")
 

@@ -21,9 +21,9 @@ from materials.library import load_steel
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
 from study.inputs_linkage import linkage_search, stated_hardpoints
-from study.inputs_machine import machine_family
+from study.inputs_machine import machine_family, mesh_density
 from study.inputs_vehicle import ride_case
-from study.read import MESH_NAMES, check_winding, sentence_part, with_keys
+from study.read import check_winding, sentence_part, with_keys
 from study.schema import Study
 from units import MILLIMETRE, SQUARE_MILLIMETRE
 from vehicle.errors import VehicleError
@@ -68,9 +68,9 @@ def check_sweep(study: Study) -> None:
     """Every slot count and diameter must have a design that can be built and meshed; one of all must take the wire."""
     largest = 0.0
     for slots, diameter in product(study.sweep.slots, study.sweep.stator_diameters_mm):
-        machines = _buildable(study, slots, diameter)
+        machines, what = _buildable(study, slots, diameter), f"a design of the sweep ({slots} slots, {diameter:g} mm)"
         for machine in machines:
-            check_mesh(study, machine, mesh_density(study), f"a design of the sweep ({slots} slots, {diameter:g} mm)")
+            check_mesh(study, machine, mesh_density(study.mesh), what)
         largest = max(largest, *(machine.half_slot_area for machine in machines))
     _check_wire(study, largest)
 
@@ -81,12 +81,6 @@ def check_mesh(study: Study, machine: Machine, density: MeshDensity, what: str =
         check_mesh_size(machine, density, machine.sectors)
     except GeometryError as error:
         raise StudyError(f"{study.path}: {what} cannot be meshed, {with_keys(study, error)}.") from error
-
-
-def mesh_density(study: Study) -> MeshDensity:
-    """Resolution of the mesh of the sweep; what the study does not state has its default."""
-    stated = {name: getattr(study.mesh, key) for name, key in MESH_NAMES.items()}
-    return MeshDensity(**{name: value for name, value in stated.items() if value is not None})
 
 
 def _buildable(study: Study, slots: int, diameter: float) -> list[Machine]:

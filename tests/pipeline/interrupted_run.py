@@ -1,5 +1,6 @@
 """A run of slow tasks in a process of its own, to be interrupted by the tests: ``interrupted_run.py CHECKPOINT``."""
 
+import signal
 import sys
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from pipeline.pools import PooledWorkers, Processes
 from pipeline.sentences import sentences
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever starts the tests may have told them to ignore it
     with sentences():
         tasks = {f"task {number}": number for number in range(30)}
         pool = Processes(2)

@@ -5,15 +5,14 @@ runs a graph without worker processes.
 """
 
 import re
-from concurrent.futures import Future
 from dataclasses import replace
 
 import numpy as np
+from pool_here import Here
 
 from optimisation.fits import QUANTITIES, SectionFits, SlotFits
 from optimisation.polynomial_fits import fit_polynomial
 from pipeline.graph import Stage, View
-from pipeline.pools import Pool
 from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.run_command import page_of
@@ -33,6 +32,20 @@ COARSE = {
     "mesh.elements_across_tooth": "1.0",
     "flux_map.angles": "1",
     "flux_map.currents": "5",
+}
+# The motorcycle besides: one short road, two obstacles, a short search of the linkage, gears near their ratio.
+MOTORCYCLE = {
+    "study__id": '"small-test-study"',
+    "saturation__limits_compared_T": "[1.2, 1.5]",
+    "ride__road_seeds": "[0]",
+    "ride__road_duration_s": "5.0",
+    "obstacles__amplitudes_mm": "[-50, 50]",
+    "obstacles__speeds_km_per_h": "[50]",
+    "linkage_search__seeds": "[1]",
+    "linkage_search__population": "24",
+    "linkage_search__generations": "20",
+    "gearbox__ratio_tolerance": "0.015",
+    "winding_selection__dc_bus_voltage_V": "90.0",
 }
 
 
@@ -54,26 +67,6 @@ def fitted(study, without=()):
     graph, gone = graph_of(study), {"sweep", "optima", "limits", "fits", *without}
     kept = tuple(node for node in graph.nodes if not (isinstance(node, Stage) and node.name in gone))
     return replace(graph, nodes=(*kept, View(fitted_sections)))
-
-
-class Here(Pool):
-    """Runs tasks at once, in this process."""
-
-    size = 1
-
-    def submit(self, function, task):
-        future = Future()
-        try:
-            future.set_result(function(task))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-    def result(self, future):
-        return future.result()
-
-    def end(self, now=False):
-        pass
 
 
 def small(name, folder, **changes):

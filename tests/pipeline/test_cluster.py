@@ -6,21 +6,21 @@ import threading
 import time
 
 import pytest
-from small_study import small_study
-from test_run import Here
+from pool_here import Here
+from small_studies import small
 
 from benchmarks import blind_score
 from pipeline.pools import DaskCluster
 from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.stages import graph_of
-from study.read import read_study
 
 TINY = {
-    "back_iron_steps = 4": "back_iron_steps = 3",
-    "rotor_radius_steps = 4": "rotor_radius_steps = 3",
-    'requirements = "vehicle"': 'requirements = "stated"',
-    'linkage = "optimised"': 'linkage = "stated"',
+    "study__id": '"tiny-test-study"',
+    "sweep__back_iron_steps": "3",
+    "sweep__rotor_radius_steps": "3",
+    "chain__requirements": '"stated"',
+    "chain__linkage": '"stated"',
 }
 FILES = ("sweep.json", "sweep.nc", "optima.json", "fits.json", "match.json", "flux_map.json", "flux_map.nc")
 
@@ -34,13 +34,7 @@ def cluster():
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    path = small_study(tmp_path_factory.mktemp("study") / "tiny.toml")
-    text = path.read_text(encoding="utf-8")
-    for old, new in TINY.items():
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text, encoding="utf-8")
-    return read_study(path)
+    return small("motorcycle", tmp_path_factory.mktemp("study"), **TINY)
 
 
 def run_to_the_flux_map(study, folder, pool):

@@ -5,7 +5,8 @@ import html
 import re
 
 import pytest
-from small_studies import Here, fitted, small
+from pool_here import Here
+from small_studies import fitted, small
 
 import pipeline.run_command
 from figures.report import Picture, Section

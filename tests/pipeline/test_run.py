@@ -5,11 +5,11 @@ import os
 import stat
 import subprocess
 import sys
-from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pool_here import Here
 from toy_graph import (
     GRAPH,
     SQUARES,
@@ -30,29 +30,8 @@ import pipeline.modules
 import pipeline.run
 from figures.files import text_file
 from pipeline.graph import Graph, Source, Stage, View
-from pipeline.pools import Pool
 from pipeline.results import Results, ResultsError
 from pipeline.run import Run
-
-
-class Here(Pool):
-    """Runs tasks at once, in this process."""
-
-    size = 1
-
-    def submit(self, function, task):
-        future = Future()
-        try:
-            future.set_result(function(task))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-    def result(self, future):
-        return future.result()
-
-    def end(self, now=False):
-        pass
 
 
 def go(folder, study=StudyOfToys(), graph=GRAPH):

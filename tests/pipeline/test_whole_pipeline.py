@@ -8,8 +8,9 @@ import sys
 
 import pandas as pd
 import pytest
-from small_study import PROJECT, small_study
+from small_studies import MOTORCYCLE, small
 
+from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.stages import graph_of
 from study.read import read_study
@@ -24,7 +25,7 @@ def airgap(*arguments):
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    path = small_study(tmp_path_factory.mktemp("study") / "small.toml")
+    path = small("motorcycle", tmp_path_factory.mktemp("study"), **MOTORCYCLE).path
     shutil.rmtree(FOLDER, ignore_errors=True)
     done = airgap("run", path)
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
@@ -130,8 +131,9 @@ def test_an_unknown_stage_is_named_with_those_there_are(study):
 
 
 def test_a_wrong_study_stops_the_run_with_one_sentence(tmp_path):
-    path = small_study(tmp_path / "wrong.toml", **{"airgap_mm = 0.5": "airgap_mm = -0.5"})
-    done = airgap("run", path)
+    text = (PROJECT / "studies" / "motorcycle.toml").read_text(encoding="utf-8")
+    (tmp_path / "wrong.toml").write_text(text.replace("airgap_mm = 0.5", "airgap_mm = -0.5"), encoding="utf-8")
+    done = airgap("run", tmp_path / "wrong.toml")
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1 and "machine.airgap_mm = -0.5" in done.stderr
 

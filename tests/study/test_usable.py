@@ -8,10 +8,10 @@ import pytest
 from materials.library import read_curve, steel_file
 from pipeline.cli import main
 from study.errors import StudyError
-from study.inputs_machine import machine_family
+from study.inputs_machine import machine_family, mesh_density
 from study.operating_point import asked_point
 from study.read import STUDIES, read_study
-from study.usable import check_mesh, check_study, mesh_density
+from study.usable import check_mesh, check_study
 
 
 def refusal(overrides, study="motorcycle") -> str:
@@ -97,7 +97,7 @@ def test_requirements_that_mean_something_may_be_zero(zero):
 
 def test_three_slots_and_two_poles_can_be_meshed():
     study = read_study("motorcycle", ["machine.slots=3", "machine.poles=2", "sweep.slots=[3]"])
-    check_mesh(study, machine_family(study.machine).reference, mesh_density(study))
+    check_mesh(study, machine_family(study.machine).reference, mesh_density(study.mesh))
 
 
 def test_the_check_says_it_and_exits_with_2(capsys):
