@@ -1,7 +1,7 @@
 """What spreading tasks costs and gains: ``python -m benchmarks.scaling``.
 
-Overhead of a task that does nothing, and wall time of the small sweep of the automotive study on one to four workers, on the processes
-of this machine and on a dask cluster of it. Results are compared by their hash. Prints a line each.
+Overhead of a task that does nothing, and wall time of the small sweep of the automotive study on one to four workers,
+on the processes of this machine and on a dask cluster of it. Results are compared by their hash. Prints a line each.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ def measured(kind: str, count: int) -> dict[str, object]:
         maps = sweep_stage(field_case(study), sweep_grid(study), saturation_limit(study), workers)
         wall = time.perf_counter() - began
     pool.end()
-    return {"executor": kind, "workers": count, "overhead_ms": 1e3 * overhead, "sweep_s": wall, "hash": digest(maps)[:12]}
+    found = {"executor": kind, "workers": count, "overhead_ms": 1e3 * overhead, "sweep_s": wall}
+    return {**found, "hash": digest(maps)[:12]}
 
 
 if __name__ == "__main__":
