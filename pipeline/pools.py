@@ -64,6 +64,10 @@ class Pool:
         """Let go of the workers; now: without waiting for what they do."""
         raise NotImplementedError
 
+    def recover(self) -> None:
+        """After a lost worker: make the pool usable again."""
+        self.end(now=True)
+
 
 def default_workers() -> int:
     """Number of cores that this process may use."""
@@ -154,7 +158,8 @@ class DaskCluster(Pool):
     """Workers of ``dask.distributed``, an optional package.
 
     address: of a scheduler, ``tcp://host:8786``; None starts a cluster of ``size`` processes on this machine.
-    The scheduler gives a task whose worker was lost to another one, ``distributed.scheduler.allowed-failures`` times.
+    The scheduler blames every task that a lost worker had been given, so that it is told to report the first loss; who
+    did it is found as for processes, by running the suspects alone.
     """
 
     def __init__(self, size: int | None = None, address: str | None = None) -> None:
@@ -165,7 +170,7 @@ class DaskCluster(Pool):
             raise TaskError(
                 "the executor dask needs the package distributed; install it with `pip install -e '.[cluster]'`"
             ) from None
-        dask.config.set({"distributed.scheduler.allowed-failures": MOST_LOST_WORKERS - 1})
+        dask.config.set({"distributed.scheduler.allowed-failures": 0})
         self._lost = distributed.scheduler.KilledWorker
         self._scratch = TemporaryDirectory(prefix="airgap-dask-")
         self._cluster = None if address else _local_cluster(distributed, size or default_workers(), self._scratch.name)
@@ -178,11 +183,14 @@ class DaskCluster(Pool):
         return self.client.get_executor(pure=False).submit(function, task)
 
     def result(self, future: Future[Result]) -> Result:
-        """See ``Pool.result``; a task that was given up raises RuntimeError."""
+        """See ``Pool.result``."""
         try:
             return future.result()
-        except self._lost:
-            raise RuntimeError(f"it ended its worker process {MOST_LOST_WORKERS} times") from None
+        except self._lost as error:
+            raise LostWorker from error
+
+    def recover(self) -> None:
+        """The cluster replaces its workers itself."""
 
     def end(self, now: bool = False) -> None:
         """See ``Pool.end``."""
@@ -310,7 +318,7 @@ class _Job:
                     self._take(running[future], future)
                     del running[future]
         except LostWorker:
-            self.pool.end(now=True)
+            self.pool.recover()
             return self._struck(list(running.values()))
         return []
 
