@@ -166,26 +166,6 @@ class WindingChoice:
     table: tuple[Winding, ...]  # every pair that fits
 
 
-def required_base_speed(velocity: float, transmission_ratio: float) -> float:
-    """Lowest base speed that gives this actuator velocity at full torque, v / tau_t [rad/s] (3.120).
-
-    velocity: actuator velocity at the peak force [m/s]; transmission_ratio: tau_t [m/rad]
-    Equation 3.120 prints 60 v/(2 pi) tau_t; the ratio divides (6643 rpm at 1.6 m/s and 2.3 mm/rad).
-    """
-    return velocity / transmission_ratio
-
-
-def winding_requirement(
-    *, peak_force: float, velocity_at_peak_force: float, peak_power: float, transmission_ratio: float
-) -> WindingRequirement:
-    """Requirement at the machine shaft from the actuator's [N, m/s, W] and tau_t [m/rad]; eqs 3.4 and 3.120."""
-    return WindingRequirement(
-        base_speed=required_base_speed(velocity_at_peak_force, transmission_ratio),
-        power=peak_power,
-        torque=peak_force * transmission_ratio,
-    )
-
-
 def feasible_pairs(coil_side_area: float, wire: Wire, limits: WindingLimits) -> tuple[tuple[int, int], ...]:
     """Every (N_t, N_h) with N_t N_h A_w / A_s <= the largest packing (3.119), by turns, then by wires.
 

@@ -6,6 +6,7 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
+from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.dq import DriveLimits, base_speed, peak_torque
 from electrical.flux_map_machine import FluxMapMachine, FluxMapMachineError
 from electrical.resistance import COPPER_RESISTIVITY_20
@@ -18,9 +19,7 @@ from electrical.winding_selection import (
     Wire,
     evaluate_windings,
     feasible_pairs,
-    required_base_speed,
     select_winding,
-    winding_requirement,
     with_maximum_power,
 )
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, RPM, SQUARE_MILLIMETRE
@@ -41,9 +40,10 @@ LIMITS = WindingLimits(
     packing_limit=0.3, packing_tolerance=0.04, overload_current_density=OVERLOAD, dc_voltage=48.0,
     maximum_speed=15000 * RPM,
 )
-REQUIREMENT = winding_requirement(
-    peak_force=2614.0, velocity_at_peak_force=1.6, peak_power=4253.0, transmission_ratio=2.3 * MILLIMETRE
-)
+# Table 3.7 at the wheel, behind 2.3 mm/rad over the whole travel.
+TABLE_3_7 = Requirements(40e3, 300.0, 0.1, 37.4, 3.4, 2614.0, 1.6, 4253.0, 1343.0, 3.2)
+DEMAND = shaft_demand(TABLE_3_7, Transmission(2.3 * MILLIMETRE, 2.3 * MILLIMETRE))
+REQUIREMENT = WindingRequirement(DEMAND.base_speed, DEMAND.power, DEMAND.torque_peak)
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,7 @@ def limited_choice():
 
 
 def test_required_base_speed_divides_by_the_ratio():
-    assert required_base_speed(1.6, 2.3 * MILLIMETRE) / RPM == pytest.approx(6643, abs=0.5)
+    assert DEMAND.base_speed / RPM == pytest.approx(6643, abs=0.5)
 
 
 def test_required_torque_is_force_times_ratio():
