@@ -71,9 +71,7 @@ def both_found(case: dict) -> bool:
     if len(case["names"]) != 2:
         return False
     groups = [[name, *case["alternatives"].get(name, [])] for name in case["names"]]
-    return any(
-        is_named(one, groups[0]) and is_named(two, groups[1]) for one, two in permutations(case["effects"], 2)
-    )
+    return any(is_named(one, groups[0]) and is_named(two, groups[1]) for one, two in permutations(case["effects"], 2))
 
 
 def wrong_name(case: dict) -> bool:

@@ -32,10 +32,10 @@ from benchmarks.virtual_benches.hiding import hide
 from effects.library import library
 from pipeline.checkpoint import Checkpoint
 from pipeline.pools import Interrupted, Pool, PooledWorkers, Processes
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.diagnosis import diagnose
+from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.diagnosis import diagnose
+from workbench.models.bases import nominal_model
 
 PROJECT = Path(__file__).resolve().parent.parent
 RESULTS = PROJECT / "results" / "reference" / "blind_score"

@@ -13,9 +13,9 @@ from benchmarks.virtual_benches.case import Answer
 from effects.base import Effect, InstrumentEffect
 from effects.library import Library
 from effects.parameter import parameters_of
-from workbench.base_models import nominal_model
-from workbench.model import Model
-from workbench.table import Campaign, Table
+from workbench.data.table import Campaign, Table
+from workbench.models.bases import nominal_model
+from workbench.models.model import Model
 
 
 def committed(campaign: Campaign, library: Library, names: tuple[str, ...], answer: Answer) -> tuple[Campaign, Answer]:

@@ -23,14 +23,14 @@ from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
 from benchmarks.virtual_benches.hiding import hide
 from effects.library import library
-from workbench.base_models import nominal_model
-from workbench.bench import bench_of
-from workbench.campaign import read_campaign
-from workbench.diagnosis import Search, searched
-from workbench.recommend import Option, gains_of
-from workbench.stack import rows_of
-from workbench.table import Campaign, Table
-from workbench.verdict import Posterior, posterior
+from workbench.data.campaign import read_campaign
+from workbench.data.stack import rows_of
+from workbench.data.table import Campaign, Table
+from workbench.explain.diagnosis import Search, searched
+from workbench.explain.recommend import Option, gains_of
+from workbench.explain.verdict import Posterior, posterior
+from workbench.likelihood.bench import bench_of
+from workbench.models.bases import nominal_model
 
 CATALOGUES = {"damper": DAMPER, "dq": DQ}
 TUNING_START = 12000

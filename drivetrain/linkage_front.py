@@ -169,8 +169,13 @@ def _descend(problem: LinkageProblem, start: np.ndarray, objective: int, largest
 
     limits = {"type": "ineq", "fun": lambda x: values(x)[0, 1:] - _SAFETY, "jac": lambda x: slopes(x)[:, 1:].T}
     result = minimize_locally(
-        lambda x: values(x)[0, 0], (start - lower) / span, jac=lambda x: slopes(x)[:, 0], method="SLSQP",
-        bounds=[(0, 1)] * len(span), constraints=[limits], options={"ftol": 1e-10},
+        lambda x: values(x)[0, 0],
+        (start - lower) / span,
+        jac=lambda x: slopes(x)[:, 0],
+        method="SLSQP",
+        bounds=[(0, 1)] * len(span),
+        constraints=[limits],
+        options={"ftol": 1e-10},
     )
     return lower + np.clip(result.x, 0, 1) * span
 

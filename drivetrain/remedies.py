@@ -124,9 +124,7 @@ class Remedy:
     fails_then: tuple[Requirement, ...] = ()
 
 
-def remedies(
-    design: ActuatorDesign, checks: Sequence[Check], levers: Sequence[Lever] = LEVERS
-) -> tuple[Remedy, ...]:
+def remedies(design: ActuatorDesign, checks: Sequence[Check], levers: Sequence[Lever] = LEVERS) -> tuple[Remedy, ...]:
     """For every check that does not hold: each lever alone, in both directions, the smaller move of the two.
 
     All levers and directions are one batch of designs, so that each step of the search is one envelope.
@@ -144,9 +142,7 @@ def _remedies_of(
     found = [k for k, value in enumerate(moves) if value is not None]
     fails = _failing(holding, [levers[k].moved(design, moves[k]) for k in found])
     then = dict(zip(found, fails, strict=True))
-    return [
-        Remedy(requirement, lever, now[k], moves[k], then.get(k, ())) for k, lever in enumerate(levers)
-    ]
+    return [Remedy(requirement, lever, now[k], moves[k], then.get(k, ())) for k, lever in enumerate(levers)]
 
 
 def _failing(requirements: Sequence[Requirement], designs: Sequence[ActuatorDesign]) -> list[tuple[Requirement, ...]]:
@@ -158,9 +154,7 @@ def _failing(requirements: Sequence[Requirement], designs: Sequence[ActuatorDesi
     return [tuple(one for one, good in zip(requirements, met, strict=True) if not good[k]) for k in range(len(designs))]
 
 
-def _least_moves(
-    design: ActuatorDesign, requirement: Requirement, levers: Sequence[Lever]
-) -> list[float | None]:
+def _least_moves(design: ActuatorDesign, requirement: Requirement, levers: Sequence[Lever]) -> list[float | None]:
     """Value of each lever nearest to the present one at which the requirement holds; None where there is none."""
     ways = [(lever, factor) for lever in levers for factor in (LEVER_RANGE, 1 / LEVER_RANGE)]
     shares = _nearest_shares(design, requirement, ways)
@@ -190,7 +184,10 @@ def _nearest_shares(
 
 
 def _bisected(
-    design: ActuatorDesign, requirement: Requirement, ways: Sequence[tuple[Lever, float]], low: np.ndarray,
+    design: ActuatorDesign,
+    requirement: Requirement,
+    ways: Sequence[tuple[Lever, float]],
+    low: np.ndarray,
     high: np.ndarray,
 ) -> np.ndarray:
     """Shares (ways,) at which the requirement just holds, between low, where it does not, and high, where it does."""

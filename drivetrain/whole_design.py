@@ -259,9 +259,7 @@ def _costs(rated: Sequence[RatedDesign]) -> np.ndarray:
     return np.array([one.values.objectives for one in rated]) * _SIGNS
 
 
-def improved(
-    problem: WholeProblem, start: WholeDesign, objective: int, allowed: tuple[float, ...]
-) -> RatedDesign:
+def improved(problem: WholeProblem, start: WholeDesign, objective: int, allowed: tuple[float, ...]) -> RatedDesign:
     """The design of least (damping: most) ``objective`` with the others no worse than ``allowed``, for all slots.
 
     allowed: [kg, kg, Ns/m, W], (4,), in the order of OBJECTIVES, the entry of the objective itself does not count
@@ -284,9 +282,7 @@ def _excess(values: Values, objective: int, allowed: np.ndarray) -> float:
     return float(np.maximum(miss, 0).sum() + np.maximum(values.constraints, 0).sum())
 
 
-def _evolved(
-    problem: WholeProblem, start: WholeDesign, slots: int, objective: int, allowed: np.ndarray
-) -> WholeDesign:
+def _evolved(problem: WholeProblem, start: WholeDesign, slots: int, objective: int, allowed: np.ndarray) -> WholeDesign:
     scale = abs(problem.values(start).objectives[objective])
 
     def cost(x: np.ndarray) -> float:

@@ -309,6 +309,5 @@ def _solved(
     tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
     found = workers.map("designs", solve_section, tasks)
     return tuple(
-        SolvedDesign(one, RatedDesign(one.design, problem.values(one.design, found[name])))
-        for name, one in shown
+        SolvedDesign(one, RatedDesign(one.design, problem.values(one.design, found[name]))) for name, one in shown
     )

@@ -5,9 +5,7 @@ from __future__ import annotations
 from math import asin, pi
 
 
-def slot_centre_distance(
-    *, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float
-) -> float:
+def slot_centre_distance(*, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float) -> float:
     """Arc between the centres of the two half-slots that one tooth coil fills, D_et [m].
 
     D_et = (R_1 + R_2)/2 theta_w                        (3.85)

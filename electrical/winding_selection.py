@@ -231,9 +231,7 @@ def select_winding(
     return WindingChoice(chosen, reason, unrestricted, fullest, table)
 
 
-def choose_among(
-    windings: tuple[Winding, ...], limits: WindingLimits, requirement: WindingRequirement
-) -> Winding:
+def choose_among(windings: tuple[Winding, ...], limits: WindingLimits, requirement: WindingRequirement) -> Winding:
     """Rules 2 and 3 of ``select_winding``. Raises WindingError when no winding stays within the current limit."""
     affordable = _affordable(windings, limits)
     return _lowest_current(affordable, requirement) or max(affordable, key=lambda winding: winding.base_speed)

@@ -159,9 +159,7 @@ def length_needs(
 
 
 def _damping_need(machine: PerTurnMachine, winding: Winding, damping: float) -> LengthNeed:
-    reached = shaft_damping(
-        torque_constant=winding.no_load_torque_constant, phase_resistance=winding.phase_resistance
-    )
+    reached = shaft_damping(torque_constant=winding.no_load_torque_constant, phase_resistance=winding.phase_resistance)
     lengths = {"length": machine.active_length, "end_turn_length": machine.end_turn_length}
     return LengthNeed("the damping", length_for_damping(damping, reached=reached, **lengths))
 

@@ -11,12 +11,12 @@ from tempfile import TemporaryDirectory
 from benchmarks.virtual_benches.hiding import Catalogue, hide
 from effects.base import Effect
 from effects.library import effects_of_file, package_effects
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
-from workbench.diagnosis import diagnose
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
+from workbench.explain.diagnosis import diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger import start_step, try_effect
+from workbench.ledger.step import start_step, try_effect
+from workbench.models.bases import nominal_model
 from workbench.report import channels, write_comparison_report, write_diagnosis_report, write_ledger_report
 from workbench.report.sentences import comparison_sentence, ledger_sentence, readings, verdict_sentence
 from workbench.report.waterfall import waterfall

@@ -258,4 +258,3 @@ def dimension_list(m: Machine) -> str:
 def _in_mm(value: float | tuple[float, ...]) -> str:
     lengths = value if isinstance(value, tuple) else (value,)
     return ", ".join(f"{length / MILLIMETRE:.2f}" for length in lengths)
-

@@ -43,9 +43,7 @@ _PART_COLOURS = {"casing": LIGHT_GREY, "shaft": GREY, "ring": "#A6A6A6", "sun": 
 
 
 @styled
-def gear_end_view(
-    outlines: StageOutlines, gears: PlanetarySet, *, envelope_diameter: float, title: str
-) -> Figure:
+def gear_end_view(outlines: StageOutlines, gears: PlanetarySet, *, envelope_diameter: float, title: str) -> Figure:
     """A stage seen along its axis, with a close view of its two meshes.
 
     outlines: of the teeth of this one set of gears; envelope_diameter: of the casing around them [m]
@@ -92,9 +90,7 @@ def _close_view(axis: Axes, gears: PlanetarySet) -> None:
 
 
 @styled
-def load_spectrum(
-    spectrum: LoadSpectrum, lines: Sequence[tuple[str, LifeLine, np.ndarray, np.ndarray]]
-) -> Figure:
+def load_spectrum(spectrum: LoadSpectrum, lines: Sequence[tuple[str, LifeLine, np.ndarray, np.ndarray]]) -> Figure:
     """Torque classes with their share of the time, and the stress of each class on the S-N line.
 
     lines: (name, life line, stress over endurance limit, cycles endured in each class); the classes are
@@ -123,9 +119,7 @@ def load_spectrum(
     return figure
 
 
-def _draw_life(
-    axis: Axes, name: str, line: LifeLine, ratio: np.ndarray, cycles: np.ndarray, colour: str
-) -> None:
+def _draw_life(axis: Axes, name: str, line: LifeLine, ratio: np.ndarray, cycles: np.ndarray, colour: str) -> None:
     stress = np.geomspace(min(0.8, max(ratio.min(), 0.2)), line.strength, 400)
     life = line.cycles(stress)
     known = np.isfinite(life)

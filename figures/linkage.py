@@ -115,9 +115,7 @@ def linkage_motion(motions: Mapping[str, Motion], *, angle_window: float) -> Fig
 
 
 @styled
-def linkage_side_view(
-    linkage: FourBar, motion: Motion, *, boxes: Sequence[Box] = (), positions: int = 5
-) -> Figure:
+def linkage_side_view(linkage: FourBar, motion: Motion, *, boxes: Sequence[Box] = (), positions: int = 5) -> Figure:
     """The linkage drawn at positions of its wheel travel, with the paths of its joints.
 
     linkage: arm.wheel_axle, arm.hardpoint_a, hardpoint_c (``FourBar``); motion: the same linkage over the travel;

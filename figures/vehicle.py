@@ -24,9 +24,7 @@ _FLAT = 1e-9  # m, a road lower than this is not drawn
 
 
 @styled
-def time_histories(
-    histories: Mapping[str, Trace | RideHistory], *, span: tuple[float, float] | None = None
-) -> Figure:
+def time_histories(histories: Mapping[str, Trace | RideHistory], *, span: tuple[float, float] | None = None) -> Figure:
     """Road, stroke, actuator force and velocity, and load of the actuated tyre over time.
 
     histories: ``RideHistory`` by label, of one scenario; span: first and last time shown [s], all of it when None

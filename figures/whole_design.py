@@ -15,9 +15,7 @@ from figures.style import BLACK, BLUE, LIGHT_GREY, VERMILION, letter, new_figure
 
 
 @styled
-def whole_designs(
-    front: pd.DataFrame, verified: pd.DataFrame, staged: pd.Series, labels: Mapping[str, str]
-) -> Figure:
+def whole_designs(front: pd.DataFrame, verified: pd.DataFrame, staged: pd.Series, labels: Mapping[str, str]) -> Figure:
     """Every pair of objectives.
 
     front, verified: columns of ``labels``, from the model and solved by the field; staged: the same of the design found

@@ -109,9 +109,7 @@ def _mark(axes: Iterable[Axes], point: RequiredPoint) -> None:
         axis.plot(point.speed / RPM, value, label=point.name, zorder=5, **look)
 
 
-def _map(
-    figure: Figure, axes: Axes, velocity: np.ndarray, force: np.ndarray, values: np.ndarray, label: str
-) -> None:
+def _map(figure: Figure, axes: Axes, velocity: np.ndarray, force: np.ndarray, values: np.ndarray, label: str) -> None:
     colours = axes.contourf(velocity, force, values, levels=12, cmap=FIELD_MAP)
     levels = np.asarray(colours.levels)[1:-1:3]
     lines = axes.contour(velocity, force, values, levels=levels, colors="white", linewidths=0.6)

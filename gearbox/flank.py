@@ -101,5 +101,3 @@ def hertz_stress(
 def pitch_velocity(mesh: Mesh, speed: Batch) -> Batch:
     """Peripheral speed of the pinion at its working pitch circle [m/s], speed relative to the carrier [rad/s]."""
     return np.abs(speed) * mesh.pinion.base_radius / cos(mesh.working_pressure_angle)
-
-

@@ -224,9 +224,7 @@ def centre_distance(
     return np.abs(pinion_teeth + wheel_teeth) * module / 2 * cos(pressure_angle) / cos(alpha_w)
 
 
-def shift_sum(
-    pinion_teeth: Batch, wheel_teeth: Batch, distance: Batch, module: Batch, pressure_angle: Batch
-) -> Batch:
+def shift_sum(pinion_teeth: Batch, wheel_teeth: Batch, distance: Batch, module: Batch, pressure_angle: Batch) -> Batch:
     """x_1 + x_2 [modules] that closes a pair at a centre distance [m] without backlash; NaN where no pair reaches it.
 
     module: [m]
@@ -234,4 +232,3 @@ def shift_sum(
     with np.errstate(invalid="ignore"):
         alpha_w = arccos(np.abs(pinion_teeth + wheel_teeth) * module / 2 * cos(pressure_angle) / distance)
     return (pinion_teeth + wheel_teeth) / (2 * tan(pressure_angle)) * (involute(alpha_w) - involute(pressure_angle))
-

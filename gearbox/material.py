@@ -79,12 +79,18 @@ CASE_HARDENED_ROOT = LifeLine(first=1e3, strength=2.5, knee=3e6, last=1e10, last
 # 18CrNiMo7-6, which the thesis uses in the same gearbox. ISO 6336-5:2003, case-hardened wrought steel, quality MQ:
 # sigma_Hlim 1500 MPa; sigma_Flim 425, 461 or 500 MPa as the core hardness is guaranteed, the middle line taken here.
 CASE_HARDENED_MQ = GearMaterial(
-    "case-hardened steel, ISO 6336-5 quality MQ (18CrNiMo7-6)", 1500 * MPA, 461 * MPA, CASE_HARDENED_FLANK,
+    "case-hardened steel, ISO 6336-5 quality MQ (18CrNiMo7-6)",
+    1500 * MPA,
+    461 * MPA,
+    CASE_HARDENED_FLANK,
     CASE_HARDENED_ROOT,
 )
 # The same steel in the best quality, ME; the nearest ISO quality to the AGMA 2001-C95 grade 3 that the thesis names.
 CASE_HARDENED_ME = GearMaterial(
-    "case-hardened steel, ISO 6336-5 quality ME (18CrNiMo7-6)", 1650 * MPA, 525 * MPA, CASE_HARDENED_FLANK,
+    "case-hardened steel, ISO 6336-5 quality ME (18CrNiMo7-6)",
+    1650 * MPA,
+    525 * MPA,
+    CASE_HARDENED_FLANK,
     CASE_HARDENED_ROOT,
 )
 MATERIALS = {"case_hardened_MQ": CASE_HARDENED_MQ, "case_hardened_ME": CASE_HARDENED_ME}

@@ -71,6 +71,4 @@ def stage_outlines(gears: PlanetarySet) -> StageOutlines:
     centres = gears.centre_distance * np.exp(2j * pi * np.arange(gears.planets) / gears.planets)
     phases = planet_phases(gears)
     planets = tuple(c + gear_outline(gears.planet, phase) for c, phase in zip(centres, phases, strict=True))
-    return StageOutlines(
-        gear_outline(gears.sun), planets, gear_outline(gears.ring, ring_phases(gears)[0]), centres
-    )
+    return StageOutlines(gear_outline(gears.sun), planets, gear_outline(gears.ring, ring_phases(gears)[0]), centres)

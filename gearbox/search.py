@@ -371,9 +371,7 @@ def _stage_loads(request: GearRequest) -> list[StageLoad]:
     return found
 
 
-def _least_steps(
-    passes: Callable[[np.ndarray], np.ndarray], least: np.ndarray, most: np.ndarray
-) -> np.ndarray:
+def _least_steps(passes: Callable[[np.ndarray], np.ndarray], least: np.ndarray, most: np.ndarray) -> np.ndarray:
     """Smallest steps, (batch), in least ... most for which ``passes(steps)`` holds, most + 1 where none does.
 
     ``passes`` is taken to hold from some step on: wider teeth are stronger.
@@ -400,9 +398,7 @@ def _static_steps(gears: PlanetarySet, load: StageLoad, request: GearRequest) ->
     return _least_steps(passes, *request.width.range(gears))
 
 
-def _rated(
-    gears: PlanetarySet, batch: np.ndarray, static: list[np.ndarray], request: GearRequest
-) -> list[Entry]:
+def _rated(gears: PlanetarySet, batch: np.ndarray, static: list[np.ndarray], request: GearRequest) -> list[Entry]:
     """[(index, widths [m], cost)] of the sets of a batch whose stages also survive the spectrum."""
     part, wanted, step = _select(gears, batch), request.safety, request.width.step
     most = request.width.range(part)[1]

@@ -102,9 +102,7 @@ def losses_stage(
     """
     law, wound = loss_law(inputs), winding.wound
     largest = _LARGEST * wound.turns * winding.limits.current_peak
-    tasks = {
-        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law) for d, q in grid(largest)
-    }
+    tasks = {f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law) for d, q in grid(largest)}
     found = workers.map("losses", losses_at_current, tasks)
     operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
     losses = power_losses(operating, wound, table_of(largest, list(found.values())))

@@ -1,6 +1,6 @@
 """What a 2-D field leaves out at the two ends of the stack: fringing of the magnets' flux, and the end turns' own flux.
 
-    psi_i = l_e psi_i(2-D) + L_end i_i,   T = l_e T(2-D)
+psi_i = l_e psi_i(2-D) + L_end i_i,   T = l_e T(2-D)
 """
 
 from __future__ import annotations

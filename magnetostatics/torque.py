@@ -39,7 +39,7 @@ def magnetic_pull(solution: FieldSolution) -> np.ndarray:
 def gap_force_density(solution: FieldSolution) -> tuple[Elements, np.ndarray]:
     """Stator half of the gap, and at its quadrature points (2, Q, E) the share in the force on the rotor [N/m^3]:
 
-        f = sigma . grad h,  sigma = (B B^T - |B|^2/2 I)/mu_0,  h from 0 on the sliding circle to 1 on the bore
+    f = sigma . grad h,  sigma = (B B^T - |B|^2/2 I)/mu_0,  h from 0 on the sliding circle to 1 on the bore
     """
     model = solution.model
     gap = model.section.mesh.subdomains["gap"]

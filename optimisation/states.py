@@ -37,9 +37,7 @@ class SaturationReading:
 class NullStateReading(SaturationReading):
     """Readings that look at the null state alone."""
 
-    def states(
-        self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
-    ) -> list[OperatingPoint]:
+    def states(self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> list[OperatingPoint]:
         """The null state; amplitude: of the current density in the copper [A/m^2]."""
         return [null_point(machine, layout, amplitude, packing)]
 
@@ -76,9 +74,7 @@ class EveryToothAndBackIronOverPeriod(SaturationReading):
     name: str = "every_tooth_and_back_iron_over_period"
     covers_period: ClassVar[bool] = True
 
-    def states(
-        self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float
-    ) -> list[OperatingPoint]:
+    def states(self, machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> list[OperatingPoint]:
         """Positions of the period; amplitude: of the current density in the copper [A/m^2]."""
         return period_points(machine, layout, amplitude, packing, STEPS_OVER_PERIOD)
 

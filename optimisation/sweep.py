@@ -125,9 +125,7 @@ class SweepBlock:
 
     @property
     def judge(self) -> Judge:
-        return Judge(
-            self.case, self.reading, self.case.nominal_density, QuickMeanTorque(), NewtonSettings(_TOLERANCE)
-        )
+        return Judge(self.case, self.reading, self.case.nominal_density, QuickMeanTorque(), NewtonSettings(_TOLERANCE))
 
     def machine(self, rotor_outer_radius: float, back_iron_width: float) -> Machine:
         """One design. Raises GeometryError where it cannot even be drawn."""

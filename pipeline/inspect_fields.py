@@ -167,4 +167,3 @@ def pieces_of(pieces: np.ndarray) -> pyvista.PolyData:
 
     ends = np.concatenate([pieces.reshape(-1, 2), np.zeros((2 * len(pieces), 1))], axis=1)
     return pyvista.line_segments_from_points(ends)
-

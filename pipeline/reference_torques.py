@@ -49,9 +49,7 @@ class Case:
 def cases() -> list[Case]:
     """Every operating point of every machine."""
     return [
-        Case(" ".join(machine), angle, density, gamma)
-        for machine in _MACHINES
-        for angle, density, gamma in _POINTS
+        Case(" ".join(machine), angle, density, gamma) for machine in _MACHINES for angle, density, gamma in _POINTS
     ]
 
 

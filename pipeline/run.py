@@ -1,6 +1,6 @@
 """One process runs the graph of a study: what is current stays, what failed is said, every end has its report.
 
-    outcome = run(graph, study, Results(folder), pool, to="match")
+outcome = run(graph, study, Results(folder), pool, to="match")
 """
 
 from __future__ import annotations
@@ -274,4 +274,3 @@ def git_commit() -> str | None:
 def _git(*arguments: str) -> str:
     done = subprocess.run(("git", *arguments), cwd=PROJECT, capture_output=True, text=True, check=True)
     return done.stdout.strip()
-

@@ -107,4 +107,3 @@ def _failed(failures: list[Failure]) -> Section:
     """The section that heads the report of a run that did not reach its end."""
     lines = tuple(Remark(f"{failure.stage}: {failure.reason}") for failure in failures)
     return Section("This run could not go on", ("What was found before that stands below.", *lines))
-

@@ -14,21 +14,21 @@ from tqdm import tqdm
 from effects.base import Effect
 from effects.library import Library, effects_of_file, library
 from effects.parameter import parameters_of
-from workbench.as_json import comparison_json, diagnosis_json
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
-from workbench.diagnosis import SEED, diagnose
-from workbench.draft import write_draft
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
+from workbench.data.draft import write_draft
+from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.model import Model
-from workbench.model_file import NAME, with_effects_of
+from workbench.ledger.model_file import NAME, with_effects_of
+from workbench.ledger.skeleton import write_new
+from workbench.ledger.walk import add_effect, skeleton_for, walk
+from workbench.models.bases import nominal_model
+from workbench.models.model import Model
 from workbench.report import write_comparison_report, write_diagnosis_report, write_ledger_report
+from workbench.report.as_json import comparison_json, diagnosis_json
 from workbench.report.sentences import conclusions, readings, verdict_sentence
-from workbench.skeleton import write_new
-from workbench.table import Campaign
-from workbench.walk import add_effect, skeleton_for, walk
 
 EXIT_WRONG_INPUT = 2
 

@@ -49,9 +49,7 @@ def remarks(fits: SectionFits) -> Iterator[str]:
 
 def fits_table(fits: SectionFits) -> pd.DataFrame:
     """Coefficients p2, p1, p0 in the unit of the quantity and millimetres of radius, with residuals and range."""
-    return pd.DataFrame(
-        [_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in _ORDER]
-    )
+    return pd.DataFrame([_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in _ORDER])
 
 
 def _row(slots: int, quantity: str, fit: PolynomialFit) -> dict[str, object]:

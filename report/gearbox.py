@@ -111,9 +111,7 @@ def _teeth_row(train: GearTrain, number: int) -> dict[str, object]:
 
 
 def _safety_row(rating: StageRating) -> dict[str, float]:
-    return {
-        f"safety_{kind}_{gear}": float(value) for kind in _KINDS for gear, value in getattr(rating, kind).items()
-    }
+    return {f"safety_{kind}_{gear}": float(value) for kind in _KINDS for gear, value in getattr(rating, kind).items()}
 
 
 def _mass_row(train: GearTrain, number: int) -> dict[str, float]:
@@ -166,9 +164,7 @@ def section(found: GearboxOutcome, output: Output) -> Section:
     return Section("Planetary gearbox", _searched(found, found.search, output))
 
 
-def _searched(
-    found: GearboxOutcome, search: GearSearch, output: Output
-) -> tuple[str | Table | Picture | Remark, ...]:
+def _searched(found: GearboxOutcome, search: GearSearch, output: Output) -> tuple[str | Table | Picture | Remark, ...]:
     return (
         _loads_text(search),
         Picture(picture_name("load_spectrum"), "Torque classes; the sun of stage 1 on its S-N lines."),
@@ -179,9 +175,7 @@ def _searched(
             gears_table(search)[["gears", *_SHOWN]],
             "The chosen gears and, where there are any, those of the study file.",
         ),
-        Picture(
-            picture_name("gear_safety"), "Safety factors; lines: what is wanted, dotted where only reported."
-        ),
+        Picture(picture_name("gear_safety"), "Safety factors; lines: what is wanted, dotted where only reported."),
         Table(_budgets(search), _BUDGET),
         Table(
             sets_table(search), "The best sets of teeth, smallest safety factors of all gears and stages.", marked=(0,)

@@ -87,7 +87,7 @@ def idle_share(found: WholeSearch, output: Output) -> str:
 def front_figure(found: WholeSearch, output: Output) -> Figure:
     """Every pair of objectives: front by the model, points solved by the field, the design found stage by stage."""
     front = pd.DataFrame([_objectives(one, output) for one in found.front])
-    staged, *others = ([_objectives(one.field, output) for one in found.solved])
+    staged, *others = [_objectives(one.field, output) for one in found.solved]
     words = zip(objective_words(output), (unit for _, unit in _columns(output)), strict=True)
     labels = {name: labelled(*label) for (name, _), label in zip(_columns(output), words, strict=True)}
     return whole_designs(front, pd.DataFrame(others), pd.Series(staged), labels)

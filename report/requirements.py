@@ -74,9 +74,7 @@ def remarks(found: RideRequirements) -> Iterator[str]:
 
 def stated_section(requirements: Requirements, output: Output) -> Section:
     """The requirements of a study that drives no vehicle."""
-    rows = [
-        (labelled(words, unit), in_unit(getattr(requirements, name), unit)) for name, words, unit in output.demands
-    ]
+    rows = [(labelled(words, unit), in_unit(getattr(requirements, name), unit)) for name, words, unit in output.demands]
     table = pd.DataFrame(rows, columns=["requirement", "value"])
     place = output.place[:1].upper() + output.place[1:]
     return Section("Requirements", ("As stated in the study file.", Table(table, f"{place}.")))

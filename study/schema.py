@@ -318,9 +318,7 @@ class RideSection(Section):
     road_class: Literal["A", "B", "C", "D", "E"]
     cruise_speed_km_per_h: Annotated[float, Quantity("speed on the random road", 1, 500)]
     road_duration_s: Annotated[float, Quantity("length of a run on the random road", 1, 600)]
-    road_seeds: Annotated[
-        tuple[int, ...], Listed, Field(min_length=1), Quantity("seeds of the random road", 0, 2**31)
-    ]
+    road_seeds: Annotated[tuple[int, ...], Listed, Field(min_length=1), Quantity("seeds of the random road", 0, 2**31)]
 
 
 class ObstaclesSection(Section):
@@ -445,9 +443,9 @@ class GearboxSection(Section):
     planets: Annotated[int, Quantity("planets of a stage", 2, 8)]
     life_h: Annotated[float, Quantity("operating life", 1, 1e6)]
     torque_class_Nm: Annotated[float, Quantity("width of the torque classes at the slow shaft", 0.01, 1e5)]
-    swing_deg: Annotated[
-        float | None, Quantity("largest turn of the slow shaft between two reversals", 0.01, 3600)
-    ] = None  # where no vehicle is run
+    swing_deg: Annotated[float | None, Quantity("largest turn of the slow shaft between two reversals", 0.01, 3600)] = (
+        None  # where no vehicle is run
+    )
     material: Literal["case_hardened_MQ", "case_hardened_ME"]
     accuracy_grade: Annotated[int, Quantity("accuracy grade of ISO 1328", 1, 12)]
     application_factor: Annotated[float, Quantity("application factor K_A", 0.5, 5)]

@@ -94,9 +94,7 @@ def lqr_gain(car: QuarterCar, weights: LqrWeights) -> np.ndarray:
     return (b.T @ solve_continuous_are(a, b, q, r) / r)[0]
 
 
-def lqr_problem(
-    car: QuarterCar, weights: LqrWeights
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def lqr_problem(car: QuarterCar, weights: LqrWeights) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A_x, B_x, Q, R of the Riccati equation (4.20-4.24): [SI], (4, 4), (4, 1), (4, 4) and (1, 1)."""
     a, b, _, _ = state_space(car)
     a_x = TO_STROKE_STATES @ a @ np.linalg.inv(TO_STROKE_STATES)

@@ -1,6 +1,6 @@
 """The true damper: laws with rounded corners, and its motion by integration in time where it is not imposed.
 
-    m dv/dt + F(x, v, ...) + K(x, i) i = F_mount,   L di/dt + (R + R_shunt) i + U(i) = K(x, i) v
+m dv/dt + F(x, v, ...) + K(x, i) i = F_mount,   L di/dt + (R + R_shunt) i + U(i) = K(x, i) v
 """
 
 from __future__ import annotations

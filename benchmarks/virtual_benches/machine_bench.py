@@ -15,9 +15,9 @@ from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_truth import Expansion, FullField, with_strengths
 from effects.machine_design import MachineAsBuilt
 from units import DEGREE, RPM
-from workbench.models.machine import MachineBench as Model
-from workbench.models.machine_field import LoadedState
-from workbench.models.machine_surrogate import Surrogate, averaged, evaluated, slope
+from workbench.models.machine.field import LoadedState
+from workbench.models.machine.model import MachineBench as Model
+from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
 
 DEVICE: dict[str, object] = {
     "slots": 12,

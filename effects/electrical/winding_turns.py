@@ -19,9 +19,7 @@ class WindingTurns(DesignEffect):
     remedy = ("count, or phase resistance together with back-EMF",)
     designs = (DqMachine,)
 
-    change: float = parameter(
-        0.0, "1", prior=Normal(0.05), low=-0.5, high=0.5, source="one turn of ten to forty"
-    )
+    change: float = parameter(0.0, "1", prior=Normal(0.05), low=-0.5, high=0.5, source="one turn of ten to forty")
 
     def on_design(self, design):
         n = 1.0 + self.change

@@ -23,9 +23,7 @@ class BearingViscous(ResponseEffect):
     remedy = ("drag with a rotor without magnets",)
     designs = (MachineAsBuilt,)
 
-    slope: float = parameter(
-        0.0, "Nms/rad", prior=LogNormal(2e-5, 1.0), low=0.0, high=0.1, source="greased bearings"
-    )
+    slope: float = parameter(0.0, "Nms/rad", prior=LogNormal(2e-5, 1.0), low=0.0, high=0.1, source="greased bearings")
 
     def on_response(self, response: Columns, conditions: Columns, kind: str, design: MachineAsBuilt) -> Columns:
         if kind not in KINDS or self.is_null:

@@ -20,9 +20,7 @@ class PhaseImbalance(DesignEffect):
     designs = (MachineAsBuilt,)
 
     phase: int = 0  # 0 A, 1 B, 2 C
-    share: float = parameter(
-        0.0, "1", prior=Normal(0.02), low=-0.15, high=0.15, source="winding by hand"
-    )
+    share: float = parameter(0.0, "1", prior=Normal(0.02), low=-0.15, high=0.15, source="winding by hand")
 
     @classmethod
     def variants(cls, design: MachineAsBuilt) -> tuple[PhaseImbalance, ...]:

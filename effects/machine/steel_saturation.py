@@ -20,9 +20,7 @@ class SteelSaturation(DesignEffect):
     designs = (MachineAsBuilt,)
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
-    change: float = parameter(
-        0.0, "1", prior=Normal(0.04), low=-0.2, high=0.2, source="silicon content, 1.95 to 2.1 T"
-    )
+    change: float = parameter(0.0, "1", prior=Normal(0.04), low=-0.2, high=0.2, source="silicon content, 1.95 to 2.1 T")
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
         return replace(design, saturation_scale=design.saturation_scale * (1.0 + self.change))

@@ -11,10 +11,10 @@ import pandas as pd
 
 from effects.library import effects_of_file, package_effects
 from examples.dc_motor.model import BASE
-from workbench.campaign import read_campaign
-from workbench.diagnosis import diagnose
+from workbench.data.campaign import read_campaign
+from workbench.explain.diagnosis import diagnose
 from workbench.findings import Diagnosis
-from workbench.model import Model
+from workbench.models.model import Model
 from workbench.report.sentences import verdict_sentence
 
 DROP = 1.2  # V at 5 A

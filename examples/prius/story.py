@@ -11,14 +11,14 @@ from tempfile import TemporaryDirectory
 
 from effects.library import package_effects
 from examples.story import draw, folder_of_results
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
 from workbench.findings import LedgerStep
-from workbench.model_file import NAME, with_effects_of
+from workbench.ledger.model_file import NAME, with_effects_of
+from workbench.ledger.walk import Added, add_effect, walk
+from workbench.models.bases import nominal_model
 from workbench.report import write_comparison_report, write_diagnosis_report
 from workbench.report.sentences import comparison_sentence, ledger_sentence, size_words, verdict_sentence
-from workbench.walk import Added, add_effect, walk
 
 CAMPAIGN = Path(__file__).resolve().parents[2] / "measurements" / "prius-2004"
 IDEAS = ("remanence_drift", "load_loss")  # magnets get weaker when warm; the coupling to the torque cell loses a share

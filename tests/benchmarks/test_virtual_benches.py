@@ -18,8 +18,8 @@ from benchmarks.virtual_benches.hiding import hide
 from benchmarks.virtual_benches.instruments import Noise, readings
 from effects.library import library
 from effects.parameter import parameters_of
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
+from workbench.models.bases import nominal_model
 
 BENCHES = {"damper": DAMPER, "dq": DQ}
 LUMPED = Path(damper_truth.__file__).parent

@@ -50,7 +50,8 @@ def test_damping_at_the_printed_optimum_is_not_the_required_one(damping):
 @pytest.mark.parametrize("ratio", np.array([1.3, 2.3, 4.0]) * MILLIMETRE)
 def test_minimum_length_gives_exactly_the_requirement(thesis, damping, ratio):
     for constraint, needed in (
-        (damping, 40e3), *zip(force_constraints(thesis.section, thesis.requirements), (300.0, 2614.0)),
+        (damping, 40e3),
+        *zip(force_constraints(thesis.section, thesis.requirements), (300.0, 2614.0)),
     ):
         length = constraint.minimum_length(ratio)
         assert constraint.capability(ratio, length) == pytest.approx(needed, rel=1e-12)

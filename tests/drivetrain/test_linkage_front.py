@@ -83,7 +83,14 @@ def test_differential_evolution_finds_no_better_angles_at_the_same_ratio(front, 
         return np.where(excess > 0, 1e3 * (1 + excess), second)
 
     found = differential_evolution(
-        penalised, [(0, 1)] * 4, vectorized=True, updating="deferred", popsize=25, maxiter=250, tol=1e-10, rng=5,
+        penalised,
+        [(0, 1)] * 4,
+        vectorized=True,
+        updating="deferred",
+        popsize=25,
+        maxiter=250,
+        tol=1e-10,
+        rng=5,
         polish=False,
     )
     assert front.second_at(level) <= found.fun * (1 + 2e-4)

@@ -72,8 +72,10 @@ def test_optimum_against_the_independent_computation(optimum):
 
 
 def test_violated_damping_is_reported_in_words(optimum):
-    assert any("regenerative damping 27." in note and "below the requirement of 40 kNs/m" in note
-               for note in map(said, optimum.notes))
+    assert any(
+        "regenerative damping 27." in note and "below the requirement of 40 kNs/m" in note
+        for note in map(said, optimum.notes)
+    )
 
 
 def test_lower_bound_of_the_ratio(optimum):
@@ -300,6 +302,4 @@ def test_inertia_weight_outside_its_range_is_refused():
 
 def curves_of(thesis, ratio):
     reported = constraints_of(thesis)
-    return match_curves(
-        thesis.section, ratio, **vars(reported), gearbox=thesis.gearbox, model=thesis.model
-    )
+    return match_curves(thesis.section, ratio, **vars(reported), gearbox=thesis.gearbox, model=thesis.model)

@@ -69,7 +69,15 @@ def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_input
         patch.setattr("drivetrain.whole_search.solve_idle", lambda task: FrequencyTerms(0.3, 1e-3, 1e-3))
         found = match_stage(coarse, MotorcycleFits(), requirements, LINKAGE, None, match_inputs, Wheel())
         return optimise_stage(
-            coarse, MotorcycleFits(), found, LINKAGE, linkages, requirements, match_inputs, inputs, output,
+            coarse,
+            MotorcycleFits(),
+            found,
+            LINKAGE,
+            linkages,
+            requirements,
+            match_inputs,
+            inputs,
+            output,
             InThisProcess(),
         )
 

@@ -15,10 +15,10 @@ from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameters_of
 from geometry.machine import Machine
 from materials.magnet import Magnet
-from workbench.model import Model
-from workbench.models.damper import DamperModel
-from workbench.models.dq import DqModel
-from workbench.table import Response, Table
+from workbench.data.table import Response, Table
+from workbench.models.damper.model import DamperModel
+from workbench.models.dq.model import DqModel
+from workbench.models.model import Model
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,11 @@ SLOT = dict(
 TOOTH_COIL = SLOT | {"coil_pitch": 1}
 WIRE_AREA = pi * 0.25**2 * SQUARE_MILLIMETRE
 PRINTED_WINDING = dict(
-    turns=7, strands=22, wire_area=WIRE_AREA, active_length=41 * MILLIMETRE, coils_in_series=4,
+    turns=7,
+    strands=22,
+    wire_area=WIRE_AREA,
+    active_length=41 * MILLIMETRE,
+    coils_in_series=4,
     resistivity=COPPER_RESISTIVITY_20,
 )
 
@@ -89,8 +93,13 @@ def test_resistance_is_that_of_one_long_wire():
 def test_both_forms_of_the_resistance_agree_with_a_single_resistivity():
     area = 100 * SQUARE_MILLIMETRE
     filled = phase_resistance_of_filled_slot(
-        turns=7, packing=7 * 22 * WIRE_AREA / area, half_slot_area=area, active_length=41 * MILLIMETRE,
-        end_turn_length=16 * MILLIMETRE, coils_in_series=4, resistivity=COPPER_RESISTIVITY_20,
+        turns=7,
+        packing=7 * 22 * WIRE_AREA / area,
+        half_slot_area=area,
+        active_length=41 * MILLIMETRE,
+        end_turn_length=16 * MILLIMETRE,
+        coils_in_series=4,
+        resistivity=COPPER_RESISTIVITY_20,
     )
     assert filled == pytest.approx(phase_resistance(**PRINTED_WINDING, end_turn_length=16 * MILLIMETRE), rel=1e-14)
 

@@ -183,8 +183,11 @@ def test_top_speed_of_a_machine_that_cannot_weaken_its_field_away():
 
 def test_family_of_machines_equals_its_members():
     family = SynchronousMachine(
-        5, *(np.array([[getattr(m, name)] for m in (SEVEN_TURNS, FOUR_TURNS)])
-             for name in ("psi_m", "inductance_d", "inductance_q", "resistance"))
+        5,
+        *(
+            np.array([[getattr(m, name)] for m in (SEVEN_TURNS, FOUR_TURNS)])
+            for name in ("psi_m", "inductance_d", "inductance_q", "resistance")
+        ),
     )
     limits = DriveLimits.from_dc_bus(np.array([[LIMITS.current_peak], [FOUR_TURN_LIMITS.current_peak]]), 48.0)
     best = maximum_power(family, limits, MAXIMUM_SPEED)

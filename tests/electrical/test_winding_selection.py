@@ -37,7 +37,10 @@ THESIS = PerTurnMachine(  # 6 Nm from 41 mm at 7 x 22 wires; 84 uH per phase; fl
     end_turn_length=16.305 * MILLIMETRE,
 )
 LIMITS = WindingLimits(
-    packing_limit=0.3, packing_tolerance=0.04, overload_current_density=OVERLOAD, dc_voltage=48.0,
+    packing_limit=0.3,
+    packing_tolerance=0.04,
+    overload_current_density=OVERLOAD,
+    dc_voltage=48.0,
     maximum_speed=15000 * RPM,
 )
 # Table 3.7 at the wheel, behind 2.3 mm/rad over the whole travel.
@@ -76,8 +79,13 @@ def test_with_its_current_limit_the_relaxed_thesis_winding_is_found(limited_choi
 
 
 def test_the_reason_says_what_is_relaxed(limited_choice):
-    for words in ("Relaxed: base speed from 6643 to 42", "power at base speed from 4253 to 26", "within 90.0 A RMS",
-                  "4 turns of 39 wires in hand would meet it", "exceeds the limit 0.3 by 2.6"):
+    for words in (
+        "Relaxed: base speed from 6643 to 42",
+        "power at base speed from 4253 to 26",
+        "within 90.0 A RMS",
+        "4 turns of 39 wires in hand would meet it",
+        "exceeds the limit 0.3 by 2.6",
+    ):
         assert words in limited_choice.reason
 
 
@@ -128,9 +136,7 @@ def test_without_a_tolerance_the_printed_windings_do_not_fit():
 
 def test_table_holds_every_pair_that_fits_and_no_other(free_choice):
     found = {(w.turns, w.strands) for w in free_choice.table}
-    expected = {
-        (t, n) for t in range(1, 200) for n in range(1, 200) if t * n * pi / 16 * 1e-6 <= 0.312 * 98.2e-6
-    }
+    expected = {(t, n) for t in range(1, 200) for n in range(1, 200) if t * n * pi / 16 * 1e-6 <= 0.312 * 98.2e-6}
     assert found == expected
     assert {(w.turns, w.strands) for w in free_choice.fullest} == {
         (t, max(n for u, n in expected if u == t)) for t in {t for t, _ in expected}

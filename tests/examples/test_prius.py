@@ -6,13 +6,13 @@ from effects.dq_design import DqMachine
 from effects.library import package_effects
 from effects.mechanical.load_loss import LoadLoss
 from examples.prius.story import CAMPAIGN, held_out_current, walked
-from workbench.base_models import nominal_model
-from workbench.bench import bench_of
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.ledger import start_step, try_effect
-from workbench.model import Model
-from workbench.model_file import model_text, with_effects_of
+from workbench.ledger.model_file import model_text, with_effects_of
+from workbench.ledger.step import start_step, try_effect
+from workbench.likelihood.bench import bench_of
+from workbench.models.bases import nominal_model
+from workbench.models.model import Model
 
 NAMED = ("friction_torque", "copper_drift", "quadrature_saturation")  # by the tool, in this order
 COPPER = 0.00393  # 1/K at 20 degC, IEC 60028

@@ -36,8 +36,12 @@ def motion():
     angle = TRAVEL / 0.5
     a = 0.2 * np.exp(1j * angle)
     return SimpleNamespace(
-        travel=TRAVEL, a=a, b=0.1 + 0.15j + 0.2 * 1j * angle, transmission_ratio=0.17 + TRAVEL**2,
-        gamma=np.full(17, 1.4), lambda_=np.full(17, 0.9),
+        travel=TRAVEL,
+        a=a,
+        b=0.1 + 0.15j + 0.2 * 1j * angle,
+        transmission_ratio=0.17 + TRAVEL**2,
+        gamma=np.full(17, 1.4),
+        lambda_=np.full(17, 0.9),
     )
 
 

@@ -162,9 +162,7 @@ def test_mean_counts_the_repeated_sample_once():
 # ---- match ----------------------------------------------------------------------------------------------------------
 
 
-MATCHED = SimpleNamespace(
-    transmission_ratio=2.3e-3, active_length=36e-3, total_cost=0.6, ratio_bounds=(1.3e-3, 4.5e-3)
-)
+MATCHED = SimpleNamespace(transmission_ratio=2.3e-3, active_length=36e-3, total_cost=0.6, ratio_bounds=(1.3e-3, 4.5e-3))
 
 
 def test_match_curves_tell_enforced_from_reported(assert_readable):

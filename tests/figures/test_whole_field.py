@@ -109,9 +109,7 @@ def test_averaging_stays_within_a_region(half):
 
 
 def test_operating_point_in_words():
-    assert describe(OperatingPoint(-21 * DEGREE, 8.485e6)) == (
-        "rotor at −21°, 8.485 A/mm² (peak), current angle 0°"
-    )
+    assert describe(OperatingPoint(-21 * DEGREE, 8.485e6)) == ("rotor at −21°, 8.485 A/mm² (peak), current angle 0°")
     assert describe(OperatingPoint(0.0)) == "rotor at 0°, no current"
 
 

@@ -31,9 +31,7 @@ def rules():
 @pytest.fixture(scope="session")
 def load():
     """300 N RMS and 2614 N peak at 175 mm/rad for 750 h, swing 7.6 degrees (thesis text to eqs 3.121-3.123)."""
-    spectrum = gaussian_spectrum(
-        300 * 0.175, 0.1 / 0.175, class_width=10.0, duration=750 * 3600, swing=7.6 * DEGREE
-    )
+    spectrum = gaussian_spectrum(300 * 0.175, 0.1 / 0.175, class_width=10.0, duration=750 * 3600, swing=7.6 * DEGREE)
     return StageLoad(spectrum, 2614 * 0.175, 1.6 / 0.175)
 
 

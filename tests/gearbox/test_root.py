@@ -67,8 +67,10 @@ def test_a_ring_of_many_teeth_is_a_rack():
     """Chord and fillet where the 60 degree tangent touches the rounding of a rack tooth."""
     rack = BasicRack(1.0, 1.25, 0.3, 20 * DEGREE)
     section = root_section(Gear(-2_000_000, 0.0, 1.0, 1e6 - 1.0, rack), 1e6 - 1.0)
-    land = np.pi / 4 - 1.25 * np.tan(rack.pressure_angle) - 0.3 * (1 - np.sin(rack.pressure_angle)) / np.cos(
-        rack.pressure_angle
+    land = (
+        np.pi / 4
+        - 1.25 * np.tan(rack.pressure_angle)
+        - 0.3 * (1 - np.sin(rack.pressure_angle)) / np.cos(rack.pressure_angle)
     )
     assert section.chord == pytest.approx(2 * (np.pi / 2 - land - 0.3 * np.cos(60 * DEGREE)), abs=1e-5)
     assert section.fillet == pytest.approx(0.3, abs=1e-5)

@@ -36,9 +36,7 @@ def plain_search(request):
             continue
         for planet, x_sun, x_planet in product(range((ring - sun) // 2 - 4, (ring - sun) // 2 + 2), *grids):
             with np.errstate(invalid="ignore"):
-                gears = planetary_set(
-                    ([sun], [planet], [-ring]), ([x_sun], [x_planet]), np.array([module]), planets=3
-                )
+                gears = planetary_set(([sun], [planet], [-ring]), ([x_sun], [x_planet]), np.array([module]), planets=3)
                 if not all(check[0] for check in geometry_checks(gears, request).values()):
                     continue
             one, widths, load = gears.at(0), [], request.load

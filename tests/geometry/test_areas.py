@@ -33,11 +33,15 @@ def meshed(machine):
     def sum_of(start):
         return section.sectors * sum(area[where].sum() for name, where in names.items() if name.startswith(start))
 
-    return {
-        "stator_laminations": sum_of("stator_iron"),
-        "half_slot": sum_of("slot_") / (2 * machine.slots),
-        "magnets": sum_of("magnet_"),
-    }, sum_of("shaft"), sum_of("rotor_iron")
+    return (
+        {
+            "stator_laminations": sum_of("stator_iron"),
+            "half_slot": sum_of("slot_") / (2 * machine.slots),
+            "magnets": sum_of("magnet_"),
+        },
+        sum_of("shaft"),
+        sum_of("rotor_iron"),
+    )
 
 
 @pytest.mark.parametrize(

@@ -23,9 +23,7 @@ triangulate(drawing)
 
 
 def run(after: str) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, "-c", DRAW.format(after=after)], cwd=PROJECT, capture_output=True, text=True
-    )
+    return subprocess.run([sys.executable, "-c", DRAW.format(after=after)], cwd=PROJECT, capture_output=True, text=True)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

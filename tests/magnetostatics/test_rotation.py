@@ -69,9 +69,15 @@ def test_turns_on_which_the_machine_repeats(turn):
     assert_allclose(dq[1], dq[0], rtol=1e-6)
 
 
-@pytest.mark.parametrize(("route", "mesh", "jump"), (
-    ("ring", "sweep", 5e-4), ("ring", "fine", 2e-4), ("circle", "sweep", 2e-3), ("circle", "fine", 1e-3),
-))
+@pytest.mark.parametrize(
+    ("route", "mesh", "jump"),
+    (
+        ("ring", "sweep", 5e-4),
+        ("ring", "fine", 2e-4),
+        ("circle", "sweep", 2e-3),
+        ("circle", "fine", 1e-3),
+    ),
+)
 @pytest.mark.parametrize("edge", (0, 1, 2))
 def test_no_jump_where_the_shear_changes_sides(edge, route, mesh, jump):
     """Half way between two nodes the shear goes from + half an edge to - half an edge, with one more edge turned."""

@@ -90,8 +90,13 @@ def test_hardness_of_one_is_the_law_to_rounding():
 
 
 @pytest.mark.parametrize(
-    "wrong", (lambda: stacked(STEEL, 0.0), lambda: stacked(STEEL, 1.1), lambda: hardened(STEEL, -1.0),
-              lambda: ScaledSaturation(STEEL, 0.0))
+    "wrong",
+    (
+        lambda: stacked(STEEL, 0.0),
+        lambda: stacked(STEEL, 1.1),
+        lambda: hardened(STEEL, -1.0),
+        lambda: ScaledSaturation(STEEL, 0.0),
+    ),
 )
 def test_impossible_steels_are_refused(wrong):
     with pytest.raises(MaterialError):

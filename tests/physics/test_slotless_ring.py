@@ -133,9 +133,7 @@ def wound():
     section = section_of(ring.machine, 12, 2)
     point = OperatingPoint(BETWEEN_NODES, 30e6, 0.4, packing_factor=0.3)
     densities = 0.3 * point.phase_densities(POLE_PAIRS, section.layout.phase_axis)
-    fields = [
-        ring.field(k, angle=point.angle, current=winding_harmonic(section.layout, densities, k)) for k in ORDERS
-    ]
+    fields = [ring.field(k, angle=point.angle, current=winding_harmonic(section.layout, densities, k)) for k in ORDERS]
     return ring, FieldModel(section, ring.materials, EXACT).solve(point), fields
 
 

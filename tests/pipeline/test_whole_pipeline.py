@@ -1,6 +1,5 @@
 """All stages on a small study by the command: files, a second run without work, the report, a wrong study."""
 
-
 import re
 import shutil
 import subprocess

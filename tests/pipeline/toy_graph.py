@@ -105,6 +105,4 @@ def never(study: StudyOfToys) -> Never | None:
 SQUARES = Stage("squares", squares_stage, "squares of numbers")
 SUMMARY = Stage("summary", summary_stage, "the largest in words", summary_files)
 # Declared in another order than they run in.
-GRAPH = Graph(
-    (SUMMARY, Source(inputs), View(largest), SQUARES), (squares_section, summary_section), refusals=(NoFit,)
-)
+GRAPH = Graph((SUMMARY, Source(inputs), View(largest), SQUARES), (squares_section, summary_section), refusals=(NoFit,))

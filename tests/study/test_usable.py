@@ -22,7 +22,6 @@ def refusal(overrides, study="motorcycle") -> str:
     return text
 
 
-
 WRONG = {
     "no design of one diameter": (
         ["sweep.stator_diameters_mm=[20, 80, 90, 100, 110]"],

@@ -10,12 +10,12 @@ import pytest
 from pipeline.cli import main
 from tests.workbench.test_reading_a_campaign import DECLARED, ROWS, declared
 from tests.workbench.toy_bench import LIBRARY, TOML, SpringModel, written
-from workbench.bench import bench_of
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.model import Model
-from workbench.model_file import with_effects_of
+from workbench.ledger.model_file import with_effects_of
+from workbench.likelihood.bench import bench_of
+from workbench.models.model import Model
 
 
 def of(folder):

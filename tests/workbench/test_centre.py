@@ -5,12 +5,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
-from workbench.bench import PULLED, bench_of
-from workbench.campaign import read_campaign
-from workbench.diagnosis import screen_of
-from workbench.fit import linearised
-from workbench.hypotheses import single
-from workbench.model import Model
+from workbench.data.campaign import read_campaign
+from workbench.explain.diagnosis import screen_of
+from workbench.explain.hypotheses import single
+from workbench.likelihood.bench import PULLED, bench_of
+from workbench.likelihood.fit import linearised
+from workbench.models.model import Model
 
 
 class ExpandedSpring(SpringModel):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from workbench.checks import checks_of
-from workbench.table import Campaign, Response, Table
+from workbench.data.checks import checks_of
+from workbench.data.table import Campaign, Response, Table
 
 RANDOM = np.random.default_rng(4)
 ANGLE = np.tile(np.linspace(0, 2 * np.pi, 180, endpoint=False), 2)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
+from workbench.models.bases import nominal_model
 
 TOML = """
 [campaign]

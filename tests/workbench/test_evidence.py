@@ -9,16 +9,16 @@ from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
-from workbench.bank import Prepared, signature
-from workbench.bench import SHARP, bench_of, sharpened
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.fit import fitted
-from workbench.hypotheses import exact, hypothesis_from, single, with_unknown
-from workbench.linear import Nuisances
-from workbench.model import Model
-from workbench.priors import TAILS
-from workbench.rivals import Choice, unknown_function
+from workbench.explain.bank import Prepared, signature
+from workbench.explain.hypotheses import exact, hypothesis_from, single, with_unknown
+from workbench.explain.priors import TAILS
+from workbench.explain.rivals import Choice, unknown_function
+from workbench.likelihood.bench import SHARP, bench_of, sharpened
+from workbench.likelihood.fit import fitted
+from workbench.likelihood.linear import Nuisances
+from workbench.models.model import Model
 
 GAUSS = 1e9  # degrees of freedom at which the noise is known for sure
 
@@ -107,7 +107,7 @@ def test_the_mean_of_the_unknown_function_is_kriging(bench):
 
 
 def test_student_likelihood_is_the_gauss_with_its_size_integrated_out():
-    from workbench.fit import misfit
+    from workbench.likelihood.fit import misfit
 
     dof, n = 7.0, 5
 
@@ -200,7 +200,7 @@ def test_tangents_do_not_reach_over_places_without_an_answer():
 
 
 def test_a_start_without_an_answer_is_passed_over(bench, monkeypatch):
-    from workbench import hypotheses
+    from workbench.explain import hypotheses
 
     known = prepared(bench, Hardening())
     starts = [np.array([99.0]), *known.best(bench.residual)]

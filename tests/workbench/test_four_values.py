@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from effects.library import package_effects
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.diagnosis import diagnose
+from workbench.data.campaign import read_campaign
+from workbench.explain.diagnosis import diagnose
+from workbench.models.bases import nominal_model
 from workbench.report.sentences import conclusions, verdict_sentence
 
 MEASURED = Path(__file__).resolve().parents[2] / "measurements" / "thesis-table-5-1"

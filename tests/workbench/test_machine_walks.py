@@ -15,16 +15,16 @@ from benchmarks.virtual_benches.machine_bench import Grid, measured_in_full_fiel
 from benchmarks.virtual_benches.machine_bench import MachineBench as Truth
 from effects.library import library
 from geometry.half_cell import MeshDensity
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
-from workbench.diagnosis import diagnose
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
+from workbench.data.table import Campaign
+from workbench.explain.diagnosis import diagnose
 from workbench.findings import Comparison, Diagnosis
-from workbench.ledger import ACCEPTED
-from workbench.model import Model
-from workbench.models.machine import MachineBench
-from workbench.models.machine_build import MeshPlan
-from workbench.table import Campaign
-from workbench.walk import Added, add_effect
+from workbench.ledger.step import ACCEPTED
+from workbench.ledger.walk import Added, add_effect
+from workbench.models.machine.build import MeshPlan
+from workbench.models.machine.model import MachineBench
+from workbench.models.model import Model
 
 GRID = Grid(6.0, 4.5, (6.0, 30.0, 54.0), (60.0,), 69.0, (-60.0, 60.0))
 # What is added to the fine base comes from coarse meshes; the leading effects are solved again at their size.

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
-from workbench.bench import bench_of
-from workbench.campaign import read_campaign
-from workbench.model import Model
-from workbench.noise import LawError, Whitener, matched_rows
-from workbench.stack import thinned
+from workbench.data.campaign import read_campaign
+from workbench.data.stack import thinned
+from workbench.likelihood.bench import bench_of
+from workbench.likelihood.noise import LawError, Whitener, matched_rows
+from workbench.models.model import Model
 
 
 def bench(folder):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
-from workbench.bench import bench_of
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
+from workbench.data.expression import evaluate
 from workbench.errors import WorkbenchError
-from workbench.expression import evaluate
-from workbench.model import Model
+from workbench.likelihood.bench import bench_of
+from workbench.models.model import Model
 
 DECLARED = """
 [campaign]

@@ -13,12 +13,12 @@ from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
 from benchmarks.virtual_benches.hiding import hide
 from effects.library import library
-from workbench.base_models import nominal_model
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
-from workbench.diagnosis import diagnose
-from workbench.ledger import ACCEPTED
-from workbench.walk import add_effect
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
+from workbench.explain.diagnosis import diagnose
+from workbench.ledger.step import ACCEPTED
+from workbench.ledger.walk import add_effect
+from workbench.models.bases import nominal_model
 
 BENCHES = {"damper": DAMPER, "dq": DQ}
 FIRST_SEED, CLEAR = 50000, (100.0, 1e4)

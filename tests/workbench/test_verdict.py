@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.workbench.toy_bench import Bump, Hardening
-from workbench.fit import Fit
-from workbench.hypotheses import Hypothesis
-from workbench.verdict import Evidences, Posterior, Signs, leaders, posterior, separation, twins_of, verdict
+from workbench.explain.hypotheses import Hypothesis
+from workbench.explain.verdict import Evidences, Posterior, Signs, leaders, posterior, separation, twins_of, verdict
+from workbench.likelihood.fit import Fit
 
 QUIET, LOUD = Signs(False, 1.0), Signs(True, 1.0)
 

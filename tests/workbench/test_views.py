@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from workbench.stack import stacked
-from workbench.table import Response, Table
-from workbench.views import ChannelView, order_spectra, scalings, sequences
+from workbench.compare.views import ChannelView, order_spectra, scalings, sequences
+from workbench.data.stack import stacked
+from workbench.data.table import Response, Table
 
 TURN = np.linspace(0, 2 * np.pi, 180, endpoint=False)
 RANDOM = np.random.default_rng(11)

@@ -8,18 +8,18 @@ import pytest
 
 from effects.library import effects_of_file, library, package_effects
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, Spring, SpringModel, written
-from workbench.agreement import NOTHING_LEFT, PREDICTED, agreement, left_over, repeats_itself
-from workbench.as_json import comparison_json, diagnosis_json
-from workbench.bench import bench_of
-from workbench.calibration import FALSE_ALARM_RATE, alarm_threshold, empty_campaigns
-from workbench.campaign import read_campaign
-from workbench.comparison import compare
-from workbench.diagnosis import candidates, diagnose, screen_of
+from workbench.compare.comparison import compare
+from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.ledger import COLUMNS, read_ledger, try_effect
-from workbench.model import Model
-from workbench.model_file import model_text, with_effects_of
-from workbench.walk import add_effect, by_evidence, walk
+from workbench.explain.agreement import NOTHING_LEFT, PREDICTED, agreement, left_over, repeats_itself
+from workbench.explain.calibration import FALSE_ALARM_RATE, alarm_threshold, empty_campaigns
+from workbench.explain.diagnosis import candidates, diagnose, screen_of
+from workbench.ledger.model_file import model_text, with_effects_of
+from workbench.ledger.step import COLUMNS, read_ledger, try_effect
+from workbench.ledger.walk import add_effect, by_evidence, walk
+from workbench.likelihood.bench import bench_of
+from workbench.models.model import Model
+from workbench.report.as_json import comparison_json, diagnosis_json
 
 
 def cubic(x):
@@ -204,7 +204,7 @@ def test_a_campaign_is_never_executed(tmp_path):
 
 
 def test_an_effect_with_too_many_parameters_is_said_and_left_out(hidden):
-    from workbench.bank import grid
+    from workbench.explain.bank import grid
 
     with pytest.raises(WorkbenchError, match="one to 4 parameters, found 5"):
         grid(5)

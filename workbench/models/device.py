@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from workbench.column_units import factor, split_unit
+from workbench.data.column_units import factor, split_unit
+from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.table import Tolerance
 
 
 def names(table: Mapping[str, object]) -> dict[str, str]:

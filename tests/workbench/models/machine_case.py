@@ -8,9 +8,9 @@ from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from materials.magnet import Magnet
-from workbench.models.machine_build import MeshPlan, SurrogateBuilder
-from workbench.models.machine_field import LoadedState, MachineField
-from workbench.models.machine_surrogate import Surrogate
+from workbench.models.machine.build import MeshPlan, SurrogateBuilder
+from workbench.models.machine.field import LoadedState, MachineField
+from workbench.models.machine.surrogate import Surrogate
 
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)

@@ -17,11 +17,11 @@ from effects.mechanical.backlash import Backlash
 from effects.mechanical.coulomb_friction import CoulombFriction
 from effects.mechanical.quadratic_drag import QuadraticDrag
 from effects.mechanical.rig_loss import RigLoss
-from workbench.campaign import read_campaign
+from workbench.data.campaign import read_campaign
+from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.damper import BASE, impedance, linear_impedance, steady_force
-from workbench.models.harmonic_balance import Drive, fundamental
-from workbench.table import Tolerance
+from workbench.models.damper.harmonic_balance import Drive, fundamental
+from workbench.models.damper.model import BASE, impedance, linear_impedance, steady_force
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = Damper(60.0, 1.2, 2.0, 20.0)

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 
 from benchmarks.virtual_benches.machine_bench import DEVICE
 from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
+from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.machine import MachineBench, loaded_states
-from workbench.table import Tolerance
+from workbench.models.machine.model import MachineBench, loaded_states
 
 BENCH = MachineBench(cache=None)
 ANGLES = np.linspace(0.0, 2 * np.pi, 50, endpoint=False)
@@ -64,7 +64,7 @@ def test_voltage_is_the_slope_of_the_flux_linkage_and_turns_with_the_speed():
 
 
 def evaluated_linkage(angle):
-    from workbench.models.machine_surrogate import evaluated
+    from workbench.models.machine.surrogate import evaluated
 
     return 41e-3 * evaluated(surrogate().spectrum(drawn())[1:2], angle)[0]
 
@@ -130,7 +130,7 @@ def test_sentences():
 
 def test_a_second_build_comes_from_the_cache(tmp_path):
     from tests.workbench.models.machine_case import PLAN
-    from workbench.models.machine_build import SurrogateBuilder
+    from workbench.models.machine.build import SurrogateBuilder
 
     known = SurrogateBuilder(drawn(), PLAN, tmp_path)
     idle = {"fine": surrogate().no_load, "base": np.zeros((13, 3))}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workbench.models.machine_build import SurrogateBuilder
+from workbench.models.machine.build import SurrogateBuilder
 
 FOUND = {"base": np.arange(2000.0), "slopes": np.ones((3, 4))}
 

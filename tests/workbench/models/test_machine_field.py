@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import COARSE, MIDDLE, drawn, field
-from workbench.models.machine_expansion import _no_load_derivatives
-from workbench.models.machine_field import LoadedState, idle, read_whole
+from workbench.models.machine.expansion import _no_load_derivatives
+from workbench.models.machine.field import LoadedState, idle, read_whole
 
 PHASES = np.array([[(coil.phase == i) * coil.sign for coil in field().layout.coils] for i in range(3)])
 

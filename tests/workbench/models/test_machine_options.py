@@ -9,11 +9,11 @@ from numpy.testing import assert_allclose
 from effects.machine.bearing_friction import BearingFriction
 from effects.machine.bearing_viscous import BearingViscous
 from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
-from workbench.kinds import KINDS
-from workbench.model import Model
-from workbench.models.machine import MachineBench
-from workbench.models.machine_options import options
-from workbench.table import Response, Table
+from workbench.data.kinds import KINDS
+from workbench.data.table import Response, Table
+from workbench.models.machine.model import MachineBench
+from workbench.models.machine.options import options
+from workbench.models.model import Model
 
 BENCH = replace(MachineBench(cache=None), surrogate=surrogate(), builder=builder(), about_drawing=surrogate())
 LOADED = STATES[0]

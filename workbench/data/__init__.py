@@ -1,0 +1,1 @@
+"""A campaign as it is read: files, columns, units, formulas, checks."""

@@ -1,0 +1,225 @@
+"""Checks that need no model: instruments are caught before any model is blamed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from workbench.data.table import Campaign, Response, Table
+from workbench.likelihood.noise import matched_rows
+
+LOUD = 4.0  # standard errors from which a check speaks
+COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
+FREQUENCIES = 8  # of a sweep that says something about causality
+NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
+CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
+
+
+def checks_of(campaign: Campaign) -> tuple[str, ...]:
+    """One sentence for each thing that no device can do, or that an instrument does."""
+    found: list[str] = []
+    for table in campaign.tables:
+        for check in _OF_A_TABLE:
+            found += check(table)
+    return tuple(found + _constants(campaign))
+
+
+def _repeats_agree(table: Table) -> list[str]:
+    stations = matched_rows(table)
+    found = []
+    for r in table.responses.values() if stations is not None else ():
+        z, size = _scatter(r, stations)
+        shift = z.mean(axis=0) * np.sqrt(len(stations))
+        if size > 3:
+            found.append(f"{table.file}: repeats of {r.name} disagree by {size:.1f} times the declared uncertainty")
+        elif np.abs(shift).max() > 3 * LOUD * max(size, 1):
+            found.append(f"{table.file}: one repeat of {r.name} is shifted as a whole against the others")
+    return found
+
+
+def _scatter(r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
+    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size."""
+    z = (r.values[stations] - r.values[stations].mean(axis=1, keepdims=True)) / r.random[stations]
+    return z, float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
+
+
+def _clipping(table: Table) -> list[str]:
+    found = []
+    for r in table.responses.values():
+        for edge in (r.values.max(), r.values.min()):
+            share = float(np.mean(r.values == edge))
+            if table.rows > 20 and share > CLIPPED and np.ptp(r.values) > 0:
+                found.append(
+                    f"{table.file}: {share:.0%} of {r.name} stand at exactly {edge / r.scale:g} {r.unit}: clipped?"
+                )
+    return found
+
+
+def _phase_sum(table: Table) -> list[str]:
+    """Three open-circuit phase voltages of a balanced winding add up to a wave of multiples of three only."""
+    if not (table.kind == "back_emf" and {"v_a", "v_b", "v_c"} <= set(table.responses)):
+        return []
+    a, b, c = (table.responses[name] for name in ("v_a", "v_b", "v_c"))
+    sizes = [np.sqrt(np.mean(r.values**2)) for r in (a, b, c)]
+    spread = (max(sizes) - min(sizes)) / np.mean(sizes)
+    u = np.sqrt(2 / table.rows) * np.mean(a.random) / np.mean(sizes)
+    mean = np.mean(a.values + b.values + c.values) / (np.sqrt(3) * np.mean(a.random) / np.sqrt(table.rows))
+    found = []
+    if spread > LOUD * u and spread > 0.005:
+        found.append(f"{table.file}: the phase voltages differ by {spread:.1%} in rms: unequal phases or gains")
+    if abs(mean) > LOUD * 3:
+        found.append(f"{table.file}: the sum of the phase voltages has a mean: a voltage channel has an offset")
+    return found
+
+
+def _cogging(table: Table) -> list[str]:
+    """Cogging has no mean over a turn; forward and backward branches differ by friction only."""
+    if table.kind != "cogging" or "angle_mech" not in table.conditions or np.ptp(table.conditions["angle_mech"]) < 6.1:
+        return []
+    torque, direction = table.responses["torque"], table.conditions.get("direction")
+    u = float(np.mean(torque.random))
+    found = []
+    if direction is not None and (direction > 0).any() and (direction < 0).any():
+        forward, backward = torque.values[direction > 0].mean(), torque.values[direction < 0].mean()
+        error = u * np.sqrt(4 / table.rows)
+        if abs(forward - backward) / 2 > LOUD * error:
+            half = abs(forward - backward) / 2 / torque.scale
+            found.append(
+                f"{table.file}: forward and backward differ, half-difference {half:.3g} {torque.unit}: friction"
+            )
+        mean = 0.5 * (forward + backward)
+    else:
+        mean, error = torque.values.mean(), u * np.sqrt(1 / table.rows)
+    if abs(mean) > LOUD * error:
+        found.append(
+            f"{table.file}: the mean over a turn is {mean / torque.scale:.3g} {torque.unit}: zero of the torque cell"
+        )
+    return found
+
+
+def _copper(table: Table) -> list[str]:
+    """R(T) of copper: R = R20 (1 + 0.00393 (T - 20))."""
+    if table.kind != "phase_resistance" or "winding_T" not in table.conditions:
+        return []
+    warm = table.conditions["winding_T"] - 20.0
+    found = []
+    for r in table.responses.values():
+        if np.ptp(warm) < 10:
+            continue
+        (slope, level), covariance = np.polyfit(warm, r.values, 1, w=1 / r.random, cov="unscaled")
+        ratio, error = slope / level, np.sqrt(covariance[0, 0]) / level
+        if abs(ratio - COPPER) > LOUD * error and abs(ratio / COPPER - 1) > 0.02:
+            found.append(
+                f"{table.file}: {r.name} rises by {ratio:.5f} per kelvin, copper by {COPPER}: temperature or leads"
+            )
+    return found
+
+
+def _impedance(table: Table) -> list[str]:
+    """A passive device takes power: the real part of its impedance is not negative."""
+    if table.kind != "impedance" or "re" not in table.responses:
+        return []
+    re = table.responses["re"]
+    wrong = int(np.sum(re.values < -LOUD * re.random))
+    return (
+        [f"{table.file}: {wrong} real parts are negative, which no passive device has: phase of a sensor"]
+        if wrong
+        else []
+    )
+
+
+def _causality(table: Table) -> list[str]:
+    """Kramers-Kronig: one set of real coefficients makes both parts of the impedance of a causal linear device.
+
+        Z = c + j w m + k / (j w) + sum over tau of a_tau / (1 + j w tau)
+
+    with relaxation times over the measured band, fitted to each scan of frequencies (Boukamp, J. Electrochem. Soc. 142
+    (1995) 1885). A wave through a spring or a drift between points leaves more than noise.
+    """
+    if table.kind != "impedance" or not {"re", "im"} <= set(table.responses) or "frequency" not in table.conditions:
+        return []
+    stations = matched_rows(table)
+    noise = 1.0 if stations is None else max(1.0, *(_scatter(table.responses[n], stations)[1] for n in ("re", "im")))
+    worst = max((_not_causal(table, rows) for rows in _sweeps(table)), default=1.0) / noise
+    if worst < NOT_CAUSAL:
+        return []
+    return [
+        f"{table.file}: real and imaginary part miss a causal linear device by {worst:.2g} times their uncertainty: "
+        "drift between the frequencies, the phase of a sensor, or friction and backlash"
+    ]
+
+
+def _sweeps(table: Table) -> list[np.ndarray]:
+    """Rows that differ in frequency and repeat only, where there are enough frequencies."""
+    others = [np.round(v, 9) for n, v in table.conditions.items() if n != "frequency"]
+    keys = np.column_stack([np.zeros(table.rows), *others])
+    number = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
+    sets = [np.flatnonzero(number == value) for value in range(number.max() + 1)]
+    return [rows for rows in sets if len(np.unique(table.conditions["frequency"][rows])) >= FREQUENCIES]
+
+
+def _not_causal(table: Table, rows: np.ndarray) -> float:
+    """Rms of what a causal linear device leaves of one sweep, over the uncertainty."""
+    omega = 2 * np.pi * table.conditions["frequency"][rows]
+    re, im = (table.responses[name] for name in ("re", "im"))
+    count = max(3, len(np.unique(omega)) // 2)
+    relaxations = 1 / (1 + 1j * omega[:, None] * np.geomspace(0.3 / omega.max(), 3.0 / omega.min(), count))
+    device = np.column_stack([np.ones(len(omega)), 1j * omega, 1 / (1j * omega), relaxations])
+    u = np.concatenate([re.random[rows], im.random[rows]])
+    design = np.vstack([device.real, device.imag]) / u[:, None]
+    measured = np.concatenate([re.values[rows], im.values[rows]]) / u
+    left = measured - design @ np.linalg.lstsq(design, measured, rcond=1e-10)[0]
+    return float(np.sqrt(left @ left / (len(left) - design.shape[1])))
+
+
+def _loop(table: Table) -> list[str]:
+    """The work of a closed loop of force over displacement is not negative: no device gives energy in every turn."""
+    if table.kind != "force_loop" or "force" not in table.responses or "displacement" not in table.conditions:
+        return []
+    force, place = table.responses["force"], table.conditions["displacement"]
+    number = np.unique(np.column_stack([table.scan, table.repeat]), axis=0, return_inverse=True)[1].ravel()
+    found = []
+    for value in range(number.max() + 1):
+        rows = np.flatnonzero(number == value)
+        way = 0.5 * (np.roll(place[rows], -1) - np.roll(place[rows], 1))
+        work, u = np.sum(force.values[rows] * way), np.sqrt(np.sum((force.random[rows] * way) ** 2))
+        if work < -LOUD * u:
+            found.append(f"{table.file}: a closed loop gives {-work:.3g} J instead of taking it: sign of a sensor")
+    return found[:1]
+
+
+def _reversal(table: Table) -> list[str]:
+    """The power taken at constant velocity is not negative."""
+    if table.kind != "damping_velocity" or not {"velocity"} <= set(table.conditions) or "force" not in table.responses:
+        return []
+    force, velocity = table.responses["force"], table.conditions["velocity"]
+    wrong = int(np.sum(force.values * np.sign(velocity) < -LOUD * force.random))
+    return (
+        [f"{table.file}: {wrong} readings give power instead of taking it: sign or zero of a sensor"] if wrong else []
+    )
+
+
+def _constants(campaign: Campaign) -> list[str]:
+    """K_t from torque or force equals K_e from the open-circuit voltage, for lumped linear devices."""
+    emf = next((t for t in campaign.tables if t.kind == "back_emf" and "voltage" in t.responses), None)
+    shunted = next((t for t in campaign.tables if t.kind == "damping_velocity" and "shunt" in t.conditions), None)
+    resistance = campaign.device.get("internal_resistance_ohm")
+    if emf is None or shunted is None or resistance is None:
+        return []
+    voltage, velocity = emf.responses["voltage"], emf.conditions["velocity"]
+    k_e = float(np.sum(voltage.values * velocity) / np.sum(velocity**2))
+    force, v, shunt = shunted.responses["force"].values, shunted.conditions["velocity"], shunted.conditions["shunt"]
+    levels = np.unique(shunt)
+    slopes = np.array([np.sum((force * v)[shunt == s]) / np.sum((v**2)[shunt == s]) for s in levels])
+    design = np.column_stack([1 / (levels + float(resistance)), np.ones(len(levels))])
+    (square, _), *_ = np.linalg.lstsq(design, slopes, rcond=None)
+    k_t = float(np.sqrt(max(square, 0.0)))
+    if abs(k_t / k_e - 1) > 0.05:
+        return [
+            f"force constant from the forces is {k_t:.4g}, from the voltage {k_e:.4g}: a gain, or losses in the circuit"
+        ]
+    return []
+
+
+_OF_A_TABLE = (
+    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""Which effect is missing, how sure, what to measure next."""

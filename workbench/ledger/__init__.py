@@ -1,0 +1,1 @@
+"""Effects added one by one, and the model on disk."""

@@ -1,0 +1,113 @@
+"""The walk of a user: add an effect, keep the ledger, compare and diagnose again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from effects.base import Effect
+from workbench.compare.comparison import comparison_of
+from workbench.data.table import Campaign
+from workbench.explain.diagnosis import SEED, diagnose
+from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
+from workbench.ledger.model_file import NAME, model_text
+from workbench.ledger.skeleton import skeleton
+from workbench.ledger.step import ACCEPTED, append, read_ledger, start_step, try_effect
+from workbench.likelihood.bench import bench_of
+from workbench.models.model import Model
+
+LEDGER = "ledger.csv"
+MOST_STEPS = 8  # effects that a walk adds by itself
+
+
+@dataclass(frozen=True, eq=False)
+class Added:
+    """What ``add`` did. model: after the decision"""
+
+    model: Model
+    step: LedgerStep
+    ledger: Ledger
+    comparison: Comparison
+    diagnosis: Diagnosis
+
+
+def add_effect(
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    name: str,
+    out: Path,
+    seed: int | None = None,
+    progress: Callable[[str], None] = lambda words: None,
+    before: Diagnosis | None = None,
+) -> Added:
+    """Tries an effect, writes the ledger row and, when accepted, the model file; compares and diagnoses again.
+
+    out: folder of ``ledger.csv`` and ``model.toml``, which are the only files written
+    before: diagnosis of the model as it is, where it was made already; it holds on if the effect is refused
+    """
+    path = out / LEDGER
+    ledger = read_ledger(path, campaign.id, model.base.name)
+    trial = try_effect(model, campaign, library, name, len(ledger.steps) or 1, progress)
+    if not ledger.steps:
+        append(path, start_step(trial.before), campaign, model)
+    diagnosis = before
+    if diagnosis is None or trial.step.decision == ACCEPTED:
+        diagnosis = diagnose(trial.model, campaign, library, SEED if seed is None else seed, progress)
+    said = ": ".join([diagnosis.verdict, *([", ".join(diagnosis.names)] if diagnosis.names else [])])
+    step = replace(trial.step, verdict=said)
+    append(path, step, campaign, trial.model)
+    if step.decision == ACCEPTED:
+        (out / NAME).write_text(model_text(trial.model), encoding="utf-8")
+    bench = trial.after if step.decision == ACCEPTED else trial.before
+    comparison = comparison_of(bench, library, progress)
+    return Added(trial.model, step, read_ledger(path, campaign.id, model.base.name), comparison, diagnosis)
+
+
+def skeleton_for(path: Path, campaign: Campaign | None, library, model: Model | None) -> str:
+    """The text of an effect file; with a campaign its first guess comes from the residual."""
+    if campaign is None:
+        return skeleton(path, {}, "response", "generic", ["condition"], 1.0)
+    signature = diagnose(model, campaign, library).residual_signature
+    bench = bench_of(model, campaign, library)
+    channel = next(c for c in bench.stack.channels if c.name == signature["channel"])
+    table = bench.stack.tables[channel.table]
+    size = float(signature["size_in_u"] * bench.stack.u[channel.rows].mean())
+    return skeleton(path, signature, channel.response, table.kind, list(table.conditions), size)
+
+
+def walk(
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    out: Path,
+    seed: int | None = None,
+    progress: Callable[[str], None] = lambda words: None,
+) -> tuple[Ledger, Diagnosis]:
+    """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
+
+    Of several names the one with the most evidence by itself is tried first.
+    out: folder of ``ledger.csv`` and ``model.toml``
+    """
+    diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
+    for _ in range(MOST_STEPS):
+        for name in by_evidence(diagnosis):
+            added = add_effect(model, campaign, library, name, out, seed, progress, diagnosis)
+            if added.step.decision == ACCEPTED:
+                model, diagnosis = added.model, added.diagnosis
+                break
+        else:
+            break
+    path = out / LEDGER
+    if not path.exists():
+        append(
+            path, replace(start_step(bench_of(model, campaign, library)), verdict=diagnosis.verdict), campaign, model
+        )
+    return read_ledger(path, campaign.id, model.base.name), diagnosis
+
+
+def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """The names of a verdict, the one with the most evidence by itself first."""
+    alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
+    return tuple(sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0)))

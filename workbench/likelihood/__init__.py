@@ -1,0 +1,1 @@
+"""Noise, declared errors and the fit of a model to a campaign."""

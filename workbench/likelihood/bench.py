@@ -1,0 +1,184 @@
+"""A campaign and a model brought together: rows to fit, rows held out, noise, and the model with fitted tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from effects.base import Effect
+from workbench.data.campaign import columns_of_systematics
+from workbench.data.stack import Stack, rows_of, stacked, thinned
+from workbench.data.table import Campaign, Table
+from workbench.errors import WorkbenchError
+from workbench.likelihood.fit import Fit, Problem, fitted, linearised
+from workbench.likelihood.linear import Nuisances
+from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, whitener
+from workbench.likelihood.nuisance import nuisances_of
+from workbench.likelihood.predictor import DirectPredictor
+from workbench.models.model import Model
+
+MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is said
+SHARPENINGS = 3  # times a fit is repeated with a base model expanded about its result
+SHARP = 0.3  # change of the objective [nats] that is none
+PULLED = 6.0  # standard deviations of a tolerance from where it is declared, which chance does not explain
+CONDITION_STEP = 1e-3  # of the range of a condition, to see how its own uncertainty acts
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """tables: as fitted and scored, thinned where long;  stack, noise, white: of all their rows
+
+    fit: rows that may be fitted;  held_out: rows that may not, None where there are none
+    null: the model as it is, tolerances and calibrations at their most probable values
+    """
+
+    model: Model
+    campaign: Campaign
+    stack: Stack
+    noise: Noise
+    white: Whitener
+    fit: Problem
+    held_out: Problem | None
+    null: Fit
+    complaints: tuple[str, ...] = field(default=())
+
+    @cached_property
+    def centre(self) -> Fit:
+        """Where effects are compared by linear algebra and where their fits start."""
+        return linearised(self.fit, self.fit.start) if _far(self.fit, self.null) else self.null
+
+    @cached_property
+    def nuisances(self) -> Nuisances:
+        """Of the rows to fit, at the centre."""
+        return Nuisances(self.centre.jacobian)
+
+    @cached_property
+    def residual(self) -> np.ndarray:
+        """Whitened residual of the rows to fit, carried back to x = 0 by the derivatives: N(0, 1 + J J^T) when all
+        is well."""
+        return extrapolated(self.centre)
+
+
+def extrapolated(fit: Fit) -> np.ndarray:
+    """Whitened residual of a fit carried back to zero of all its parameters (n,)."""
+    return fit.residual + fit.jacobian @ np.concatenate([fit.x, fit.z])
+
+
+def bench_of(
+    model: Model, campaign: Campaign, library: Mapping[str, type[Effect]], most_rows: int = MOST_ROWS, progress=None
+) -> Bench:
+    """Brings a campaign and a model together and fits the tolerances.
+
+    Raises:
+        WorkbenchError: the campaign has nothing that may be fitted, or declares what the model does not know.
+    """
+    tables = tuple(thinned(table, most_rows) for table in campaign.tables)
+    predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
+    stack = replace(predictor.stack, u=_with_conditions(predictor))
+    noise = measured_noise(stack, predictor.predict(predictor.start))
+    white = _with_numerical(whitener(stack, noise), stack, predictor.model)
+    chosen = [~table.held_out for table in tables]
+    if not any(mask.any() for mask in chosen):
+        raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
+    fit = _problem(predictor, stack, noise, white, chosen)
+    hidden = [~mask for mask in chosen]
+    held_out = _problem(predictor, stack, noise, white, hidden) if any(m.any() for m in hidden) else None
+    drawn = fit
+    fit, null = sharpened(fit, fitted(fit, (), predictor.start, np.zeros(0)))
+    fit = drawn if _far(fit, null) else fit
+    held_out = None if held_out is None else replace(held_out, predictor=fit.predictor.on(held_out.stack))
+    complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise)
+    return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, complaints)
+
+
+def _far(fit: Problem, null: Fit) -> bool:
+    """Whether something that is missing has pulled a tolerance so far that an expansion about there is of no use: with
+    the effect in the model the device is near the drawing again."""
+    if not hasattr(fit.predictor.model.base, "recentred"):
+        return False
+    return bool(np.abs(null.x - fit.start).max(initial=0.0) > PULLED)
+
+
+def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
+    """The fit again with a base model that is exact where it ended, for base models that answer by an expansion."""
+    for _ in range(SHARPENINGS):
+        model = problem.predictor.model
+        if not hasattr(model.base, "recentred"):
+            break
+        design = problem.predictor.model_at(fit.x, fit.at_maximum).design_as_built
+        predictor = replace(problem.predictor, model=replace(model, base=model.base.recentred(design)))
+        problem, before = replace(problem, predictor=predictor), fit.objective
+        fit = fitted(problem, fit.effects, fit.x, fit.z)
+        if abs(before - fit.objective) < SHARP:
+            break
+    return problem, fit
+
+
+def predictor_of(
+    model: Model, campaign: Campaign, library: Mapping[str, type[Effect]], stack: Stack, progress=None
+) -> DirectPredictor:
+    """The predictor of a stack; a base model that can prepare itself for these rows does so."""
+    if hasattr(model.base, "prepared"):
+        model = replace(model, base=model.base.prepared(model.design, stack.tables, progress))
+    declared = columns_of_systematics(campaign.folder)
+    known = replace(campaign, tolerances=campaign.tolerances + getattr(model.base, "own_tolerances", ()))
+    return DirectPredictor(model, nuisances_of(known, library, declared), stack)
+
+
+def _problem(
+    predictor: DirectPredictor, stack: Stack, noise: Noise, white: Whitener, chosen: Sequence[np.ndarray]
+) -> Problem:
+    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, chosen)])
+    keep = np.concatenate([chosen[c.table] for c in stack.channels])
+    part = replace(part, u=stack.u[keep])
+    own = replace(whitener(part, noise_on_rows(noise, stack, chosen)), sigma=white.sigma[keep])
+    dof = np.array([channel.dof for channel in noise.channels])
+    return Problem(predictor.on(part), part, own, dof, predictor.start)
+
+
+def _with_conditions(predictor: DirectPredictor) -> np.ndarray:
+    """u of every row with the uncertainty of its conditions, through the slope of the nominal model (n,)."""
+    stack, model = predictor.stack, predictor.model_at(predictor.start)
+    variance = stack.u**2
+    for number, table in enumerate(stack.tables):
+        for name, u in table.condition_random.items():
+            step = CONDITION_STEP * (np.ptp(table.conditions[name]) or 1.0)
+            up, down = (model.answers(_moved(table, name, sign * step)) for sign in (1, -1))
+            for channel in (c for c in stack.channels if c.table == number):
+                slope = (up[channel.response] - down[channel.response]) / (2 * step)
+                variance[channel.rows] += (slope * u) ** 2
+    return np.sqrt(variance)
+
+
+def _moved(table: Table, name: str, step: float) -> Table:
+    return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
+
+
+def _with_numerical(white: Whitener, stack: Stack, model: Model) -> Whitener:
+    """The whitener with the base model's own numerical uncertainty, where it states one."""
+    if not hasattr(model.base, "numerical"):
+        return white
+    sigma = white.sigma.copy()
+    for channel in stack.channels:
+        own = model.base.numerical(stack.tables[channel.table].kind).get(channel.response, 0.0)
+        sigma[channel.rows] = np.hypot(sigma[channel.rows], own)
+    return replace(white, sigma=sigma)
+
+
+def _thinning(tables: Sequence[Table], used: Sequence[Table]) -> tuple[str, ...]:
+    return tuple(
+        f"{long.file}: {short.rows} of {long.rows} rows take part in the fits; small effects are seen less well"
+        for long, short in zip(tables, used)
+        if short.rows < long.rows
+    )
+
+
+def _wildness(noise: Noise) -> tuple[str, ...]:
+    return tuple(
+        f"{channel.channel}: {channel.wild} wild readings (off their repeats by 4.5 standard deviations) count less"
+        for channel in noise.channels
+        if channel.wild
+    )

@@ -1,0 +1,221 @@
+"""Most probable nuisances and effect parameters, and the evidence around them.
+
+    minus ln posterior = sum over channels (nu + n)/2 ln(1 + q/nu) + x^T x / 2 + sum over z (t + 1)/2 ln(1 + z^2/t)
+    q: sum of squares of the whitened residuals of a channel;  nu: degrees of freedom of its measured noise
+
+The first is Student's t for a noise whose size was measured by repeats: the Gaussian with its size integrated out.
+The last
+is Student's t for the size of an effect, whose prior is only a guess of its magnitude.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.stats import norm
+from scipy.stats import t as student
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.data.stack import Stack
+from workbench.errors import WorkbenchError
+from workbench.explain.priors import TAILS
+from workbench.likelihood.noise import Whitener
+from workbench.likelihood.predictor import STEP, Predictor, jacobian
+
+ITERATIONS = 15
+CLOSE = 1e-4  # change of the objective [nats] at which a fit is done
+ROUND_CLOSE = 1e-2  # change of the objective [nats] after new slopes at which it is
+TRIALS = ((1.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.05, 0.0), (1.0, 1.0), (1.0, 30.0))  # length of a step, its damping
+ROUNDS = 4  # times the slopes of the nuisances are taken anew
+FAR = 20.0  # a standard normal number is not followed beyond
+
+
+def prior_cost(z: np.ndarray) -> float:
+    """Minus ln of Student's t density of z over the standard normal one at zero."""
+    level = student.logpdf(0.0, TAILS) - norm.logpdf(0.0)
+    return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - level))
+
+
+def prior_weight(z: np.ndarray) -> np.ndarray:
+    """Slope of the prior cost over z, its curvature for a Gauss-Newton step."""
+    return (TAILS + 1) / (TAILS + np.square(z))
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Readings, their noise and the predictor for one set of rows. start: x of the nominal device (m,)."""
+
+    predictor: Predictor
+    stack: Stack
+    white: Whitener
+    dof: np.ndarray
+    start: np.ndarray
+
+    def residual(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
+        """Whitened reading minus prediction (n,)."""
+        return self.white(self.stack.y - self.predictor.predict(x, effects))
+
+    def squares(self, residual: np.ndarray) -> np.ndarray:
+        """q of every channel (channels,)."""
+        return np.array([np.sum(residual[c.rows] ** 2) for c in self.stack.channels])
+
+    @property
+    def sizes(self) -> np.ndarray:
+        return np.array([c.size for c in self.stack.channels])
+
+    def misfit(self, residual: np.ndarray) -> float:
+        """Minus ln likelihood, up to what all hypotheses share."""
+        return misfit(self.squares(residual), self.dof, self.sizes)
+
+    def weights(self, residual: np.ndarray) -> np.ndarray:
+        """Slope of the misfit to q/2 of the row's channel (n,)."""
+        per_channel = (self.dof + self.sizes) / (self.dof + self.squares(residual))
+        return np.repeat(per_channel, self.sizes)
+
+
+def misfit(squares: np.ndarray, dof: np.ndarray, sizes: np.ndarray) -> float:
+    """Sum over channels of (nu + n)/2 ln(1 + q/nu)."""
+    return float(np.sum(0.5 * (dof + sizes) * np.log1p(squares / dof)))
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Of some effects (none: the null).
+
+    x, z: nuisances and effect parameters at the maximum;  residual: whitened (n,);  jacobian: whitened, of x then z
+    objective: minus ln posterior;  log_evidence: by Laplace;  covariance: of x then z
+    """
+
+    effects: tuple[Effect, ...]
+    x: np.ndarray
+    z: np.ndarray
+    residual: np.ndarray
+    jacobian: np.ndarray
+    objective: float
+    log_evidence: float
+    covariance: np.ndarray
+
+    @property
+    def at_maximum(self) -> tuple[Effect, ...]:
+        return with_parameters(self.effects, self.z)
+
+
+def with_parameters(effects: Sequence[Effect], z: np.ndarray) -> tuple[Effect, ...]:
+    """The effects at their parameters, z one after the other."""
+    out, place = [], 0
+    for effect in effects:
+        size = len(parameters_of(effect))
+        out.append(effect.at(z[place : place + size]))
+        place += size
+    return tuple(out)
+
+
+def parameter_count(effects: Sequence[Effect]) -> int:
+    return sum(len(parameters_of(effect)) for effect in effects)
+
+
+def fitted(
+    problem: Problem, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None = None
+) -> Fit:
+    """The fit from one start by damped Gauss-Newton.
+
+    slopes: whitened derivatives to x (n, m), used until the last steps; without them they are taken at the start
+    """
+    search = _Search(problem, tuple(effects), len(x))
+    p, slopes = np.concatenate([x, z]), search.nuisance_slopes(x, z) if slopes is None else slopes
+    p, value = search.descend(p, slopes)
+    for _ in range(ROUNDS):
+        before = value
+        slopes = search.nuisance_slopes(p[: len(x)], p[len(x) :])
+        p, value = search.descend(p, slopes)
+        if before - value < ROUND_CLOSE:
+            break
+    return search.result(p, slopes)
+
+
+def linearised(problem: Problem, x: np.ndarray) -> Fit:
+    """What a fit without effects would be if it ended at nuisances x."""
+    search = _Search(problem, (), len(x))
+    return search.result(np.asarray(x, dtype=float), search.nuisance_slopes(x, np.zeros(0)))
+
+
+@dataclass
+class _Search:
+    problem: Problem
+    effects: tuple[Effect, ...]
+    m: int
+    memory: dict = field(default_factory=dict)
+
+    def predict(self, p: np.ndarray) -> np.ndarray:
+        key = p.tobytes()
+        if key not in self.memory:
+            effects = with_parameters(self.effects, p[self.m :])
+            self.memory[key] = self.problem.predictor.predict(p[: self.m], effects)
+        return self.memory[key]
+
+    def residual(self, p: np.ndarray) -> np.ndarray:
+        return self.problem.white(self.problem.stack.y - self.predict(p))
+
+    def objective(self, p: np.ndarray, residual: np.ndarray) -> float:
+        x, z = p[: self.m], p[self.m :]
+        return self.problem.misfit(residual) + 0.5 * float(x @ x) + prior_cost(z)
+
+    def prior_curvature(self, p: np.ndarray) -> np.ndarray:
+        return np.concatenate([np.ones(self.m), prior_weight(p[self.m :])])
+
+    def nuisance_slopes(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
+        effects = with_parameters(self.effects, z)
+        return self.problem.white(jacobian(self.problem.predictor, x, effects, self.predict(np.concatenate([x, z]))))
+
+    def effect_slopes(self, p: np.ndarray) -> np.ndarray:
+        slopes = np.empty((self.problem.stack.size, len(p) - self.m))
+        for k in range(self.m, len(p)):
+            step = np.zeros(len(p))
+            step[k] = STEP if p[k] < 0 else -STEP  # towards the centre: never over a bound for nothing
+            slopes[:, k - self.m] = (self.predict(p + step) - self.predict(p)) / step[k]
+        return self.problem.white(slopes)
+
+    def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> tuple[np.ndarray, float]:
+        residual = self.residual(p)
+        value = self.objective(p, residual)
+        for _ in range(ITERATIONS):
+            slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
+            p, residual, new = self._step(p, residual, value, slopes)
+            if value - new < CLOSE:
+                break
+            value = new
+        return p, new
+
+    def _step(self, p, residual, value, slopes):
+        """Gauss-Newton, the step shortened until the objective falls: that stays on a ridge between an effect and a
+        tolerance; then damped."""
+        weights = self.problem.weights(residual)
+        prior = self.prior_curvature(p)
+        normal = slopes.T @ (weights[:, None] * slopes) + np.diag(prior)
+        downhill = slopes.T @ (weights * residual) - prior * p
+        for length, damping in TRIALS:
+            move = length * np.linalg.solve(normal + damping * np.diag(np.diag(normal)), downhill)
+            trial = p + move
+            trial[self.m :] = np.clip(trial[self.m :], -FAR, FAR)
+            try:
+                new_residual = self.residual(trial)
+            except WorkbenchError:  # no steady state there: as bad as can be
+                continue
+            new = self.objective(trial, new_residual)
+            if new < value:
+                return trial, new_residual, new
+        return p, residual, value
+
+    def result(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> Fit:
+        residual = self.residual(p)
+        slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
+        weights = self.problem.weights(residual)
+        hessian = slopes.T @ (weights[:, None] * slopes) + np.diag(self.prior_curvature(p))
+        value = self.objective(p, residual)
+        evidence = -value - 0.5 * np.linalg.slogdet(hessian)[1]
+        return Fit(
+            self.effects, p[: self.m], p[self.m :], residual, slopes, value, float(evidence), np.linalg.inv(hessian)
+        )

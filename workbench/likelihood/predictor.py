@@ -1,0 +1,117 @@
+"""What the statistics ask of a model: readings for given nuisances and effects, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.data.stack import Stack
+from workbench.errors import WorkbenchError
+from workbench.likelihood.nuisance import EffectParameters, Nuisance
+from workbench.models.model import Model
+
+STEP = 0.02  # of a standard normal number in a difference quotient; effects of 1e-2 sigma are far above rounding
+
+
+class Predictor(Protocol):
+    """Readings that the instruments should show, stacked over all channels (n,)."""
+
+    names: tuple[str, ...]  # one a component of x
+    stack: Stack  # whose rows are predicted
+
+    def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
+        """Readings (n,) at nuisances x (m,), standard normal numbers, with further effects."""
+
+
+@dataclass(frozen=True, eq=False)
+class DirectPredictor:
+    """Asks the model itself. x: first what the campaign declares, then the parameters of effects the model has, both
+    from where they stand now.
+
+    origin: x where a fit starts, zero where it is not given
+    """
+
+    model: Model
+    nuisances: tuple[Nuisance, ...]
+    stack: Stack
+    calls: list[int] = field(default_factory=lambda: [0])
+    origin: np.ndarray | None = None
+
+    @property
+    def fitted(self) -> tuple[EffectParameters, ...]:
+        return tuple(EffectParameters(effect) for effect in self.model.effects)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        own = tuple(f"{effect.name}.{p}" for effect in self.fitted for p in parameters_of(effect.effect))
+        return tuple(n.name for n in self.nuisances) + own
+
+    @property
+    def start(self) -> np.ndarray:
+        """x of the nominal device with the effects as they stand in the model, or the origin that was given (m,)."""
+        return np.zeros(len(self.names)) if self.origin is None else self.origin
+
+    def answering(self) -> DirectPredictor:
+        """This, or where the nominal device has no answer in some row, the same from an origin that has one: one
+        tolerance away.
+
+        Raises:
+            WorkbenchError: of the nominal device, if there is no such place.
+        """
+        try:
+            self.predict(self.start)
+            return self
+        except WorkbenchError as no_answer:
+            for x in _near(len(self.names)):
+                try:
+                    self.predict(x)
+                except WorkbenchError:
+                    continue
+                return replace(self, origin=x)
+            raise no_answer
+
+    def model_at(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> Model:
+        """The model with the nuisances and effects at their values."""
+        own, place = [], len(self.nuisances)
+        for effect in self.fitted:
+            own.append(effect.moved(x[place : place + effect.size]))
+            place += effect.size
+        model = replace(self.model, effects=tuple(own) + tuple(effects))
+        for nuisance, z in zip(self.nuisances, x):
+            model = nuisance.apply(model, z)
+        return model
+
+    def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
+        self.calls[0] += 1
+        model = self.model_at(x, effects)
+        return self.stack.vector([model.answers(table) for table in self.stack.tables])
+
+    def on(self, stack: Stack) -> DirectPredictor:
+        """The same for other rows."""
+        return replace(self, stack=stack)
+
+
+def _near(m: int) -> Iterator[np.ndarray]:
+    """One of m standard normal numbers moved to either side, the smallest moves first."""
+    for size in (1.0, 2.0, 3.0):
+        for k in range(m):
+            for sign in (1.0, -1.0):
+                yield sign * size * np.eye(m)[k]
+
+
+def jacobian(predictor: Predictor, x: np.ndarray, effects: Sequence[Effect] = (), base: np.ndarray | None = None):
+    """d readings / d x (n, m): central differences, one-sided where ``base`` = predict(x) is given."""
+    slopes = np.empty((predictor.stack.size, len(x)))
+    for k in range(len(x)):
+        step = np.zeros(len(x))
+        step[k] = STEP
+        if base is None:
+            slopes[:, k] = (predictor.predict(x + step, effects) - predictor.predict(x - step, effects)) / (2 * STEP)
+        else:
+            slopes[:, k] = (predictor.predict(x + step, effects) - base) / STEP
+    return slopes

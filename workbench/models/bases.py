@@ -1,0 +1,37 @@
+"""Which model answers for the device of a campaign: every module below ``workbench/models`` that has a ``BASE``
+is asked."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+from workbench import models
+from workbench.data.table import Campaign
+from workbench.errors import WorkbenchError
+from workbench.models.model import BaseModel, Model
+
+
+def base_models() -> dict[str, BaseModel]:
+    """Base models by name."""
+    modules = (importlib.import_module(m.name) for m in pkgutil.walk_packages(models.__path__, models.__name__ + "."))
+    found = [module.BASE for module in modules if hasattr(module, "BASE")]
+    return {base.name: base for base in sorted(found, key=lambda base: base.name)}
+
+
+def nominal_model(campaign: Campaign) -> Model:
+    """The model of the device as declared, without effects.
+
+    Raises:
+        WorkbenchError: no base model knows this device.
+    """
+    bases = base_models()
+    named = campaign.device.get("model")
+    found = [b for b in bases.values() if b.name == named or (named is None and b.accepts(campaign.device))]
+    if not found:
+        raise WorkbenchError(
+            f"{campaign.folder}: no model knows the [device] table; give model = one of {', '.join(bases)} in it, with "
+            "its keys."
+        )
+    device = {key: value for key, value in campaign.device.items() if key != "model"}
+    return Model(found[0], found[0].design(device))

@@ -1,0 +1,1 @@
+"""The lumped electromagnetic damper on the bench."""

@@ -1,0 +1,1 @@
+"""The synchronous machine in its rotor frame on the bench."""

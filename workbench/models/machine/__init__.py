@@ -1,0 +1,1 @@
+"""The machine as built on the bench, by field solutions."""

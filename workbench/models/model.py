@@ -1,0 +1,79 @@
+"""A bench model: a base that answers for a design, and the effects it was given. A model is a value.
+
+``BaseModel`` is what a new kind of device has to provide; ``Model`` composes it with effects:
+    model + effect, model.without("end_leakage"), model.answers(table)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from effects.base import Columns, DesignEffect, Effect, InstrumentEffect, ResponseEffect
+from workbench.data.table import Table, Tolerance
+from workbench.errors import WorkbenchError
+
+
+class BaseModel(Protocol):
+    """What the workbench asks of a model of a device."""
+
+    name: str  # "damper", "dq", "machine"
+
+    def design(self, device: Mapping[str, object]) -> Any:
+        """The frozen dataclass of the device as drawn, from the ``[device]`` table of a campaign."""
+
+    def with_tolerance(self, design: Any, tolerance: Tolerance, z: float) -> Any:
+        """The design with one toleranced input moved by z standard deviations."""
+
+    def respond(self, design: Any, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
+        """Response columns of one table of a kind at true conditions, SI."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A base model, a design and the effects that were added, in their order."""
+
+    base: BaseModel
+    design: Any
+    effects: tuple[Effect, ...] = ()
+
+    def __add__(self, effect: Effect) -> Model:
+        if any(have.name() == effect.name() for have in self.effects):
+            raise WorkbenchError(f"the model already has the effect {effect.name()}: remove it first")
+        if not effect.can_act_on(self.design):
+            raise WorkbenchError(f"{effect.name()} cannot act on a {type(self.design).__name__}")
+        return replace(self, effects=self.effects + (effect,))
+
+    def without(self, name: str) -> Model:
+        """The model without the effect of that name."""
+        if name not in [effect.name() for effect in self.effects]:
+            have = ", ".join(effect.name() for effect in self.effects) or "none"
+            raise WorkbenchError(f"the model has no effect {name}; it has {have}")
+        return replace(self, effects=tuple(effect for effect in self.effects if effect.name() != name))
+
+    def answers(self, table: Table) -> dict[str, np.ndarray]:
+        """What the instruments should have shown in the rows of a table: response columns, SI (n,)."""
+        kind, conditions = table.kind, dict(table.conditions)
+        for effect in self._of(InstrumentEffect):
+            conditions = dict(effect.on_condition(conditions, kind))
+        design = self.design_as_built
+        response = self.base.respond(design, kind, conditions)
+        for effect in self._of(ResponseEffect):
+            response = dict(effect.on_response(response, conditions, kind, design))
+        for effect in self._of(InstrumentEffect):
+            response = dict(effect.on_reading(response, {**conditions, "order": table.order}, kind))
+        return response
+
+    @property
+    def design_as_built(self) -> Any:
+        """The design after all effects that act on it."""
+        design = self.design
+        for effect in self._of(DesignEffect):
+            design = effect.on_design(design)
+        return design
+
+    def _of(self, kind: type) -> list:
+        return [effect for effect in self.effects if isinstance(effect, kind)]
