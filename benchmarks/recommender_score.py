@@ -27,9 +27,10 @@ from workbench.data.campaign import read_campaign
 from workbench.data.stack import rows_of
 from workbench.data.table import Campaign, Table
 from workbench.explain.diagnosis import Search, searched
-from workbench.explain.recommend import Option, gains_of
+from workbench.explain.recommend import gains_of
 from workbench.explain.verdict import Posterior, posterior
 from workbench.likelihood.bench import bench_of
+from workbench.models.base import Option
 from workbench.models.bases import nominal_model
 
 CATALOGUES = {"damper": DAMPER, "dq": DQ}

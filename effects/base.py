@@ -30,6 +30,8 @@ class Effect:
     designs: types of design it can act on; empty means any
     contains: effects that are special cases of this one, never combined with it
     model_error: declared relative error of the effect's own law
+    base_rate: how often a bench campaign of such a device has it, before anything is measured [1]
+    base_rate_source: why it is believed to be that
     """
 
     title: ClassVar[str]
@@ -38,6 +40,8 @@ class Effect:
     designs: ClassVar[tuple[type, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
     model_error: ClassVar[float] = 0.0
+    base_rate: ClassVar[float] = 0.02
+    base_rate_source: ClassVar[str] = "one of about fifty things that a campaign may hide, none of them likelier"
 
     @classmethod
     def name(cls) -> str:

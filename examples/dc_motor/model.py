@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.models import device
+from workbench.models.base import BaseModel
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class DcMotor:
     brush_drop: float = 0.0
 
 
-class DcMotorModel:
+class DcMotorModel(BaseModel):
     """u = u_b + R i + k omega,  k i = M + M_0; the only kind is ``generic``: voltage, torque -> current, speed."""
 
     name = "dc_motor"

@@ -9,7 +9,7 @@ outer product.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -25,6 +25,7 @@ from workbench.findings import NextMeasurement
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import with_parameters
 from workbench.likelihood.predictor import STEP, jacobian
+from workbench.models.base import Option
 
 CAP = 20.0  # nats; more certainty than this is worth nothing
 FLOOR = 0.02  # least weight of a hypothesis: what is unlikely now is not forgotten
@@ -32,21 +33,6 @@ LEADERS = 5  # effects that are weighed against one another
 POINTS = 12  # operating points of a recommended measurement
 LISTED = 6
 STRETCHES = (0.5, 2.0)  # factors on one condition that make a new measurement of an old kind
-
-
-@dataclass(frozen=True, eq=False)
-class Option:
-    """A measurement that could be made: rows to choose from.
-
-    conditions: SI (n,);  random: standard uncertainty of one reading of each response, SI (n,);  cost: of POINTS rows
-    """
-
-    kind: str
-    words: str
-    conditions: Mapping[str, np.ndarray]
-    random: Mapping[str, np.ndarray]
-    cost: float = 1.0
-    unknown: Mapping[str, np.ndarray] | None = None  # expected unknown function there, of random (n,) each
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,8 +213,7 @@ def options_of(bench: Bench, unknown: np.ndarray) -> list[Option]:
     """
     base, tables = bench.model.base, range(len(bench.fit.stack.tables))
     again = [option for number in tables for option in _options_of_table(bench, number, unknown)]
-    proposed = base.options(bench.model.design, bench.campaign) if hasattr(base, "options") else ()
-    return [*again, *proposed]
+    return [*again, *base.options(bench.model.design, bench.campaign)]
 
 
 def _options_of_table(bench: Bench, number: int, unknown: np.ndarray) -> list[Option]:

@@ -70,7 +70,7 @@ class Verdict:
 
 
 def posterior(evidences: Evidences) -> Posterior:
-    """Probabilities with the shares of ``workbench.explain.priors``; pairs that were not fitted keep their share out of the
+    """Probabilities with the shares of ``priors``; pairs that were not fitted keep their share out of the
     sum."""
     effects = max(len(evidences.singles), 1)
     pairs = max(effects * (effects - 1) // 2, 1)

@@ -97,7 +97,7 @@ def bench_of(
 def _far(fit: Problem, null: Fit) -> bool:
     """Whether something that is missing has pulled a tolerance so far that an expansion about there is of no use: with
     the effect in the model the device is near the drawing again."""
-    if not hasattr(fit.predictor.model.base, "recentred"):
+    if not fit.predictor.model.base.is_expansion:
         return False
     return bool(np.abs(null.x - fit.start).max(initial=0.0) > PULLED)
 
@@ -106,7 +106,7 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
     """The fit again with a base model that is exact where it ended, for base models that answer by an expansion."""
     for _ in range(SHARPENINGS):
         model = problem.predictor.model
-        if not hasattr(model.base, "recentred"):
+        if not model.base.is_expansion:
             break
         design = problem.predictor.model_at(fit.x, fit.at_maximum).design_as_built
         predictor = replace(problem.predictor, model=replace(model, base=model.base.recentred(design)))
@@ -121,10 +121,9 @@ def predictor_of(
     model: Model, campaign: Campaign, library: Mapping[str, type[Effect]], stack: Stack, progress=None
 ) -> DirectPredictor:
     """The predictor of a stack; a base model that can prepare itself for these rows does so."""
-    if hasattr(model.base, "prepared"):
-        model = replace(model, base=model.base.prepared(model.design, stack.tables, progress))
+    model = replace(model, base=model.base.prepared(model.design, stack.tables, progress))
     declared = columns_of_systematics(campaign.folder)
-    known = replace(campaign, tolerances=campaign.tolerances + getattr(model.base, "own_tolerances", ()))
+    known = replace(campaign, tolerances=campaign.tolerances + model.base.own_tolerances(model.design))
     return DirectPredictor(model, nuisances_of(known, library, declared), stack)
 
 
@@ -159,12 +158,10 @@ def _moved(table: Table, name: str, step: float) -> Table:
 
 def _with_numerical(white: Whitener, stack: Stack, model: Model) -> Whitener:
     """The whitener with the base model's own numerical uncertainty, where it states one."""
-    if not hasattr(model.base, "numerical"):
-        return white
     sigma = white.sigma.copy()
     for channel in stack.channels:
-        own = model.base.numerical(stack.tables[channel.table].kind).get(channel.response, 0.0)
-        sigma[channel.rows] = np.hypot(sigma[channel.rows], own)
+        for shape in model.base.numerical(model.design, stack.tables[channel.table]):
+            sigma[channel.rows] = np.hypot(sigma[channel.rows], shape.get(channel.response, 0.0))
     return replace(white, sigma=sigma)
 
 

@@ -1,35 +1,19 @@
 """A bench model: a base that answers for a design, and the effects it was given. A model is a value.
 
-``BaseModel`` is what a new kind of device has to provide; ``Model`` composes it with effects:
-    model + effect, model.without("end_leakage"), model.answers(table)
+model + effect, model.without("end_leakage"), model.answers(table)
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from effects.base import Columns, DesignEffect, Effect, InstrumentEffect, ResponseEffect
-from workbench.data.table import Table, Tolerance
+from effects.base import DesignEffect, Effect, InstrumentEffect, ResponseEffect
+from workbench.data.table import Table
 from workbench.errors import WorkbenchError
-
-
-class BaseModel(Protocol):
-    """What the workbench asks of a model of a device."""
-
-    name: str  # "damper", "dq", "machine"
-
-    def design(self, device: Mapping[str, object]) -> Any:
-        """The frozen dataclass of the device as drawn, from the ``[device]`` table of a campaign."""
-
-    def with_tolerance(self, design: Any, tolerance: Tolerance, z: float) -> Any:
-        """The design with one toleranced input moved by z standard deviations."""
-
-    def respond(self, design: Any, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
-        """Response columns of one table of a kind at true conditions, SI."""
+from workbench.models.base import BaseModel
 
 
 @dataclass(frozen=True)

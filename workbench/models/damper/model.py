@@ -24,6 +24,7 @@ from effects.damper_design import Damper
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models import device
+from workbench.models.base import BaseModel
 from workbench.models.damper.harmonic_balance import Drive, force_over_a_period, fundamental
 from workbench.models.damper.play import change_by_play
 from workbench.models.damper.steady_circuit import circuit_current, coupling_factor
@@ -36,7 +37,7 @@ _REQUIRED = ("force_constant", "internal_resistance", "moving_mass", "viscous_da
 _OPTIONAL = ("inductance", "mount_stiffness", "mount_damping", "mount_clearance", "test_velocity")
 
 
-class DamperModel:
+class DamperModel(BaseModel):
     """The base model of the damper bench; see the module for the kinds it answers."""
 
     name = "damper"

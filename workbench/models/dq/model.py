@@ -23,6 +23,7 @@ from effects.dq_design import DqMachine
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models import device
+from workbench.models.base import BaseModel
 
 PEAK_OF_LINE_RMS = sqrt(2.0 / 3.0)  # peak phase voltage of an RMS line-to-line voltage
 STEPS = 60  # of Newton's method; some six are needed
@@ -33,7 +34,7 @@ _REQUIRED = ("pole_pairs", "psi_m", "inductance_d", "inductance_q", "resistance"
 _OPTIONAL = ("reference_T", "copper_coefficient", "remanence_coefficient", "iron_conductance")
 
 
-class DqModel:
+class DqModel(BaseModel):
     """The base model of the dq bench; see the module for the kinds it answers."""
 
     name = "dq"

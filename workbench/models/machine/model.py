@@ -26,7 +26,7 @@ from materials.magnet import Magnet
 from units import DEGREE
 from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
-from workbench.explain.recommend import Option
+from workbench.models.base import BaseModel, Option
 from workbench.models.device import names, numbers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState
@@ -68,7 +68,7 @@ _PHASES = "abc"
 
 
 @dataclass(frozen=True, eq=False)
-class MachineBench:
+class MachineBench(BaseModel):
     """The bench model of a machine. ``prepared`` makes one that answers at once for the rows of some tables.
 
     plan: meshes;  cache: folder for field solutions, None for none
@@ -107,8 +107,7 @@ class MachineBench:
         step = tolerance.sigma * z * (abs(current) if tolerance.relative else 1.0)
         return _with_input(design, name, current + step)
 
-    @property
-    def own_tolerances(self) -> tuple[Tolerance, ...]:
+    def own_tolerances(self, design: MachineAsBuilt) -> tuple[Tolerance, ...]:
         """What is uncertain in the model itself, fitted as the tolerances of a campaign are."""
         source = "cogging of one mesh against finer ones and other codes"
         return (Tolerance("cogging_of_mesh", _COGGING_OF_MESH, relative=True, source=source),)
@@ -141,6 +140,10 @@ class MachineBench:
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
         return self.recentred(design).respond(design, kind, conditions)
 
+    @property
+    def is_expansion(self) -> bool:
+        return True
+
     def recentred(self, design: MachineAsBuilt) -> MachineBench:
         """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing."""
         return replace(self, surrogate=self.builder.about(self.about_drawing, design))
@@ -149,11 +152,12 @@ class MachineBench:
         """What could be measured next, see ``workbench.explain.recommend``."""
         return options(campaign.tables)
 
-    def numerical(self, kind: str) -> dict[str, float]:
-        """Standard uncertainty of the responses of a kind that the mesh leaves, SI."""
-        if self.surrogate is None or kind not in _NUMERICAL:
-            return {}
-        return self._scales.get(kind, {})
+    def numerical(self, design: MachineAsBuilt, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
+        """Standard uncertainty of the responses that the mesh leaves, SI."""
+        if self.surrogate is None or table.kind not in _NUMERICAL:
+            return ()
+        sizes = self._scales.get(table.kind, {})
+        return ({name: np.full(table.rows, size) for name, size in sizes.items()},)
 
     @cached_property
     def _scales(self) -> dict[str, dict[str, float]]:

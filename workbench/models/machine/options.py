@@ -13,7 +13,7 @@ import numpy as np
 from units import DEGREE, RPM
 from workbench.data.kinds import KINDS
 from workbench.data.table import Table
-from workbench.explain.recommend import Option
+from workbench.models.base import Option
 
 SPEEDS = np.array([50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 1500.0, 2000.0]) * RPM
 COGGING_STEP, EMF_STEP = 1.5 * DEGREE, 3.0 * DEGREE
