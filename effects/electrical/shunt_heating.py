@@ -12,11 +12,13 @@ from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power, Touches
 
+SUBSTITUTIONS = 6  # each leaves the share rise P of the error before
+
 
 @dataclass(frozen=True)
 class ShuntHeating(StateEffect):
-    """The shunt resistor is as warm as its loss in each row: R_s = R_s,cold (1 + rise P),  P = R_s,cold i^2 of the cold
-    circuit,  i = K v_rms / (R + R_s,cold).
+    """The shunt resistor is as warm as its loss in each row: R_s = R_s,cold (1 + rise P),  P = R_s i^2,
+    i = K v_rms / (R + R_s), by repeated substitution.
 
     Validity: rows last longer than the seconds that a resistor without heat sink needs; inductance is left out of i.
     """
@@ -46,9 +48,15 @@ class ShuntHeating(StateEffect):
     def on_state(self, conditions: Columns, kind: str, design: Damper) -> Columns:
         if "shunt" not in conditions or self.is_null:
             return conditions
-        shunt = conditions["shunt"]
-        current = design.force_constant * rms_velocity(conditions, design) / (design.internal_resistance + shunt)
-        return {**conditions, "shunt": shunt * (1.0 + self.rise * shunt * current**2)}
+        cold = warm = conditions["shunt"]
+        for _ in range(SUBSTITUTIONS):
+            warm = self.warmed(cold, warm, conditions, design)
+        return {**conditions, "shunt": warm}
+
+    def warmed(self, cold: np.ndarray, warm: np.ndarray, conditions: Columns, design: Damper) -> np.ndarray:
+        """Resistance of a shunt [ohm] that loses as much as one of resistance ``warm`` does."""
+        current = design.force_constant * rms_velocity(conditions, design) / (design.internal_resistance + warm)
+        return cold * (1.0 + self.rise * warm * current**2)
 
 
 def rms_velocity(conditions: Columns, design: Damper) -> np.ndarray | float:
