@@ -136,7 +136,9 @@ def read_model(path: str | Path, library: Mapping[str, type[Effect]]) -> Learned
         device=content.device,
         effects=_effects_of(content, library, path),
         inputs=tuple(FittedInput(Tolerance(x.name, x.sigma, x.relative, x.source), x.shift) for x in content.input),
-        calibrations=tuple(FittedCalibration(Systematic(c.name, c.kind, c.sigma), c.shift) for c in content.calibration),
+        calibrations=tuple(
+            FittedCalibration(Systematic(c.name, c.kind, c.sigma), c.shift) for c in content.calibration
+        ),
         source=_source_of(content.learned, content.device, path),
     )
     if learned.source is None:
@@ -195,7 +197,9 @@ def _source_of(section: LearnedSection | None, device: Mapping[str, object], pat
             f"{path}: [device] is not the one that the numbers were learned with; take the file as it was written."
         )
     ranges = tuple(
-        LearnedRange(r.kind, r.response, r.rows, r.chi2_per_n, {k: (low, high) for k, (low, high) in r.conditions.items()})
+        LearnedRange(
+            r.kind, r.response, r.rows, r.chi2_per_n, {k: (low, high) for k, (low, high) in r.conditions.items()}
+        )
         for r in section.range
     )
     return Source(section.campaign, section.device_sha256, section.data_sha256, ranges)
@@ -208,7 +212,9 @@ def _covariance_of(section: CovarianceSection | None, names: tuple[str, ...], pa
     if section is None:
         raise WorkbenchError(f"{path}: [covariance] is missing, so that the numbers have no uncertainty.")
     if tuple(section.names) != names:
-        raise WorkbenchError(f"{path}: [covariance] names must be {', '.join(names)}; found {', '.join(section.names)}.")
+        raise WorkbenchError(
+            f"{path}: [covariance] names must be {', '.join(names)}; found {', '.join(section.names)}."
+        )
     if [len(row) for row in section.rows] != [len(names)] * len(names):
         raise WorkbenchError(f"{path}: [covariance] rows must be {len(names)} rows of {len(names)} numbers.")
     covariance = np.array(section.rows)
