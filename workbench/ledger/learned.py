@@ -14,9 +14,9 @@ from effects.parameter import Parameter, parameters_of
 from workbench.data.table import Systematic, Table, Tolerance
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.nuisance import TolerancedInput
+from workbench.likelihood.regions import SAME_SETTING, ZERO_CELSIUS
 
 TURN = 2 * np.pi
-SAME_SETTING = 0.02  # of the largest setting: a condition this little beyond the learned ones counts as set alike
 SLOPE_STEP = 1e-4  # of a standard normal number, for the slope of a parameter over it
 
 
@@ -169,9 +169,10 @@ def span(name: str, values: np.ndarray) -> tuple[float, float]:
 
 
 def outside(name: str, values: np.ndarray, learned: tuple[float, float]) -> np.ndarray:
-    """True where a condition leaves the learned range (n,)."""
+    """True where a condition leaves the learned range by more than two readings of one setting differ (n,)."""
     low, high = learned
-    slack = SAME_SETTING * max(abs(low), abs(high), high - low)
+    zero = ZERO_CELSIUS if name.endswith("_T") else 0.0
+    slack = SAME_SETTING * max(abs(low + zero), abs(high + zero), high - low)
     if is_angle(name):
         beyond = np.mod(values - low + slack, TURN)
         return beyond > high - low + 2 * slack
