@@ -22,7 +22,7 @@ import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.data.stack import Stack, rows_of, stacked
+from workbench.data.stack import Channel, Stack, rows_of, stacked
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedInput, Learned
@@ -113,18 +113,49 @@ class Prediction:
     whitened: np.ndarray
     calibration: np.ndarray
 
+    def on(self, stack: Stack, kept: np.ndarray) -> Prediction:
+        """The same for a stack of which only some rows were predicted (n,)."""
+        reading, sd, whitened = (_filled(kept, values) for values in (self.reading, self.sd, self.whitened))
+        return Prediction(stack, reading, sd, whitened, self.calibration)
+
 
 def predicted(known: Known, calibrations: Sequence[Nuisance], tables: Sequence[Table]) -> Prediction:
     """What a known device should show in some tables, the instruments' own calibration found from them."""
-    stack, asked = stacked(tables), _Asked(known, tuple(calibrations))
-    c = np.zeros(len(calibrations))
-    around = asked.around(stack, c)
+    asked, c = _Asked(known, tuple(calibrations)), np.zeros(len(calibrations))
+    stack = stacked(tables)
+    masks = _whole_rows(stack, np.isfinite(readings(asked.model_at(np.zeros(known.size), c), stack)))
+    part = _part(stack, masks)
+    around = asked.around(part, c)
     for _ in range(ROUNDS):
         c, before = around.calibrated(c), c
-        around = asked.around(stack, c)
+        around = asked.around(part, c)
         if np.abs(c - before).max(initial=0.0) < SETTLED:
             break
-    return around.prediction(c)
+    return around.prediction(c).on(stack, _kept(stack, masks))
+
+
+def _whole_rows(stack: Stack, answered: np.ndarray) -> list[np.ndarray]:
+    """Mask of the rows of each table in which all channels have an answer."""
+    masks = [np.ones(table.rows, dtype=bool) for table in stack.tables]
+    for channel in stack.channels:
+        masks[channel.table] &= answered[channel.rows]
+    return masks
+
+
+def _kept(stack: Stack, masks: Sequence[np.ndarray]) -> np.ndarray:
+    """The masks of tables for the rows of the stack (n,)."""
+    return np.concatenate([masks[c.table] for c in stack.channels])
+
+
+def _part(stack: Stack, masks: Sequence[np.ndarray]) -> Stack:
+    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, masks)])
+    return replace(part, u=stack.u[_kept(stack, masks)])
+
+
+def _filled(kept: np.ndarray, values: np.ndarray) -> np.ndarray:
+    whole = np.full(len(kept), np.nan)
+    whole[kept] = values
+    return whole
 
 
 @dataclass(frozen=True)
@@ -170,22 +201,17 @@ class _Around:
         return np.isfinite(self.base) & np.isfinite(self.columns).all(axis=1) & np.isfinite(self.stack.u)
 
     @cached_property
-    def part(self) -> Stack:
-        """The rows with an answer; a row of a table counts when all its channels have one."""
-        return _part(self.stack, self.rows)
-
-    @cached_property
     def rows(self) -> list[np.ndarray]:
-        """Mask of the rows of each table."""
-        masks = [np.ones(table.rows, dtype=bool) for table in self.stack.tables]
-        for channel in self.stack.channels:
-            masks[channel.table] &= self.answered[channel.rows]
-        return masks
+        """Mask of the rows of each table that are used."""
+        return _whole_rows(self.stack, self.answered)
 
     @cached_property
     def kept(self) -> np.ndarray:
-        """The same for rows of the stack (n,)."""
-        return np.concatenate([self.rows[c.table] for c in self.stack.channels])
+        return _kept(self.stack, self.rows)
+
+    @cached_property
+    def part(self) -> Stack:
+        return _part(self.stack, self.rows)
 
     @cached_property
     def white(self) -> Whitener:
@@ -217,21 +243,8 @@ class _Around:
         taken_up = self.posterior @ self.white(over_c).T @ self.white(over_p)
         left = over_p - over_c @ taken_up
         variance = (left**2).sum(axis=1) + ((over_c @ self.posterior) * over_c).sum(axis=1) + self.white.sigma**2
-        filled = lambda values: _filled(self.kept, values)  # noqa: E731
-        reading, sd, whitened = self.base[self.kept], np.sqrt(variance), self.white(self.residual)
-        return Prediction(self.stack, filled(reading), filled(sd), filled(whitened), c)
-
-
-def _filled(mask: np.ndarray, values: np.ndarray) -> np.ndarray:
-    whole = np.full(len(mask), np.nan)
-    whole[mask] = values
-    return whole
-
-
-def _part(stack: Stack, masks: Sequence[np.ndarray]) -> Stack:
-    keep = np.concatenate([masks[c.table] for c in stack.channels])
-    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, masks)])
-    return replace(part, u=stack.u[keep])
+        whole = Prediction(self.part, self.base[self.kept], np.sqrt(variance), self.white(self.residual), c)
+        return whole.on(self.stack, self.kept)
 
 
 def _root(covariance: np.ndarray) -> np.ndarray:
@@ -279,13 +292,20 @@ def _answers(model: Model, table: Table) -> Mapping[str, np.ndarray]:
 def _with_conditions(model: Model, stack: Stack, base: np.ndarray) -> np.ndarray:
     """u of every row with the uncertainty of its conditions, through the slope of this model (n,)."""
     variance = stack.u**2
-    for channel in stack.channels:
-        table = stack.tables[channel.table]
-        for name, u in table.condition_random.items():
+    for number, table in enumerate(stack.tables):
+        channels = [c for c in stack.channels if c.table == number and c.size]
+        for name, u in table.condition_random.items() if channels else ():
+            at = lambda h: _stacked_answers(model, _moved(table, name, h), channels)  # noqa: B023, E731
             step = CONDITION_STEP * (np.ptp(table.conditions[name]) or 1.0)
-            at = lambda h: _answers(model, _moved(table, name, h))[channel.response]  # noqa: B023, E731
-            variance[channel.rows] += (_slope(at, base[channel.rows], 1.0, step) * u) ** 2
+            slopes = _slope(at, np.concatenate([base[c.rows] for c in channels]), 1.0, step)
+            for channel, slope in zip(channels, np.split(slopes, len(channels))):
+                variance[channel.rows] += (slope * u) ** 2
     return np.sqrt(variance)
+
+
+def _stacked_answers(model: Model, table: Table, channels: Sequence[Channel]) -> np.ndarray:
+    answers = _answers(model, table)
+    return np.concatenate([answers[c.response] for c in channels])
 
 
 def _moved(table: Table, name: str, step: float) -> Table:
