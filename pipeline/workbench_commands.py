@@ -21,7 +21,7 @@ from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Validation
-from workbench.ledger.model_file import NAME, read_model, with_effects_of
+from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
 from workbench.ledger.validate import validate
 from workbench.ledger.walk import add_effect, skeleton_for, walk
@@ -158,9 +158,19 @@ def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
-        model = with_effects_of(saved, model, effects)
+        learned = read_model(saved, effects)
+        model = with_effects(learned, model, saved)
+        if learned.source is not None and learned.source.campaign != campaign.id:
+            print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)
     out.mkdir(parents=True, exist_ok=True)
     return campaign, effects, model, out
+
+
+def _from_elsewhere(source: str, here: str) -> str:
+    return (
+        f"learned from {source}; its effects are the start, the inputs are fitted to {here} anew. "
+        "`airgap validate` applies it as it is."
+    )
 
 
 def _compare(options: argparse.Namespace) -> None:

@@ -152,7 +152,15 @@ def with_effects_of(path: str | Path, nominal: Model, library: Mapping[str, type
     Raises:
         WorkbenchError: as ``read_model``, or another base model.
     """
-    learned = read_model(path, library)
+    return with_effects(read_model(path, library), nominal, path)
+
+
+def with_effects(learned: Learned, nominal: Model, path: str | Path) -> Model:
+    """The nominal model with what was learned about effects. path: of the file, for its sentence
+
+    Raises:
+        WorkbenchError: another base model.
+    """
     if learned.base != nominal.base.name:
         raise WorkbenchError(f"{path}: is of base model {learned.base!r}, the campaign needs {nominal.base.name!r}.")
     model = nominal
