@@ -380,3 +380,71 @@ class Ledger:
     steps: tuple[LedgerStep, ...]
     goal: float = 1.2
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ValidatedChannel:
+    """How well one channel of new data was predicted, without anything of the device being fitted to them.
+
+    n: rows;  rms_error, bias: reading minus prediction [unit], of the rows with a prediction
+    chi2_per_n: squared residual over the noise of the readings, 1 for a model without error
+    share_in_90: share of all rows inside the predicted 90 % band;  outside_range: share of rows at conditions beyond
+    those that the model was learned at;  no_answer: rows where the model has no steady state, outside every band
+    outside_*: of the rows beyond the learned conditions, None where there are none
+    """
+
+    channel: str
+    unit: str
+    n: int
+    rms_error: float
+    bias: float
+    chi2_per_n: float
+    share_in_90: float
+    outside_range: float
+    no_answer: int = 0
+    outside_rms_error: float | None = None
+    outside_chi2_per_n: float | None = None
+    outside_share_in_90: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedChannel:
+    """Readings of a channel and what two models predict for them [unit] (n,); NaN where one has no steady state.
+
+    *_half: half width of the predicted 90 % band;  outside: rows beyond the learned conditions
+    """
+
+    channel: str
+    unit: str
+    axis: Axis
+    x: np.ndarray
+    series: tuple[str, ...]
+    measured: np.ndarray
+    corrected: np.ndarray
+    corrected_half: np.ndarray
+    base: np.ndarray
+    base_half: np.ndarray
+    outside: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """A model file applied to a campaign that it was not learned from.
+
+    campaign: of the new data;  learned_from: campaign of the model file
+    corrected, base: with what the file knows, and the device as drawn
+    calibrations: of the new instruments, found with the corrected model;  range_left: one sentence for each condition
+    complaints: what limits the conclusions
+    """
+
+    campaign: str
+    model: str
+    learned_from: str
+    effects: tuple[str, ...]
+    corrected: tuple[ValidatedChannel, ...]
+    base: tuple[ValidatedChannel, ...]
+    predictions: tuple[PredictedChannel, ...]
+    calibrations: tuple[Pull, ...]
+    range_left: tuple[str, ...]
+    complaints: tuple[str, ...]
+    provenance: Mapping[str, str]

@@ -40,6 +40,8 @@ class Model:
 
     def answers(self, table: Table) -> dict[str, np.ndarray]:
         """What the instruments should have shown in the rows of a table: response columns, SI (n,)."""
+        if not table.rows:  # all of its rows are held out, or none are
+            return {name: response.values for name, response in table.responses.items()}
         kind, conditions = table.kind, dict(table.conditions)
         for effect in self._of(InstrumentEffect):
             conditions = dict(effect.on_condition(conditions, kind))
