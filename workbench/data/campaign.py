@@ -36,7 +36,7 @@ from workbench.data.schema import (
     holdout_rule,
 )  # fmt: skip
 from workbench.data.suspicions import FEW_ROWS, suspicions
-from workbench.data.table import OPEN_CIRCUIT, Campaign, Response, Systematic, Table, Tolerance
+from workbench.data.table import OPEN_CIRCUIT, Campaign, Conditions, Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
 
 __all__ = [
@@ -261,7 +261,7 @@ class _WholeTable:
         return Table(
             self.entry.kind,
             self.name,
-            conditions,
+            Conditions(conditions, self.name),
             {c.name: self._response(c, rows) for c in self.of_role("response") if c.name in names},
             (self.repeat if scan is None else scan)[rows],
             self.repeat[rows],

@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from workbench.errors import WorkbenchError
+
 OPEN_CIRCUIT = 1e6  # ohm; a shunt of this size is an open circuit
 
 
@@ -26,6 +28,18 @@ class Response:
     unit: str
     scale: float = 1.0
     bandwidth: float | None = None
+
+
+class Conditions(dict[str, np.ndarray]):
+    """Conditions of a table by name; one that a model asks for and the table has not is one sentence."""
+
+    def __init__(self, columns: Mapping[str, np.ndarray], table: str):
+        super().__init__(columns)
+        self.table = table
+
+    def __missing__(self, name: str) -> np.ndarray:
+        known = ", ".join(self) or "none"
+        raise WorkbenchError(f"{self.table}: the model needs the condition {name!r}, the table has {known}; add it.")
 
 
 @dataclass(frozen=True, eq=False)
