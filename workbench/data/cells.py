@@ -73,12 +73,12 @@ def values_of(cells: Sequence[str], decimal: str, where: str, lines: Sequence[in
 
 
 def _quick(cells: Sequence[str], decimal: str) -> np.ndarray | None:
-    """Plain numbers without thousands; None where a cell is anything else."""
-    text = "".join(cells)
+    """Plain numbers without thousands, and gaps; None where a cell is anything else."""
+    text = "".join([cell for cell in cells if cell not in GAPS])
     if not set(text) <= _PLAIN or (decimal == "," and "." in text) or (decimal == "." and "," in text):
         return None
     try:
-        return readings(np.array([float(cell.replace(",", ".")) for cell in cells]))
+        return readings(np.array([np.nan if c in GAPS else float(c.replace(",", ".")) for c in cells]))
     except ValueError:
         return None
 

@@ -256,11 +256,13 @@ def _rows(content: Sequence[str], first: int, delimiter: str, where: str) -> lis
 
 
 def _first_data(rows: Sequence[Row]) -> int:
-    """The first row that holds numbers and hardly anything else; the second row where none does."""
+    """The first row that is not far narrower than most and says numbers for the better part; the second where none is."""
+    usual = Counter(len(cells) for _, cells in rows).most_common(1)[0][0]
     for number, (_, cells) in enumerate(rows):
-        held = [cell.strip() for cell in cells]
-        numbers = sum(looks_like_data(cell) for cell in held)
-        if numbers and numbers + sum(cell.lower() in GAPS for cell in held) >= 0.5 * len(held):
+        said = [cell.strip() for cell in cells if cell.strip()]
+        numbers = sum(looks_like_data(cell) for cell in said)
+        fitting = numbers + sum(cell.lower() in GAPS for cell in said)
+        if numbers and fitting > 0.5 * len(said) and 2 * len(cells) > usual:
             return number
     return min(1, len(rows))
 
@@ -275,7 +277,7 @@ def _heading_rows(
     if not above:
         return _commented_names(lines, delimiter, where), []
     last = [_one_line(cell) for cell in above[-1][1]]
-    if len(above) > 1 and _are_units(last) and len(above[-2][1]) > 0.5 * len(last):
+    if len(above) > 1 and _are_units(last) and _said(above[-2][1]) >= _said(last):
         return [_one_line(cell) for cell in above[-2][1]], last
     return last, []
 
@@ -291,10 +293,14 @@ def _one_line(cell: str) -> str:
     return " ".join(cell.split())
 
 
+def _said(cells: Sequence[str]) -> int:
+    return sum(bool(cell.strip()) for cell in cells)
+
+
 def _are_units(cells: Sequence[str]) -> bool:
-    """Whether every cell that says something is a unit, bare or in brackets."""
+    """Whether most of what the cells say are units, bare or in brackets."""
     said = [cell for cell in cells if cell]
-    return bool(said) and all(_bare_unit(cell) is not None for cell in said)
+    return 2 * sum(_bare_unit(cell) is not None for cell in said) > len(said)
 
 
 def _bare_unit(cell: str) -> str | None:

@@ -16,8 +16,8 @@ def names(table: Mapping[str, object]) -> dict[str, str]:
     return {split_unit(key)[0]: key for key in table}
 
 
-# No input of a machine or a damper is larger or smaller than these in SI units, zero apart: such a number is a slip, and
-# what is worked out from it would overflow.
+# No input of a machine or a damper is larger or smaller than these in SI units, zero apart: such a number is a slip,
+# and what is worked out from it would overflow.
 LARGEST, SMALLEST = 1e12, 1e-15
 
 
@@ -73,8 +73,8 @@ def _number(key: str, value: object) -> float:
     found = value * (factor(unit, f"[device] {key}") if unit else 1.0) if abs(value) < 1e300 else value
     if not abs(found) <= LARGEST:
         raise WorkbenchError(
-            f"[device] {key} = {_short(value)} is not finite or larger than any such input: correct it, or leave the key "
-            "out where the model can do without"
+            f"[device] {key} = {_short(value)} is not finite or larger than any such input: correct it, or leave the "
+            "key out where the model can do without"
         )
     if 0 < abs(found) < SMALLEST:
         raise WorkbenchError(f"[device] {key} = {_short(value)} is smaller than any such input: correct campaign.toml")
