@@ -193,18 +193,20 @@ class _WholeTable:
         lost = readings - len(given) * int(whole.sum())
         groups = {whole.tobytes(): (list(given), whole)} if lost <= SPARSE * readings else _alike(given)
         if not whole.all() and len(groups) == 1:
-            complaints.append(f"{self.name}: {self._counted(~whole)} have a gap or no number and are left out")
+            number, first = self._counted(~whole)
+            complaints.append(f"{self.name}: {number} have a gap or no number (first in {first}) and are left out")
         if len(groups) > 1:
             complaints += [self._apart(names, rows) for names, rows in groups.values() if not rows.all()]
         return list(groups.values())
 
-    def _counted(self, gaps: np.ndarray) -> str:
-        first = self.raw.lines[int(np.flatnonzero(gaps)[0])]
-        return f"{int(gaps.sum())} of {len(gaps)} rows (first in line {first})"
+    def _counted(self, gaps: np.ndarray) -> tuple[str, str]:
+        """("3 of 40 rows", "line 7")."""
+        return f"{int(gaps.sum())} of {len(gaps)} rows", f"line {self.raw.lines[int(np.flatnonzero(gaps)[0])]}"
 
     def _apart(self, names: Sequence[str], rows: np.ndarray) -> str:
         what = f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'}"
-        return f"{self.name}: {what} no reading in {self._counted(~rows)}; the other responses keep those rows"
+        number, first = self._counted(~rows)
+        return f"{self.name}: {what} no reading in {number} (first in {first}); the other responses keep those rows"
 
     def _require_rows(self, given: Mapping[str, np.ndarray]) -> None:
         missing = [name for name, mask in given.items() if not mask.any()]

@@ -256,15 +256,23 @@ def _rows(content: Sequence[str], first: int, delimiter: str, where: str) -> lis
 
 
 def _first_data(rows: Sequence[Row]) -> int:
-    """The first row that is not far narrower than most and says numbers for the better part; the second where none is."""
+    """The first row, not far narrower than most, that says numbers for the better part; the second where none is.
+
+    Half a row of numbers will do where the next row is alike: a title such as ``date; 2026-01-31`` stands alone.
+    """
     usual = Counter(len(cells) for _, cells in rows).most_common(1)[0][0]
-    for number, (_, cells) in enumerate(rows):
-        said = [cell.strip() for cell in cells if cell.strip()]
-        numbers = sum(looks_like_data(cell) for cell in said)
-        fitting = numbers + sum(cell.lower() in GAPS for cell in said)
-        if numbers and fitting > 0.5 * len(said) and 2 * len(cells) > usual:
+    shares = [_share_of_numbers(cells) if 2 * len(cells) > usual else 0.0 for _, cells in rows]
+    for number, (share, after) in enumerate(zip(shares, [*shares[1:], 0.0])):
+        if share > 0.5 or (share == 0.5 and after >= 0.5):
             return number
     return min(1, len(rows))
+
+
+def _share_of_numbers(cells: Sequence[str]) -> float:
+    """Numbers, times and gaps among what the cells say; none without a number."""
+    said = [cell.strip() for cell in cells if cell.strip()]
+    numbers = sum(looks_like_data(cell) for cell in said)
+    return (numbers + sum(cell.lower() in GAPS for cell in said)) / len(said) if numbers else 0.0
 
 
 def _heading_rows(

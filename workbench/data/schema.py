@@ -190,8 +190,8 @@ class SystematicEntry(Section):
 class CampaignFile(Section):
     """The whole file."""
 
-    campaign: CampaignSection
-    table: Annotated[list[TableEntry], Field(min_length=1)]
+    campaign: CampaignSection = Field(description="what the campaign is")
+    table: Annotated[list[TableEntry], Field(min_length=1)] = Field(description="files of measurements, [[table]] each")
     device: dict[str, Any] = Field({}, description="the device as drawn: keys of the model that answers for it")
     tolerance: dict[str, ToleranceEntry] = Field({}, description="inputs of the model that are uncertain")
     systematic: dict[str, SystematicEntry] = Field({}, description="errors shared by all rows of an instrument")
