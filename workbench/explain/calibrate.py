@@ -3,6 +3,7 @@ tolerances, effects, unknown functions and noise drawn, linear around the fit wi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
@@ -18,12 +19,13 @@ from workbench.likelihood.bench import Bench
 from workbench.likelihood.marginal import Readings
 from workbench.likelihood.noise import drawn_noise
 from workbench.likelihood.signatures import Signatures
-from workbench.likelihood.unknown import SIZES, Shape, seen
+from workbench.likelihood.unknown import SIZES, Beside, Shape, seen
 
-EMPTY, HIDDEN = 150, 100  # simulated campaigns that hide nothing, and that hide something
+EMPTY, HIDDEN = 100, 60  # simulated campaigns that hide nothing, and that hide something
 POWER_SIZES = (3.0, 10.0)  # of unknown functions [rms over the uncertainty of a reading]
 NORMAL_90 = 1.2816  # one-sided 90 % of a standard normal
 FALSE_NAMES = 1.0 - 0.97  # wanted share of simulated campaigns in which a name that is printed is false
+_LEADERS = (1, 3)  # sets that are looked at with one effect more
 EFFECTS_ALONE, EFFECTS_IN_PAIRS = 0.5, 0.25  # of the campaigns that hide something; an unknown function in the rest
 
 
@@ -106,29 +108,27 @@ class Simulator:
         readings = self.names.catalogue.readings(residuals)
         return [Simulated(r, residuals[:, k], *t) for k, (r, t) in enumerate(zip(readings, truths))]
 
-    def posterior(self, campaign: Simulated) -> Posterior:
-        """Of one campaign: sets of up to two effects, and unknown functions beside nothing and the leading set."""
-        sets = explored(self.names, campaign.readings, self.beliefs, most=2)
-        leader = max(sets, key=lambda n: sets[n].gain + self.beliefs.log_prior(n))
-        beside = {}
-        for names in {frozenset[str](), leader}:
-            gain = self._unknown(names, sets[names].terms, campaign)
-            if gain is not None:
-                beside[names] = sets[names].gain + gain
-        return posterior({n: e.gain for n, e in sets.items()}, beside, self.beliefs)
+    @cached_property
+    def _beside_nothing(self) -> Beside:
+        return Beside(self.shapes, self.bench.centre.jacobian)
 
-    def _unknown(self, names: frozenset[str], terms: tuple[int, ...], campaign: Simulated) -> float | None:
-        chosen = [self.names.catalogue.terms[t] for t in terms]
-        background = np.hstack([self.bench.centre.jacobian, *(term.columns for term in chosen)])
-        residual = campaign.residual - sum(term.shift for term in chosen)
-        found = seen(self.shapes, background, residual)
-        return float(np.logaddexp.reduce([s.log_evidence for s in found])) if found else None
+    def posteriors(self, campaigns: Sequence[Simulated], most: int) -> list[Posterior]:
+        """Of campaigns: sets of up to so many effects, and unknown functions beside nothing."""
+        first = self.names.catalogue.first_gains([c.readings for c in campaigns])
+        unknown = self._beside_nothing.log_evidences(np.column_stack([c.residual for c in campaigns]))
+        found = []
+        for k, campaign in enumerate(campaigns):
+            sets = explored(self.names, campaign.readings, self.beliefs, frozenset(), most, first[:, k], _LEADERS)
+            alone = {names: e.gain for names, e in sets.items()}
+            found.append(posterior(alone, {frozenset(): float(unknown[k])}, self.beliefs))
+        return found
 
 
 def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]:
     """What is said from which probability on, and the share of unknown functions of a size that would be noticed."""
-    quiet = min(LIKELY, _lowest([simulator.posterior(c).nothing for c in simulator.empty(EMPTY)], FALSE_ALARMS))
-    wrong = [_surest_false_name(simulator.posterior(c), c.truth) for c in simulator.hiding(HIDDEN)]
+    empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
+    quiet = min(LIKELY, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
+    wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
     sure = max(SURE, -_lowest([-p for p in wrong], FALSE_NAMES))
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}
     return Thresholds(sure, quiet, power[max(power)] >= LIKELY), power
@@ -145,7 +145,7 @@ def _surest_false_name(p: Posterior, truth: frozenset[str]) -> float:
 
 
 def _noticed(simulator: Simulator, size: float, quiet: float, sure: float) -> float:
-    found = [simulator.posterior(c) for c in simulator.unknown_of(size, HIDDEN // 2)]
+    found = simulator.posteriors(simulator.unknown_of(size, HIDDEN // 2), 2)
     return float(np.mean([p.nothing < quiet and _surest_false_name(p, frozenset()) < sure for p in found]))
 
 

@@ -213,7 +213,7 @@ def residual_signature(search: Search) -> dict[str, object]:
     cosine."""
     bench = search.bench
     found = search.beside.get(frozenset())
-    words = {"law": found.leading.shape.words()} if found is not None else {}
+    words = {"law": found.leading[0].shape.words()} if found is not None else {}
     return {**describe(bench, search.unknown), **words, "nearest": nearest(bench, search.signatures)}
 
 

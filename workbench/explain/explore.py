@@ -13,7 +13,7 @@ from scipy.special import logsumexp
 
 from effects.base import Effect
 from workbench.believed import MOST, UNKNOWN_RATE
-from workbench.likelihood.marginal import Catalogue, Given, Readings
+from workbench.likelihood.marginal import Catalogue, Readings
 
 LEADERS = (1, 8, 6, 4)  # sets of none, one, two and three effects that are looked at with one effect more
 
@@ -97,11 +97,11 @@ class Names:
     def priors(self) -> np.ndarray:
         return np.array([term.log_prior for term in self.catalogue.terms])
 
-    def extensions(self, given: Given) -> list[Extension]:
-        """Every effect beside an explanation."""
+    def extensions(self, gains: np.ndarray) -> list[Extension]:
+        """Every effect beside an explanation. gains: of all terms (terms,) [nats]"""
         if not self.order:
             return []
-        scores = given.gains() + self.priors
+        scores = gains + self.priors
         sums = np.logaddexp.reduceat(scores, self.starts)
         ends = [*self.starts[1:], len(scores)]
         best = [start + int(np.argmax(scores[start:end])) for start, end in zip(self.starts, ends)]
@@ -110,8 +110,19 @@ class Names:
 
     def _of_form(self, scores: np.ndarray, best: int) -> float:
         """ln p of the form of a term if it were the only one."""
-        mine = self.forms == self.forms[best]
-        return float(logsumexp(scores[mine]) - logsumexp(self.priors[mine]))
+        first, last = self.ranges[self.forms[best]]
+        return float(np.logaddexp.reduce(scores[first:last])) - self.of_forms[self.forms[best]]
+
+    @cached_property
+    def ranges(self) -> list[tuple[int, int]]:
+        """First and one past the last term of every form."""
+        edges = np.flatnonzero(np.diff(self.forms, prepend=-1, append=-1))
+        return [(int(a), int(b)) for a, b in zip(edges, edges[1:])]
+
+    @cached_property
+    def of_forms(self) -> list[float]:
+        """ln prior share of every form."""
+        return [float(np.logaddexp.reduce(self.priors[a:b])) for a, b in self.ranges]
 
     @cached_property
     def forms(self) -> np.ndarray:
@@ -122,20 +133,29 @@ class Names:
 
 
 def explored(
-    names: Names, readings: Readings, beliefs: Beliefs, already: frozenset[str] = frozenset(), most: int = MOST
+    names: Names,
+    readings: Readings,
+    beliefs: Beliefs,
+    already: frozenset[str] = frozenset(),
+    most: int = MOST,
+    first: np.ndarray | None = None,
+    beam: tuple[int, ...] = LEADERS,
 ) -> dict[frozenset[str], Explanation]:
     """Sets of effects that were looked at, those without any first.
 
     already: effects that the background has;  most: effects at once, those included
+    first: gains of all terms beside nothing, where they are known (terms,) [nats]
+    beam: sets of none, one, two ... effects that are looked at with one effect more
     """
     found = {frozenset[str](): Explanation(frozenset(), (), 0.0)}
     edge = [found[frozenset()]]
     for depth in range(most - len(already)):
-        leaders = sorted(edge, key=lambda e: -(e.gain + beliefs.log_prior(e.names)))[: LEADERS[depth]]
+        leaders = sorted(edge, key=lambda e: -(e.gain + beliefs.log_prior(e.names)))[: beam[depth]]
         edge = []
         for leader in leaders:
-            given = names.catalogue.given(leader.terms, readings)
-            for extension in names.extensions(given):
+            known = first is not None and not leader.terms
+            gains = first if known else names.catalogue.given(leader.terms, readings).gains()
+            for extension in names.extensions(gains):
                 if not beliefs.may_join(extension.name, leader.names | already):
                     continue
                 one_more = leader.names | {extension.name}
@@ -182,7 +202,15 @@ class Posterior:
 
     def of(self, name: str) -> float:
         """P(the effect is there)."""
-        return self.any_of(frozenset((name,)))
+        return self._each.get(name, 0.0)
+
+    @cached_property
+    def _each(self) -> dict[str, float]:
+        found: dict[str, float] = {}
+        for names, p in self.sets.items():
+            for name in names:
+                found[name] = found.get(name, 0.0) + p
+        return found
 
     def any_of(self, names: frozenset[str]) -> float:
         """P(at least one of the effects is there)."""
@@ -200,8 +228,7 @@ class Posterior:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """All effects, most probable first."""
-        every = sorted({name for names in self.sets for name in names})
-        return tuple(sorted(every, key=lambda name: -self.of(name)))
+        return tuple(sorted(sorted(self._each), key=lambda name: -self.of(name)))
 
 
 def posterior(

@@ -13,13 +13,14 @@ from scipy.special import logsumexp
 from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.findings import Estimate, SizePosterior
-from workbench.likelihood.bench import Bench, extrapolated, sharpened
+from workbench.likelihood.bench import Bench, sharpened
 from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, with_parameters
 from workbench.likelihood.noise import LawError, law_error
 from workbench.likelihood.unknown import Seen, Shape, expected, seen, smooth
 
 REACH = 4.0  # standard deviations to either side over which a posterior is integrated
 PLACES = 17
+ALSO = 0.5  # probability that an unknown law which shows in one group of channels shows in another one too
 LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
@@ -117,33 +118,68 @@ def exact(hypothesis: Hypothesis) -> Hypothesis:
 class Beside:
     """A hypothesis and an unknown function beside it.
 
-    log_evidence: ln p with every shape and size of it averaged over [nats];  leading: the most probable shape
-    function: its expected values on the leading shape's rows, SI (n_c,)
+    log_evidence: ln p with every shape and size of it averaged over [nats];  leading: the most probable shapes, the
+    first in the channels that need it most, one for each further group of channels that shows it too
+    functions: their expected values on the rows of each, SI
     """
 
     hypothesis: Hypothesis
     log_evidence: float
-    leading: Seen
-    function: np.ndarray
+    leading: tuple[Seen, ...]
+    functions: tuple[np.ndarray, ...]
+
+    def columns(self) -> np.ndarray:
+        """Whitened columns of the leading shapes (n, k)."""
+        return np.hstack([s.columns(self.hypothesis.problem.stack.size) for s in self.leading])
 
 
 def beside_unknown(hypothesis: Hypothesis, shapes: Sequence[Shape]) -> Beside | None:
-    """The hypothesis with an unknown function: the shape that suits best by linear algebra, then a fit with that one;
-    None where no shape can be seen in these rows.
+    """The hypothesis with an unknown function: the shapes that suit best by linear algebra, then a fit with these; None
+    where no shape can be seen in these rows.
 
-    ln Z = ln Z of the refit + ln of the share that this shape and size have of the sum over all
+    ln Z = ln Z of the refit + ln of the share that these shapes and sizes have of the sum over all
     """
     fit = hypothesis.fit
-    residual = extrapolated(fit)
-    found = seen(_rewhitened(shapes, hypothesis.problem), fit.jacobian, residual)
-    if not found:
+    residual = at_zero(hypothesis)
+    leading, share = _leading(_rewhitened(shapes, hypothesis.problem), fit.jacobian, residual)
+    if not leading:
         return None
-    leading = max(found, key=lambda s: s.log_evidence)
-    share = float(logsumexp([s.log_evidence for s in found]) - leading.gains.max())
     problem, log_det = _without_unknown(hypothesis.problem, leading)
     refit = fitted(problem, fit.effects, fit.x, fit.z)
     evidence = refit.log_evidence - log_det - hypothesis.log_det + share
-    return Beside(hypothesis, evidence, leading, expected(leading, fit.jacobian, residual))
+    functions, background = [], fit.jacobian
+    for s in leading:
+        others = [o.columns(len(residual)) for o in leading if o is not s]
+        functions.append(expected(s, np.hstack([background, *others]), residual))
+    return Beside(hypothesis, evidence, leading, tuple(functions))
+
+
+def at_zero(hypothesis: Hypothesis) -> np.ndarray:
+    """Whitened residual of a fit with its nuisances carried back to zero, its effects as they are (n,)."""
+    fit = hypothesis.fit
+    return fit.residual + fit.jacobian[:, : len(fit.x)] @ fit.x
+
+
+def _leading(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarray) -> tuple[tuple[Seen, ...], float]:
+    """The shapes that suit best, group of channels after group, and ln of their share of the sum over all [nats]."""
+    found = seen(shapes, background, residual)
+    if not found:
+        return (), 0.0
+    groups = len({s.channels for s in shapes})
+    chosen = [max(found, key=lambda s: s.log_evidence)]
+    share = float(logsumexp([s.log_evidence for s in found])) - float(chosen[0].gains.max())
+    while len(chosen) < groups:
+        background = np.hstack([background, chosen[-1].columns(len(residual))])
+        taken = {s.shape.channels for s in chosen}
+        found = seen([s for s in shapes if s.channels not in taken], background, residual)
+        best = max(found, key=lambda s: s.log_evidence)
+        of_group = [s.log_evidence for s in found if s.shape.channels == best.shape.channels]
+        gain = float(logsumexp(of_group)) + log(groups) + log(ALSO)
+        if gain <= 0:
+            break
+        chosen.append(best)
+        share += gain - float(best.gains.max())
+    return tuple(chosen), share
 
 
 def _rewhitened(shapes: Sequence[Shape], problem: Problem) -> list[Shape]:
@@ -157,11 +193,14 @@ def _spread(shape: Shape, problem: Problem) -> np.ndarray:
     return out
 
 
-def _without_unknown(problem: Problem, leading: Seen) -> tuple[Problem, float]:
-    """The problem with an unknown function of one shape and size integrated out, and half the ln determinant."""
-    white = problem.white(leading.size * _spread(leading.shape, problem))
-    channels = [c for c in problem.stack.channels if c.name in leading.shape.channels]
-    return _without_laws(problem, [law_error(c.rows, white[c.rows]) for c in channels])
+def _without_unknown(problem: Problem, leading: Sequence[Seen]) -> tuple[Problem, float]:
+    """The problem with unknown functions of some shapes and sizes integrated out, and half the ln determinant."""
+    laws = []
+    for s in leading:
+        white = problem.white(s.size * _spread(s.shape, problem))
+        channels = [c for c in problem.stack.channels if c.name in s.shape.channels]
+        laws += [law_error(c.rows, white[c.rows]) for c in channels]
+    return _without_laws(problem, laws)
 
 
 # ---- rows ------------------------------------------------------------------------------------------------------------

@@ -17,7 +17,15 @@ from effects.parameter import parameters_of
 from workbench.believed import MOST
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, beliefs_of, explored, posterior
-from workbench.explain.hypotheses import Beside, Hypothesis, beside_unknown, exact, fitted_from, null_of
+from workbench.explain.hypotheses import (
+    Beside,
+    Hypothesis,
+    at_zero,
+    beside_unknown,
+    exact,
+    fitted_from,
+    null_of,
+)
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import FAR, misfit
 from workbench.likelihood.marginal import Readings
@@ -26,7 +34,7 @@ from workbench.likelihood.unknown import Shape, shapes_of
 
 FITS = 40  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
-REACH = 8.0  # nats behind the best, beyond which a set has one part in 3000
+REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
 BESIDE = 4  # sets that are looked at beside an unknown function
@@ -54,7 +62,8 @@ class Promise:
         """Null effects, nuisances and parameters where a fit of it begins."""
         fit, m = self.parent.fit, len(self.parent.fit.x)
         weights = self.names.catalogue.given(self.found.terms, self.readings).weights
-        effects, z, place = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]], m + len(fit.z)
+        effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
+        place = self.names.catalogue.background.shape[1]
         for term in (self.names.catalogue.terms[t] for t in self.found.terms):
             signature = signatures.found[term.name][term.variant]
             count = len(parameters_of(signature.effect))
@@ -102,8 +111,8 @@ class Search:
         seen."""
         out = np.zeros(self.bench.fit.stack.size)
         found = self.beside.get(frozenset())
-        if found is not None:
-            out[found.leading.shape.rows] = found.function
+        for s, function in zip(found.leading, found.functions) if found is not None else ():
+            out[s.shape.rows] += function
         return out / self.bench.fit.white.sigma
 
     @property
@@ -191,12 +200,6 @@ def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None
         heappush(heap, Promise(-promised, _label(every), hypothesis, names, readings, found))
 
 
-def at_zero(hypothesis: Hypothesis) -> np.ndarray:
-    """Whitened residual of a fit with its nuisances carried back to zero, its effects as they are (n,)."""
-    fit = hypothesis.fit
-    return fit.residual + fit.jacobian[:, : len(fit.x)] @ fit.x
-
-
 def student_gain(hypothesis: Hypothesis, gain: float) -> float:
     """A Gaussian gain of ln p in the likelihood of the fits, taken from the channels that fit worst [nats]."""
     problem = hypothesis.problem
@@ -229,23 +232,39 @@ def _beside_unknown(search: Search, progress: Progress) -> None:
             search.beside[names] = found
     if not search.beside:
         return
-    _effects_beside(search, search.beside[frozenset()])
+    heap: list[Promise] = []
+    _effects_beside(search, search.beside[frozenset()], heap)
     leader = max(search.beside, key=lambda n: search.beside[n].log_evidence + search.beliefs.log_prior(n))
     if leader:
-        _effects_beside(search, search.beside[leader])
+        _effects_beside(search, search.beside[leader], heap)
+    for promise in [heappop(heap) for _ in range(min(BESIDE, len(heap)))]:
+        _fit_beside(search, promise)
 
 
-def _effects_beside(search: Search, beside: Beside) -> None:
-    """What one effect more would gain beside an unknown function; those within reach are fitted."""
+def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None:
+    """What one effect more would gain beside an unknown function."""
     hypothesis = beside.hypothesis
     have = hypothesis.names
     if len(have) == MOST:
         return
-    unknown = beside.leading.columns(hypothesis.problem.stack.size)
-    background = np.hstack([hypothesis.fit.jacobian, unknown])
+    background = np.hstack([hypothesis.fit.jacobian, beside.columns()])
     names = Names(search.signatures.catalogue(background, hypothesis.problem.white, have))
     readings = names.catalogue.readings(at_zero(hypothesis)[:, None])[0]
     for found in explored(names, readings, search.beliefs, have, len(have) + 1).values():
         every = have | found.names
         if found.names and every not in search.beside:
-            search.guessed_beside[every] = beside.log_evidence + search.forms.get(have, 0.0) + found.gain
+            gain = beside.log_evidence + search.forms.get(have, 0.0) + student_gain(hypothesis, found.gain)
+            search.guessed_beside[every] = max(gain, search.guessed_beside.get(every, -np.inf))
+            order = -(gain + search.beliefs.log_prior(every))
+            heappush(heap, Promise(order, _label(every), hypothesis, names, readings, found))
+
+
+def _fit_beside(search: Search, promise: Promise) -> None:
+    """A set beside an unknown function, fitted where the set was not."""
+    every = promise.every
+    if every in search.beside or (every not in search.fitted and not _fit(search, promise)):
+        return
+    found = beside_unknown(search.fitted[every], search.shapes)
+    if found is not None:
+        search.beside[every] = found
+        search.guessed_beside.pop(every, None)

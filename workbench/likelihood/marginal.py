@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +74,16 @@ class Catalogue:
         squares = np.sum(residuals**2, axis=0)
         return [Readings(products[:, k], float(squares[k])) for k in range(residuals.shape[1])]
 
+    def first_gains(self, readings: Sequence[Readings]) -> np.ndarray:
+        """ln p that each term gains where nothing else is in the explanation, for many readings (terms, R) [nats]."""
+        bare = self.given((), readings[0])
+        on = np.column_stack([r.on for r in readings])
+        taken, own = bare.taken_of(on)
+        out = np.empty((len(self.terms), len(readings)))
+        for size, which in self.by_size.items():
+            out[which] = bare.gains_of(which, size, taken, on, own)
+        return out
+
     def given(self, chosen: Sequence[int], readings: Readings) -> Given:
         """The likelihood with the terms of these numbers in the explanation."""
         inside = [np.arange(self.background.shape[1])]
@@ -109,9 +118,16 @@ class Given:
 
     @cached_property
     def _taken(self) -> tuple[np.ndarray, np.ndarray]:
-        """What the columns inside take of every column (q, Q), and of the residual (q,)."""
-        taken = solve_triangular(self._root, self.catalogue.gram[self.inside], lower=True)
-        return taken, solve_triangular(self._root, self._left[self.inside], lower=True)
+        taken, own = self.taken_of(self._left[:, None])
+        return taken, own[:, 0]
+
+    def taken_of(self, on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the columns inside take of every column (q, Q), and of residuals (q, R).
+
+        on: products of all columns with the residuals (Q, R)
+        """
+        turned = np.linalg.inv(self._root)
+        return turned @ self.catalogue.gram[self.inside], turned @ on[self.inside]
 
     @property
     def log_marginal(self) -> float:
@@ -124,24 +140,23 @@ class Given:
     @property
     def weights(self) -> np.ndarray:
         """Expected weights of the columns inside, the background first (q,)."""
-        return solve_triangular(self._root, self._taken[1], lower=True, trans="T")
+        return np.linalg.solve(self._root.T, self._taken[1])
 
     def gains(self) -> np.ndarray:
         """ln p that each term of the catalogue would gain if it were added [nats] (terms,)."""
         out = np.empty(len(self.catalogue.terms))
+        taken, own = self._taken
         for size, which in self.catalogue.by_size.items():
-            out[which] = self._gains_of(which, size)
+            out[which] = self.gains_of(which, size, taken, self._left[:, None], own[:, None])[:, 0]
         return out
 
-    def _gains_of(self, which: np.ndarray, size: int) -> np.ndarray:
-        """Of terms with the same number of columns (t,)."""
+    def gains_of(self, which: np.ndarray, size: int, taken: np.ndarray, on: np.ndarray, own: np.ndarray) -> np.ndarray:
+        """Of terms with the same number of columns, for residuals as ``taken_of`` has them (t, R) [nats]."""
         places = self.catalogue.first[which][:, None] + np.arange(1 + size)
-        taken, own = self._taken
         beside = taken[:, places].transpose(1, 2, 0)  # (t, 1 + k, q)
         gram = self.catalogue.gram[places[:, :, None], places[:, None, :]] - beside @ beside.transpose(0, 2, 1)
-        on = self._left[places] - beside @ own
-        pull = on[:, 1:] - gram[:, 1:, 0]
+        left = on[places] - beside @ own  # (t, 1 + k, R)
         root = np.linalg.cholesky(np.eye(size) + gram[:, 1:, 1:])
-        moved = np.linalg.solve(root, pull[:, :, None])[:, :, 0]
+        moved = np.linalg.solve(root, left[:, 1:] - gram[:, 1:, :1])
         spread = np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
-        return on[:, 0] - 0.5 * gram[:, 0, 0] + 0.5 * np.sum(moved**2, axis=1) - spread
+        return left[:, 0] - 0.5 * gram[:, 0, :1] + 0.5 * np.sum(moved**2, axis=1) - spread[:, None]

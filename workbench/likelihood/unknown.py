@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import log
 
 import numpy as np
@@ -194,6 +195,41 @@ def _gains(shape: Shape, background: np.ndarray, residual: np.ndarray, root: np.
     pull = turn.T @ (x.T @ residual[shape.rows] - beside.T @ own)
     a2e = np.square(SIZES)[:, None] * np.maximum(energy, 0.0)
     return 0.5 * np.sum(np.square(SIZES)[:, None] * pull**2 / (1 + a2e) - np.log1p(a2e), axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Shapes beside one background, made ready for many residuals. background: (n, m)"""
+
+    shapes: tuple[Shape, ...]
+    background: np.ndarray
+
+    @cached_property
+    def _root(self) -> np.ndarray:
+        return np.linalg.cholesky(np.eye(self.background.shape[1]) + self.background.T @ self.background)
+
+    @cached_property
+    def _principal(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Of every shape: energies (k,), turned columns (n_c, k) and what the background takes of them (m, k)."""
+        found = []
+        for shape in self.shapes:
+            beside = np.linalg.solve(self._root, self.background[shape.rows].T @ shape.columns)
+            energy, turn = np.linalg.eigh(shape.columns.T @ shape.columns - beside.T @ beside)
+            keep = energy > 1e-9 * max(energy.max(initial=0.0), 1e-300)
+            found.append((energy[keep], shape.columns @ turn[:, keep], beside @ turn[:, keep]))
+        return found
+
+    def log_evidences(self, residuals: np.ndarray) -> np.ndarray:
+        """ln p gained by an unknown function, shapes and sizes averaged over, for residuals (n, R): (R,) [nats]."""
+        own = np.linalg.solve(self._root, self.background.T @ residuals)
+        found = []
+        for shape, (energy, turned, beside) in zip(self.shapes, self._principal):
+            square = (turned.T @ residuals[shape.rows] - beside.T @ own) ** 2
+            for size in SIZES:
+                a2e = size**2 * energy
+                gain = 0.5 * ((size**2 / (1 + a2e)) @ square - np.log1p(a2e).sum())
+                found.append(gain + shape.log_prior - log(len(SIZES)))
+        return logsumexp(found, axis=0)
 
 
 def expected(seen_: Seen, background: np.ndarray, residual: np.ndarray) -> np.ndarray:
