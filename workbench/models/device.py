@@ -55,6 +55,14 @@ def require_positive(values: Mapping[str, float], *fields: str) -> None:
             raise WorkbenchError(f"[device] {name} must be positive, found {values[name]:g}: correct campaign.toml")
 
 
+def require_whole(values: Mapping[str, float], *fields: str) -> None:
+    for name in fields:
+        if values[name] != round(values[name]):
+            raise WorkbenchError(
+                f"[device] {name} must be a whole number, found {values[name]:g}: correct campaign.toml"
+            )
+
+
 def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
     """The design with the toleranced field moved by z sigma; the tolerance names it with or without its unit."""
     name = tolerance.name if tolerance.name in fields else split_unit(tolerance.name)[0]

@@ -220,7 +220,7 @@ def repeated_rows(rows: Rows, random: np.random.Generator) -> None:
 def scaled_column(rows: Rows, random: np.random.Generator) -> None:
     k, factor = int(random.integers(len(rows[0]))), _pick(random, ["e30", "e300", "e-300", "e9", "e-9"])
     for row in rows[1:]:
-        row[k] = row[k] + factor if k < len(row) else ""
+        row[k : k + 1] = [cell + factor for cell in row[k : k + 1]]
 
 
 def flipped_bytes(data: bytes, random: np.random.Generator) -> bytes:
