@@ -87,7 +87,9 @@ def _number(key: str, value: object) -> float:
     if 0 < abs(found) < SMALLEST:
         raise WorkbenchError(f"[device] {key} = {_short(value)} is smaller than any such input: correct campaign.toml")
     if found < 0 and not name.endswith(MAY_BE_NEGATIVE):
-        raise WorkbenchError(f"[device] {key} must be zero or positive, found {_short(value)}: correct campaign.toml")
+        raise WorkbenchError(
+            f"[device] {name} must be a positive number or zero, found {_short(value)}: correct campaign.toml"
+        )
     return float(found)
 
 
