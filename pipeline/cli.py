@@ -38,7 +38,7 @@ COMMANDS = {
                        "what the library knows, one line each; a name shows its equation"),
     "new-effect": Command("pipeline.workbench_commands", "add_new_effect",
                           "a skeleton of one's own effect, from the residual of a campaign"),
-    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for a plain CSV file"),
+    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for plain data files"),
 }  # fmt: skip
 
 

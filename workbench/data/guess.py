@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from workbench.data.kinds import KINDS
+from workbench.data.kinds import KINDS, Kind
 from workbench.data.raw_table import Heading, RawTable
 
 _PLAIN: Final = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
@@ -124,18 +124,18 @@ def _base(unit: str) -> str:
 
 
 def likely_kind(quantities: Sequence[str]) -> str:
-    """The kind whose responses and axes cover most of the columns."""
-
-    def score(name: str) -> int:
-        kind = KINDS[name]
-        answers = sum(kind.is_response(q) for q in quantities)
-        return 3 * answers + sum(any(_like(q, axis) for axis in kind.axes) for q in quantities) if answers else -1
-
-    return max(KINDS, key=lambda name: (score(name), name == "generic"))
+    """The kind whose responses and axes cover most of the columns, and of equal ones the one that has least besides."""
+    return max(KINDS, key=lambda name: (_cover(KINDS[name], quantities), name == "generic"))
 
 
-def _like(quantity: str, axis: str) -> bool:
-    return quantity == axis or (axis.endswith("_?") and quantity[:-1] == axis[:-1])
+def _cover(kind: Kind, quantities: Sequence[str]) -> tuple[int, float]:
+    """Columns that are a response or an axis, and the shares of the kind's own responses and axes that are there."""
+    answers = [q for q in quantities if kind.is_response(q)]
+    asked = [q for q in quantities if any(fnmatch(q, axis) for axis in kind.axes)]
+    if not answers or not asked:
+        return 0, 0.0
+    used = [sum(any(fnmatch(q, p) for q in quantities) for p in patterns) for patterns in (kind.responses, kind.axes)]
+    return len({*answers, *asked}), used[0] / len(kind.responses) + used[1] / len(kind.axes)
 
 
 def likely_model(kinds: Sequence[str], quantities: Sequence[str]) -> str:

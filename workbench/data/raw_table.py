@@ -8,7 +8,7 @@ import re
 import warnings
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -155,34 +155,45 @@ def table_of_text(text: str, where: str, layout: Layout = Layout()) -> RawTable:
     """The table in a text, see ``read_raw``."""
     lines = text.split("\n")
     if lines[0].lower().startswith("sep=") and len(lines[0]) == 5:
-        layout, lines[0] = Layout(layout.delimiter or lines[0][4], layout.decimal, layout.encoding), ""
-    content = ["" if line.lstrip().startswith(COMMENTS) else line for line in lines]
+        layout, lines[0] = replace(layout, delimiter=layout.delimiter or lines[0][4]), ""
+    content = _without_comments(lines)
     delimiter = layout.delimiter or _delimiter(content)
     first, names, units = _head(lines, content, delimiter, where)
-    body = [(number, line) for number, line in enumerate(content[first - 1 :], first) if line and not line.isspace()]
-    if not body:
-        raise WorkbenchError(f"{where}: has no rows; at least one measured row is needed.")
-    decimal = layout.decimal or _decimal("\n".join(line for _, line in body), delimiter, where)
-    plain = _all_numbers([line for _, line in body], delimiter, decimal, len(names))
+    headings, body = tuple(map(_heading, names, units)), content[first - 1 :]
+    decimal = layout.decimal or _decimal(body, delimiter, where)
+    plain = _all_numbers(body, delimiter, decimal, len(names))
     if plain is not None:
-        headings = tuple(map(_heading, names, units))
-        return RawTable(where, headings, tuple(plain.T), [number for number, _ in body], decimal, delimiter)
+        return RawTable(where, headings, tuple(plain.T), range(first, first + len(body)), decimal, delimiter)
     rows, remarks = _same_width(len(names), _rows(content, first, delimiter, where), delimiter, where)
-    if not rows:
-        raise WorkbenchError(f"{where}: has no rows; at least one measured row is needed.")
     columns = tuple(zip(*(cells for _, cells in rows)))
-    headings = tuple(map(_heading, names, units))
     return RawTable(where, headings, columns, [line for line, _ in rows], decimal, delimiter, tuple(remarks))
+
+
+def _without_comments(lines: Sequence[str]) -> list[str]:
+    """The lines with comments blank, without blank ones at the end."""
+    text = "".join(lines)
+    if any(sign in text for sign in COMMENTS):
+        lines = ["" if line.lstrip().startswith(COMMENTS) else line for line in lines]
+    end = len(lines)
+    while end and not lines[end - 1].strip():
+        end -= 1
+    return list(lines[:end])
+
+
+def _no_rows(where: str) -> WorkbenchError:
+    return WorkbenchError(f"{where}: has no rows; at least one measured row is needed.")
 
 
 def _head(lines: Sequence[str], content: Sequence[str], delimiter: str, where: str) -> tuple[int, list[str], list[str]]:
     """Line of the first row of data, names and units of the columns."""
     rows = _rows(content[:LOOKED_AT], 1, delimiter, where)
     if not rows:
-        raise WorkbenchError(f"{where}: has no rows; at least one measured row is needed.")
+        raise _no_rows(where)
     start = _first_data(rows)
     _refuse_open_quotes(rows[start : start + 1], where)
-    first = rows[start][0] if start < len(rows) else rows[-1][0] + 1
+    if start == len(rows):
+        raise _no_rows(where)
+    first = rows[start][0]
     names, units = _heading_rows(rows[:start], lines[: first - 1], delimiter, where)
     return first, names, (units + [""] * len(names))[: len(names)]
 
@@ -211,8 +222,9 @@ def _all_numbers(lines: Sequence[str], delimiter: str, decimal: str, width: int)
     return readings(values).reshape(len(lines), width) if len(values) == len(lines) * width else None
 
 
-def _decimal(text: str, delimiter: str, where: str) -> str:
+def _decimal(body: Sequence[str], delimiter: str, where: str) -> str:
     """Where the comma is the delimiter a decimal comma can only stand within quotes."""
+    text = "\n".join(body)
     if delimiter == ",":
         text = "\n".join(re.findall(r'"([^"\n]*)"', text)) if '"' in text else ""
     return decimal_sign(text, where)

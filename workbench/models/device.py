@@ -55,6 +55,14 @@ def require_positive(values: Mapping[str, float], *fields: str) -> None:
             raise WorkbenchError(f"[device] {name} must be positive, found {values[name]:g}: correct campaign.toml")
 
 
+def require_whole(values: Mapping[str, float], *fields: str) -> None:
+    for name in fields:
+        if values[name] != round(values[name]):
+            raise WorkbenchError(
+                f"[device] {name} must be a whole number, found {values[name]:g}: correct campaign.toml"
+            )
+
+
 def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
     """The design with the toleranced field moved by z sigma; the tolerance names it with or without its unit."""
     name = tolerance.name if tolerance.name in fields else split_unit(tolerance.name)[0]
@@ -79,7 +87,9 @@ def _number(key: str, value: object) -> float:
     if 0 < abs(found) < SMALLEST:
         raise WorkbenchError(f"[device] {key} = {_short(value)} is smaller than any such input: correct campaign.toml")
     if found < 0 and not name.endswith(MAY_BE_NEGATIVE):
-        raise WorkbenchError(f"[device] {key} must not be negative, found {_short(value)}: correct campaign.toml")
+        raise WorkbenchError(
+            f"[device] {name} must be a positive number or zero, found {_short(value)}: correct campaign.toml"
+        )
     return float(found)
 
 

@@ -161,9 +161,13 @@ def renamed_key(content: Content, random: np.random.Generator) -> None:
 
 
 def swapped_values(content: Content, random: np.random.Generator) -> None:
-    a, b = (_pick(random, [p for p in places(content) if not isinstance(_at(content, p), (dict, list))]) for _ in "ab")
+    a, b = (_pick(random, [p for p in places(content) if _is_a_leaf(content, p)]) for _ in "ab")
     section_a, section_b = _at(content, a[:-1]), _at(content, b[:-1])
     section_a[a[-1]], section_b[b[-1]] = section_b[b[-1]], section_a[a[-1]]
+
+
+def _is_a_leaf(content: Content, path: tuple) -> bool:
+    return isinstance(path[-1], str) and not isinstance(_at(content, path), (dict, list))
 
 
 def repeated_table(content: Content, random: np.random.Generator) -> None:
@@ -216,7 +220,7 @@ def repeated_rows(rows: Rows, random: np.random.Generator) -> None:
 def scaled_column(rows: Rows, random: np.random.Generator) -> None:
     k, factor = int(random.integers(len(rows[0]))), _pick(random, ["e30", "e300", "e-300", "e9", "e-9"])
     for row in rows[1:]:
-        row[k] = row[k] + factor if k < len(row) else ""
+        row[k : k + 1] = [cell + factor for cell in row[k : k + 1]]
 
 
 def flipped_bytes(data: bytes, random: np.random.Generator) -> bytes:
