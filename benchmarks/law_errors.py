@@ -27,7 +27,7 @@ from effects.electrical.ac_winding_loss import SCALE, AcWindingLoss
 from effects.electrical.direct_saturation import DirectSaturation
 from effects.electrical.force_constant_over_stroke import ForceConstantOverStroke
 from effects.electrical.hysteresis_drag import HysteresisDrag
-from effects.electrical.shunt_heating import ShuntHeating
+from effects.electrical.shunt_heating import ShuntHeating, rms_velocity
 from effects.library import package_effects
 from effects.mechanical.viscosity_temperature import ViscosityTemperature
 from effects.parameter import parameters_of
@@ -212,10 +212,13 @@ class ShuntInBalance(ShuntHeating):
     """The balance found to the last digit."""
 
     def on_state(self, conditions, kind, design):
-        warm = dict(conditions)
-        for _ in range(40 if "shunt" in conditions else 0):
-            warm["shunt"] = 0.5 * (warm["shunt"] + self.warmed(conditions["shunt"], warm["shunt"], conditions, design))
-        return warm
+        if "shunt" not in conditions:
+            return conditions
+        warm, emf = conditions["shunt"], design.force_constant * rms_velocity(conditions)
+        for _ in range(40):
+            current = emf / (design.internal_resistance + warm)
+            warm = 0.5 * (warm + self.warmed(conditions["shunt"], warm, current))
+        return {**conditions, "shunt": warm}
 
 
 @dataclass(frozen=True)
