@@ -84,7 +84,9 @@ def test_a_kind_and_a_condition_that_were_not_learned_are_said(learned, tmp_path
     found = validate(learned, replace(campaign, tables=(new,)), LIBRARY, nominal=NOMINAL)
     assert "no table of kind force_loop was learned from, only generic" in found.range_left[0]
     assert "humidity" in found.range_left[1] and "did not have it" in found.range_left[1]
-    assert found.corrected[0].outside_range == 1.0
+    assert found.corrected[0].outside_range == 0.0, "the displacement is where it was learned"
+    same = validate(learned, replace(campaign, tables=(replace(new, kind="generic"),)), LIBRARY, nominal=NOMINAL)
+    assert same.corrected[0].outside_range == 1.0 and len(same.range_left) == 1
 
 
 def test_the_device_of_the_file_is_used_and_another_one_is_said(learned, tmp_path):
