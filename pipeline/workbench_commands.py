@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from disk import write_atomically
 from effects.base import Effect
 from effects.library import Library, effects_of_file, library
 from effects.parameter import parameters_of
@@ -86,8 +87,9 @@ def add_new_effect(parser: argparse.ArgumentParser) -> None:
 
 
 def add_import(parser: argparse.ArgumentParser) -> None:
-    """A ``campaign.toml`` for a plain CSV file."""
-    parser.add_argument("csv", help="CSV file, one column a quantity; it is only read")
+    """A ``campaign.toml`` for plain data files."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="CSV, text or Parquet files of one folder; only read")
+    parser.add_argument("--like", metavar="DIR", help="campaign of the same device: takes its device and instruments")
     parser.set_defaults(run=_import)
 
 
@@ -268,7 +270,10 @@ def _new_effect(options: argparse.Namespace) -> None:
 
 def _import(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
+        like = None if options.like is None else Path(options.like)
+        target, lines = write_draft([Path(file) for file in options.files], like)
+        todo = f'fill in the "?" of line {", ".join(map(str, lines))}' if lines else "read it once"
+        print(f"wrote {target}: {todo}, then airgap compare {target.parent}")
 
 
 @contextmanager
@@ -279,17 +284,21 @@ def _progress() -> Iterator[Callable[[str], None]]:
 
 
 def _write_comparison(out: Path, comparison: Comparison) -> None:
-    (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
-    write_comparison_report(out / "comparison.html", comparison)
+    _write_text(out / "comparison.json", comparison_json(comparison))
+    write_atomically(out / "comparison.html", lambda part: write_comparison_report(part, comparison))
 
 
 def _write_diagnosis(out: Path, diagnosis: Diagnosis) -> None:
-    (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
-    write_diagnosis_report(out / "diagnosis.html", diagnosis)
+    _write_text(out / "diagnosis.json", diagnosis_json(diagnosis))
+    write_atomically(out / "diagnosis.html", lambda part: write_diagnosis_report(part, diagnosis))
 
 
 def _write_ledger(out: Path, ledger: Ledger) -> None:
-    write_ledger_report(out / "ledger.html", ledger)
+    write_atomically(out / "ledger.html", lambda part: write_ledger_report(part, ledger))
+
+
+def _write_text(path: Path, text: str) -> None:
+    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def _print_comparison(c: Comparison, out: Path) -> None:

@@ -10,12 +10,14 @@ from workbench.errors import WorkbenchError
 
 @dataclass(frozen=True)
 class Kind:
-    """responses: patterns of response columns;  axes: patterns of its natural conditions;  cost: of measuring once
-    more"""
+    """responses: patterns of response columns;  axes: patterns of its natural conditions;  cost: of measuring once more
+    says: what was done and what the columns mean, for the manual
+    """
 
     responses: tuple[str, ...]
     axes: tuple[str, ...] = ()
     cost: float = 1.0
+    says: str = ""
 
     def is_response(self, column: str) -> bool:
         return any(fnmatch(column, pattern) for pattern in self.responses)
