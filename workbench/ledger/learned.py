@@ -77,7 +77,9 @@ class Learned:
     """All that a model file holds.
 
     base: name of the base model;  device: the ``[device]`` table, empty in files of before it was kept
-    names, covariance: of shifts of inputs, of calibrations and of parameters of effects, in this order, SI (k,), (k, k)
+    weights: of the shapes of the base model's own numerical error, standard normal numbers
+    names, covariance: of shifts of inputs, of calibrations, of parameters of effects and of weights, in this order, SI
+    (k,), (k, k)
     source: None in files of before inputs were kept, as is the covariance
     """
 
@@ -86,6 +88,7 @@ class Learned:
     effects: tuple[Effect, ...]
     inputs: tuple[FittedInput, ...] = ()
     calibrations: tuple[FittedCalibration, ...] = ()
+    weights: tuple[float, ...] = ()
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     source: Source | None = None
 
@@ -93,26 +96,40 @@ class Learned:
     def names(self) -> tuple[str, ...]:
         """Of the rows of the covariance."""
         parameters = (f"{e.name()}.{p}" for e in self.effects for p in parameters_of(e))
-        return tuple(x.name for x in (*self.inputs, *self.calibrations)) + tuple(parameters)
+        errors = (f"numerical_error_{k}" for k in range(len(self.weights)))
+        return (*(x.name for x in (*self.inputs, *self.calibrations)), *parameters, *errors)
 
 
 def learned_from(bench: Bench) -> Learned:
     """What the fit of a bench says about its device."""
+    predictor, fit, campaign = bench.fit.predictor, bench.null, bench.campaign
+    declared = list(zip(predictor.nuisances, map(float, fit.x)))
+    inputs = [FittedInput(n.tolerance, n.tolerance.sigma * z) for n, z in declared if isinstance(n, TolerancedInput)]
+    errors = [(n.systematic, z) for n, z in declared if not isinstance(n, TolerancedInput)]
+    return Learned(
+        base=bench.model.base.name,
+        device=dict(campaign.device),
+        effects=tuple(predictor.model_at(fit.x).effects[: len(predictor.model.effects)]),
+        inputs=tuple(inputs),
+        calibrations=tuple(FittedCalibration(systematic, systematic.sigma * z) for systematic, z in errors),
+        weights=tuple(map(float, fit.x[len(fit.x) - predictor.weights :])),
+        covariance=_covariance(bench),
+        source=Source(campaign.id, device_hash(campaign.device), dict(campaign.file_hashes), ranges_of(bench)),
+    )
+
+
+def _covariance(bench: Bench) -> np.ndarray:
+    """Of inputs, calibrations, parameters of effects and weights, SI."""
     predictor, fit = bench.fit.predictor, bench.null
-    effects = predictor.model_at(fit.x).effects[: len(predictor.model.effects)]
     is_input = np.array([isinstance(n, TolerancedInput) for n in predictor.nuisances], dtype=bool)
-    inputs = [FittedInput(n.tolerance, n.tolerance.sigma * z) for n, z in zip(predictor.nuisances, fit.x)
-              if isinstance(n, TolerancedInput)]  # fmt: skip
-    calibrations = [FittedCalibration(n.systematic, n.systematic.sigma * z) for n, z in zip(predictor.nuisances, fit.x)
-                    if not isinstance(n, TolerancedInput)]  # fmt: skip
-    order = np.concatenate([np.flatnonzero(is_input), np.flatnonzero(~is_input), np.arange(is_input.size, len(fit.x))])
-    scale = np.array([*(x.tolerance.sigma for x in inputs), *(x.systematic.sigma for x in calibrations),
-                      *slopes(effects)])  # fmt: skip
-    covariance = fit.covariance[np.ix_(order, order)] * np.outer(scale, scale)
-    source = Source(bench.campaign.id, device_hash(bench.campaign.device), dict(bench.campaign.file_hashes),
-                    ranges_of(bench))  # fmt: skip
-    base, device = bench.model.base.name, dict(bench.campaign.device)
-    return Learned(base, device, tuple(effects), tuple(inputs), tuple(calibrations), covariance, source)
+    rest = np.arange(len(is_input), len(fit.x))
+    order = np.concatenate([np.flatnonzero(is_input), np.flatnonzero(~is_input), rest])
+    declared = [
+        n.tolerance.sigma if isinstance(n, TolerancedInput) else n.systematic.sigma for n in predictor.nuisances
+    ]
+    effects = predictor.model_at(fit.x).effects[: len(predictor.model.effects)]
+    scale = np.array([*declared, *slopes(effects), *np.ones(predictor.weights)])
+    return (fit.covariance * np.outer(scale, scale))[np.ix_(order, order)]
 
 
 def slopes(effects: Sequence[Effect]) -> list[float]:

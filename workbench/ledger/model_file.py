@@ -52,6 +52,7 @@ def learned_text(learned: Learned) -> str:
         s = c.systematic
         values = {"name": s.name, "kind": s.kind, "shift": c.shift, "sigma": s.sigma}
         lines += _section("calibration", values, repeated=True)
+    lines += _section("numerical_error", {"weights": learned.weights}) if learned.weights else []
     return "\n".join(lines + _covariance(learned)) + "\n"
 
 
@@ -139,6 +140,7 @@ def read_model(path: str | Path, library: Mapping[str, type[Effect]]) -> Learned
         calibrations=tuple(
             FittedCalibration(Systematic(c.name, c.kind, c.sigma), c.shift) for c in content.calibration
         ),
+        weights=tuple(content.numerical_error.weights) if content.numerical_error else (),
         source=_source_of(content.learned, content.device, path),
     )
     if learned.source is None:

@@ -40,8 +40,14 @@ class CalibrationSection(_Section):
     sigma: FiniteFloat = Field(gt=0)
 
 
+class NumericalSection(_Section):
+    """``[numerical_error]``: weights of the shapes of the base model's own error, standard normal numbers."""
+
+    weights: list[FiniteFloat]
+
+
 class CovarianceSection(_Section):
-    """``[covariance]``: of inputs, calibrations and parameters of effects, SI."""
+    """``[covariance]``: of inputs, calibrations, parameters of effects and weights of the numerical error, SI."""
 
     names: list[str]
     rows: list[list[FiniteFloat]]
@@ -75,6 +81,7 @@ class FileSchema(_Section):
     effect: list[dict[str, Any]] = Field(default_factory=list)
     input: list[InputSection] = Field(default_factory=list)
     calibration: list[CalibrationSection] = Field(default_factory=list)
+    numerical_error: NumericalSection | None = None
     covariance: CovarianceSection | None = None
 
 

@@ -11,6 +11,7 @@ from workbench.data.table import Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.ledger.applied import Known, predicted
 from workbench.ledger.learned import FittedInput, learned_from
+from workbench.ledger.model_file import read_model, write_model
 from workbench.ledger.validate import HALF_90, validate
 from workbench.likelihood.bench import bench_of
 from workbench.likelihood.nuisance import DeclaredError
@@ -132,6 +133,27 @@ def test_a_table_that_the_model_cannot_answer_is_said_in_its_words(learned, tmp_
         validate(learned, replace(campaign, tables=(far,)), LIBRARY, nominal=Model(Breaking(), NOMINAL.design))
 
 
+class Rough(SpringModel):
+    """A spring on a mesh so coarse that the force may have an even part of 0.3 N at the ends."""
+
+    def numerical(self, design, table):
+        return ({"force": 0.3 * (table.conditions["displacement"] / 0.01) ** 2},)
+
+
+def test_the_error_of_the_model_itself_is_learned_and_kept(tmp_path):
+    """It is the same in every campaign, so what one says of it helps the next."""
+    rough = Model(Rough(), NOMINAL.design)
+    even = lambda x: 0.45 * (x / 0.01) ** 2  # noqa: E731
+    campaign = read_campaign(written(tmp_path / "c", even, n=200, stiffness=1005.0))
+    learned = learned_from(bench_of(rough, campaign, LIBRARY))
+    assert learned.names[-1] == "numerical_error_0" and learned.weights[0] == pytest.approx(1.5, abs=0.1)
+    write_model(tmp_path / "m.toml", learned)
+    kept = read_model(tmp_path / "m.toml", LIBRARY)
+    found = validate(kept, other(tmp_path / "n", extra=even, stiffness=1005.0), LIBRARY, nominal=rough)
+    assert found.corrected[0].chi2_per_n == pytest.approx(1.0, abs=0.3) and found.base[0].chi2_per_n > 5
+    assert found.base[0].share_in_90 > 0.8, "as drawn the weight is unknown, and the band says so"
+
+
 # ---- the band -------------------------------------------------------------------------------------------------------
 
 
@@ -150,7 +172,7 @@ def truth():
     """A stiffness known to 3 %, correlated with the cubic part, and a gain of the cell to 2 %: nearly one shape."""
     tolerance = Tolerance("stiffness", 0.01, True)
     covariance = np.array([[0.03**2, -0.8 * 0.03 * 4e4], [-0.8 * 0.03 * 4e4, 4e4**2]])
-    known = Known(NOMINAL, (FittedInput(tolerance, 0.02),), (Hardening(2e5),), covariance)
+    known = Known(NOMINAL, (FittedInput(tolerance, 0.02),), (Hardening(2e5),), np.zeros(0), covariance)
     x = np.linspace(-0.01, 0.01, 15)
     force = Response("force", np.zeros(15), np.full(15, NOISE), "N")
     zeros = np.zeros(15, dtype=int)
