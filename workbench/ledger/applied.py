@@ -8,7 +8,8 @@ B over c, both over the noise, that is linear in the readings:
     c = K (r + B c_0),   K = (1 + B^T B)^-1 B^T
 
 so that a prediction errs by (A - B K A) p from what is not known exactly, by B (1 + B^T B)^-1 B^T from the calibration,
-and the reading by its noise. What an error of p does that a calibration can do as well is taken up by the calibration.
+by what the model left unexplained where it was learned, and the reading by its noise. What an error of p does that a
+calibration can do as well is taken up by the calibration.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from effects.parameter import parameters_of
 from workbench.data.stack import Channel, Stack, rows_of, stacked
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
-from workbench.ledger.learned import FittedInput, Learned
+from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.bench import CONDITION_STEP
 from workbench.likelihood.noise import Noise, Whitener, measured_noise, whitener
 from workbench.likelihood.nuisance import Nuisance
@@ -44,6 +45,7 @@ class Known:
 
     inputs, effects: as known;  weights: of the shapes of the model's own numerical error
     covariance: of shifts of inputs, parameters of effects (k of them together), then weights, SI (k + L, k + L)
+    ranges: where it was learned, with what was left unexplained there
     """
 
     nominal: Model
@@ -51,6 +53,7 @@ class Known:
     effects: tuple[Effect, ...]
     weights: np.ndarray
     covariance: np.ndarray
+    ranges: tuple[LearnedRange, ...] = ()
 
     @property
     def size(self) -> int:
@@ -89,6 +92,12 @@ class Known:
         covariance = block_diag(self.covariance, np.eye(new)) if new else self.covariance
         return replace(self, weights=np.append(self.weights, np.zeros(new)), covariance=covariance)
 
+    def unexplained(self, kind: str, response: str) -> float:
+        """Rms residual beyond the noise to expect of a response, SI: what was left where it was learned; for a kind that
+        was not, the most of all kinds with that response."""
+        same = [r for r in self.ranges if r.response == response]
+        return max((r.unexplained for r in [r for r in same if r.kind == kind] or same), default=0.0)
+
     def exact(self) -> Known:
         """The same with a base that is exact at this device, for one that answers by an expansion."""
         if not self.nominal.base.is_expansion:
@@ -101,7 +110,8 @@ def corrected(learned: Learned, nominal: Model) -> Known:
     """The device with all that a model file knows of it."""
     own = np.r_[: len(learned.inputs), len(learned.inputs) + len(learned.calibrations) : len(learned.names)]
     covariance = learned.covariance[np.ix_(own, own)]
-    return Known(nominal, learned.inputs, learned.effects, np.array(learned.weights), covariance)
+    ranges = learned.source.ranges if learned.source else ()
+    return Known(nominal, learned.inputs, learned.effects, np.array(learned.weights), covariance, ranges)
 
 
 def as_drawn(learned: Learned, nominal: Model) -> Known:
@@ -194,7 +204,10 @@ class _Asked:
         over_c = [_slope(at_c, base, direction, STEP) for direction in np.eye(len(c))]
         u = _with_conditions(self.model_at(none, c), stack, base)
         p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
-        return _Around(replace(stack, u=u), base + shapes @ self.known.weights, np.column_stack([p, *over_c]), len(c))
+        left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
+        unexplained = np.repeat(left, [c.size for c in stack.channels])
+        columns = np.column_stack([p, *over_c])
+        return _Around(replace(stack, u=u), base + shapes @ self.known.weights, columns, len(c), unexplained)
 
     def _shapes(self, stack: Stack) -> np.ndarray:
         found = _numerical(self.known.nominal, stack)
@@ -210,6 +223,7 @@ class _Around:
     base: np.ndarray
     columns: np.ndarray
     m: int
+    unexplained: np.ndarray
 
     @cached_property
     def answered(self) -> np.ndarray:
@@ -268,7 +282,8 @@ class _Around:
         over_p, over_c = self.split
         taken_up = self.posterior @ self.white(over_c).T @ self.white(over_p)
         left = over_p - over_c @ taken_up
-        variance = (left**2).sum(axis=1) + ((over_c @ self.posterior) * over_c).sum(axis=1) + self.noise_variance
+        of_calibration = ((over_c @ self.posterior) * over_c).sum(axis=1)
+        variance = (left**2).sum(axis=1) + of_calibration + self.unexplained[self.kept] ** 2 + self.noise_variance
         whole = Prediction(self.part, self.base[self.kept], np.sqrt(variance), self.white(self.residual), c)
         return whole.on(self.stack, self.kept)
 

@@ -52,13 +52,14 @@ class LearnedRange:
     """Where a channel was fitted.
 
     conditions: name -> low, high of the fitted rows, SI; the high end of an angle may lie beyond a full turn
-    rows, chi2_per_n: of the fit there
+    rows, chi2_per_n: of the fit there;  unexplained: rms residual beyond the noise that the fit left there, SI
     """
 
     kind: str
     response: str
     rows: int
     chi2_per_n: float
+    unexplained: float
     conditions: Mapping[str, tuple[float, float]]
 
 
@@ -152,23 +153,34 @@ def device_hash(device: Mapping[str, object]) -> str:
 
 def ranges_of(bench: Bench) -> tuple[LearnedRange, ...]:
     """One range a kind and response, over the rows that were fitted."""
-    stack = bench.fit.stack
-    squares = bench.null.residual**2
-    found: dict[tuple[str, str], list] = {}
+    stack, white = bench.fit.stack, bench.null.residual**2
+    beyond = (stack.y - bench.fit.predictor.predict(bench.null.x)) ** 2 - bench.fit.white.sigma**2
+    found: dict[tuple[str, str], list[_Part]] = {}
     for channel in (c for c in stack.channels if c.size):
         table = stack.tables[channel.table]
-        found.setdefault((table.kind, channel.response), []).append((table, squares[channel.rows]))
+        part = _Part(table, white[channel.rows], beyond[channel.rows])
+        found.setdefault((table.kind, channel.response), []).append(part)
     return tuple(_range(kind, response, parts) for (kind, response), parts in found.items())
 
 
-def _range(kind: str, response: str, parts: Sequence[tuple[Table, np.ndarray]]) -> LearnedRange:
-    squares = np.concatenate([q for _, q in parts])
-    names = dict.fromkeys(name for table, _ in parts for name in table.conditions)
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Rows of one channel: squares of the whitened residual, and of the residual beyond the noise, SI (n,)."""
+
+    table: Table
+    squares: np.ndarray
+    beyond: np.ndarray
+
+
+def _range(kind: str, response: str, parts: Sequence[_Part]) -> LearnedRange:
+    squares, beyond = (np.concatenate([getattr(p, name) for p in parts]) for name in ("squares", "beyond"))
+    names = dict.fromkeys(name for p in parts for name in p.table.conditions)
     conditions = {
-        name: span(name, np.concatenate([t.conditions[name] for t, _ in parts if name in t.conditions]))
+        name: span(name, np.concatenate([p.table.conditions[name] for p in parts if name in p.table.conditions]))
         for name in names
     }
-    return LearnedRange(kind, response, len(squares), float(np.mean(squares)), conditions)
+    unexplained = float(np.sqrt(max(beyond.mean(), 0.0)))
+    return LearnedRange(kind, response, len(squares), float(squares.mean()), unexplained, conditions)
 
 
 def is_angle(name: str) -> bool:

@@ -18,7 +18,7 @@ from effects.parameter import parameters_of
 from workbench.data.table import Systematic, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedCalibration, FittedInput, Learned, LearnedRange, Source, device_hash
-from workbench.ledger.model_schema import CovarianceSection, FileSchema, LearnedSection, content_of
+from workbench.ledger.model_schema import CovarianceSection, FileSchema, LearnedSection, RangeSection, content_of
 from workbench.models.model import Model
 
 NAME = "model.toml"
@@ -85,7 +85,8 @@ def _source(source: Source) -> list[str]:
     head = {"campaign": source.campaign, "device_sha256": source.device_sha256, "data_sha256": source.data_sha256}
     lines = _section("learned", head)
     for r in source.ranges:
-        values = {"kind": r.kind, "response": r.response, "rows": r.rows, "chi2_per_n": r.chi2_per_n}
+        values = {"kind": r.kind, "response": r.response, "rows": r.rows, "chi2_per_n": r.chi2_per_n,
+                  "unexplained": r.unexplained}  # fmt: skip
         lines += _section("learned.range", {**values, "conditions": r.conditions}, repeated=True)
     return lines
 
@@ -207,12 +208,13 @@ def _source_of(section: LearnedSection | None, device: Mapping[str, object], pat
             f"{path}: [device] is not the one that the numbers were learned with; take the file as it was written."
         )
     ranges = tuple(
-        LearnedRange(
-            r.kind, r.response, r.rows, r.chi2_per_n, {k: (low, high) for k, (low, high) in r.conditions.items()}
-        )
-        for r in section.range
+        LearnedRange(r.kind, r.response, r.rows, r.chi2_per_n, r.unexplained, _spans_of(r)) for r in section.range
     )
     return Source(section.campaign, section.device_sha256, section.data_sha256, ranges)
+
+
+def _spans_of(section: RangeSection) -> dict[str, tuple[float, float]]:
+    return {name: (low, high) for name, (low, high) in section.conditions.items()}
 
 
 def _covariance_of(section: CovarianceSection | None, names: tuple[str, ...], path: Path) -> np.ndarray:

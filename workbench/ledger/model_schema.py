@@ -54,12 +54,13 @@ class CovarianceSection(_Section):
 
 
 class RangeSection(_Section):
-    """``[[learned.range]]``: where one channel was fitted. conditions: low and high, SI"""
+    """``[[learned.range]]``: where one channel was fitted. conditions: low and high, SI;  unexplained: SI"""
 
     kind: str
     response: str
     rows: int = Field(gt=0)
     chi2_per_n: FiniteFloat = Field(ge=0)
+    unexplained: FiniteFloat = Field(ge=0)
     conditions: dict[str, Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]]
 
 

@@ -154,6 +154,19 @@ def test_the_error_of_the_model_itself_is_learned_and_kept(tmp_path):
     assert found.base[0].share_in_90 > 0.8, "as drawn the weight is unknown, and the band says so"
 
 
+def test_what_was_left_unexplained_is_in_the_band(tmp_path):
+    """A ripple that nothing explains stays in other data, and the model is not surer than it was right."""
+    ripple = lambda x: 0.4 * np.sin(3e3 * x)  # noqa: E731
+    campaign = read_campaign(written(tmp_path / "c", ripple, n=200))
+    learned = learned_from(bench_of(NOMINAL, campaign, LIBRARY))
+    (where,) = learned.source.ranges
+    assert where.unexplained == pytest.approx(0.4 / np.sqrt(2), rel=0.15) and where.chi2_per_n > 5
+    (channel,) = validate(
+        learned, other(tmp_path / "n", extra=ripple, stiffness=1003.0), LIBRARY, nominal=NOMINAL
+    ).corrected
+    assert channel.share_in_90 > 0.85 and channel.chi2_per_n > 5
+
+
 # ---- the band -------------------------------------------------------------------------------------------------------
 
 
