@@ -93,8 +93,8 @@ class Known:
         return replace(self, weights=np.append(self.weights, np.zeros(new)), covariance=covariance)
 
     def unexplained(self, kind: str, response: str) -> float:
-        """Rms residual beyond the noise to expect of a response, SI: what was left where it was learned; for a kind that
-        was not, the most of all kinds with that response."""
+        """Rms residual beyond the noise to expect of a response, SI: what was left where it was learned; for a kind
+        that was not, the most of all kinds with that response."""
         same = [r for r in self.ranges if r.response == response]
         return max((r.unexplained for r in [r for r in same if r.kind == kind] or same), default=0.0)
 

@@ -120,17 +120,14 @@ def learned_from(bench: Bench) -> Learned:
 
 
 def _covariance(bench: Bench) -> np.ndarray:
-    """Of inputs, calibrations, parameters of effects and weights, SI."""
+    """Of inputs, calibrations, parameters of effects and weights, as they stand in x, SI."""
     predictor, fit = bench.fit.predictor, bench.null
-    is_input = np.array([isinstance(n, TolerancedInput) for n in predictor.nuisances], dtype=bool)
-    rest = np.arange(len(is_input), len(fit.x))
-    order = np.concatenate([np.flatnonzero(is_input), np.flatnonzero(~is_input), rest])
     declared = [
         n.tolerance.sigma if isinstance(n, TolerancedInput) else n.systematic.sigma for n in predictor.nuisances
     ]
     effects = predictor.model_at(fit.x).effects[: len(predictor.model.effects)]
     scale = np.array([*declared, *slopes(effects), *np.ones(predictor.weights)])
-    return (fit.covariance * np.outer(scale, scale))[np.ix_(order, order)]
+    return fit.covariance * np.outer(scale, scale)
 
 
 def slopes(effects: Sequence[Effect]) -> list[float]:

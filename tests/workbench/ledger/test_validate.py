@@ -221,3 +221,11 @@ def test_without_calibrations_the_band_is_that_of_what_is_known(truth):
     slopes = np.column_stack([1000.0 * x, x**3])
     expected = np.sqrt(np.einsum("ij,jk,ik->i", slopes, truth.known.covariance, slopes) + NOISE**2)
     assert found.sd == pytest.approx(expected, rel=1e-6) and found.calibration.size == 0
+
+
+def test_the_uncertainty_of_a_condition_counts_once(truth):
+    """u^2 = noise^2 + (dF/dx u_x)^2"""
+    table = replace(truth.table, condition_random={"displacement": np.full(15, 2e-4)})
+    found = predicted(replace(truth.known, covariance=np.zeros((2, 2))), (), (table,))
+    slope = 1020.0 + 3 * 2e5 * table.conditions["displacement"] ** 2
+    assert found.sd == pytest.approx(np.hypot(NOISE, slope * 2e-4), rel=1e-3)
