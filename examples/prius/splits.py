@@ -38,13 +38,15 @@ def part(campaign: Campaign, chosen: Masks) -> Campaign:
 
 
 def learned_on(campaign: Campaign) -> Learned:
-    """The effects of the story that these rows accept, with the inputs as fitted."""
+    """The effects of the story as these rows make them, with the inputs as fitted. A part of the rows may say little of
+    an effect: then its parameter stays as uncertain as it was, and the band is as wide."""
     library, model = package_effects(), nominal_model(campaign)
     for name in EFFECTS:
         try:
-            model = try_effect(model, campaign, library, name).model
-        except WorkbenchError:  # tried at a size at which the motor pulls out: it cannot be judged on these rows
+            after = try_effect(model, campaign, library, name).after
+        except WorkbenchError:  # tried at a size at which the motor pulls out: it cannot be fitted to these rows
             continue
+        model = replace(model, effects=after.fit.predictor.model_at(after.null.x).effects[: len(after.model.effects)])
     return learned_from(bench_of(model, campaign, library))
 
 

@@ -8,7 +8,8 @@ B over c, both over the noise, that is linear in the readings:
     c = K (r + B c_0),   K = (1 + B^T B)^-1 B^T
 
 so that a prediction errs by (A - B K A) p from what is not known exactly, by B (1 + B^T B)^-1 B^T from the calibration,
-and the reading by its noise. What an error of p does that a calibration can do as well is taken up by the calibration.
+by what the model left unexplained where it was learned, and the reading by its noise. What an error of p does that a
+calibration can do as well is taken up by the calibration.
 """
 
 from __future__ import annotations
@@ -19,20 +20,22 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.data.stack import Channel, Stack, rows_of, stacked
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
-from workbench.ledger.learned import FittedInput, Learned
+from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.bench import CONDITION_STEP
-from workbench.likelihood.noise import Whitener, measured_noise, whitener
+from workbench.likelihood.noise import Noise, Whitener, measured_noise, whitener
 from workbench.likelihood.nuisance import Nuisance
 from workbench.likelihood.predictor import STEP
 from workbench.models.model import Model
 
 ROUNDS = 6  # of finding the calibrations; gains and offsets act almost linearly, two or three are needed
+THROUGH_A_SCAN = 1 / 12  # mean square of a slope of one through a scan, from its middle
 SETTLED = 0.01  # standard deviations by which a calibration still moves
 
 
@@ -40,16 +43,21 @@ SETTLED = 0.01  # standard deviations by which a calibration still moves
 class Known:
     """nominal: the device as drawn, without effects, its base ready for the rows that are asked
 
-    inputs, effects: as known;  covariance: of shifts of inputs, then parameters of effects, SI (k, k)
+    inputs, effects: as known;  weights: of the shapes of the model's own numerical error
+    covariance: of shifts of inputs, parameters of effects (k of them together), then weights, SI (k + L, k + L)
+    ranges: where it was learned, with what was left unexplained there
     """
 
     nominal: Model
     inputs: tuple[FittedInput, ...]
     effects: tuple[Effect, ...]
+    weights: np.ndarray
     covariance: np.ndarray
+    ranges: tuple[LearnedRange, ...] = ()
 
     @property
     def size(self) -> int:
+        """Numbers that the model is made of, k."""
         return len(self.inputs) + sum(len(parameters_of(effect)) for effect in self.effects)
 
     def model_at(self, step: np.ndarray) -> Model:
@@ -72,11 +80,23 @@ class Known:
     @cached_property
     def steps(self) -> np.ndarray:
         """A small step of each number, on the side that its bounds allow, SI (k,)."""
-        steps = STEP * np.sqrt(np.diag(self.covariance))
+        steps = STEP * np.sqrt(np.diag(self.covariance)[: self.size])
         bounds = [(getattr(e, n), p) for e in self.effects for n, p in parameters_of(e).items()]
         for k, (value, p) in enumerate(bounds, len(self.inputs)):
             steps[k] *= 1.0 if value + steps[k] <= p.high else -1.0
         return steps
+
+    def with_weights(self, count: int) -> Known:
+        """The same with at least so many weights, those that nothing is known of as uncertain as before anything."""
+        new = max(count - len(self.weights), 0)
+        covariance = block_diag(self.covariance, np.eye(new)) if new else self.covariance
+        return replace(self, weights=np.append(self.weights, np.zeros(new)), covariance=covariance)
+
+    def unexplained(self, kind: str, response: str) -> float:
+        """Rms residual beyond the noise to expect of a response, SI: what was left where it was learned; for a kind
+        that was not, the most of all kinds with that response."""
+        same = [r for r in self.ranges if r.response == response]
+        return max((r.unexplained for r in [r for r in same if r.kind == kind] or same), default=0.0)
 
     def exact(self) -> Known:
         """The same with a base that is exact at this device, for one that answers by an expansion."""
@@ -89,13 +109,15 @@ class Known:
 def corrected(learned: Learned, nominal: Model) -> Known:
     """The device with all that a model file knows of it."""
     own = np.r_[: len(learned.inputs), len(learned.inputs) + len(learned.calibrations) : len(learned.names)]
-    return Known(nominal, learned.inputs, learned.effects, learned.covariance[np.ix_(own, own)])
+    covariance = learned.covariance[np.ix_(own, own)]
+    ranges = learned.source.ranges if learned.source else ()
+    return Known(nominal, learned.inputs, learned.effects, np.array(learned.weights), covariance, ranges)
 
 
 def as_drawn(learned: Learned, nominal: Model) -> Known:
     """The device as drawn: inputs at their nominal values, as uncertain as they were declared, no effects."""
     inputs = tuple(replace(x, shift=0.0) for x in learned.inputs)
-    return Known(nominal, inputs, (), np.diag([x.tolerance.sigma**2 for x in inputs]))
+    return Known(nominal, inputs, (), np.zeros(0), np.diag([x.tolerance.sigma**2 for x in inputs]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,8 +143,9 @@ class Prediction:
 
 def predicted(known: Known, calibrations: Sequence[Nuisance], tables: Sequence[Table]) -> Prediction:
     """What a known device should show in some tables, the instruments' own calibration found from them."""
-    asked, c = _Asked(known, tuple(calibrations)), np.zeros(len(calibrations))
-    stack = stacked(tables)
+    stack, c = stacked(tables), np.zeros(len(calibrations))
+    shapes = _numerical(known.nominal, stack)
+    asked = _Asked(known.with_weights(shapes.shape[1]), tuple(calibrations))
     masks = _whole_rows(stack, np.isfinite(readings(asked.model_at(np.zeros(known.size), c), stack)))
     part = _part(stack, masks)
     around = asked.around(part, c)
@@ -172,28 +195,35 @@ class _Asked:
         return model
 
     def around(self, stack: Stack, c: np.ndarray) -> _Around:
-        none, steps = np.zeros(self.known.size), self.known.steps
+        """The prediction at some calibration, with its derivatives."""
+        none, shapes = np.zeros(self.known.size), self._shapes(stack)
         base = readings(self.model_at(none, c), stack)
         at_p = lambda move: readings(self.model_at(move, c), stack)  # noqa: E731
         at_c = lambda move: readings(self.model_at(none, c + move), stack)  # noqa: E731
-        over_p = [_slope(at_p, base, direction, s) for direction, s in zip(np.eye(len(none)), steps)]
+        over_p = [_slope(at_p, base, direction, s) for direction, s in zip(np.eye(len(none)), self.known.steps)]
         over_c = [_slope(at_c, base, direction, STEP) for direction in np.eye(len(c))]
-        model = self.model_at(none, c)
-        u = _with_conditions(model, stack, base)
-        p = np.column_stack([*over_p, np.zeros((stack.size, 0))]) @ _root(self.known.covariance)
-        columns = np.column_stack([p, _numerical(model, stack), *over_c])
-        return _Around(replace(stack, u=u), base, columns, len(c))
+        u = _with_conditions(self.model_at(none, c), stack, base)
+        p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
+        left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
+        unexplained = np.repeat(left, [c.size for c in stack.channels])
+        columns = np.column_stack([p, *over_c])
+        return _Around(replace(stack, u=u), base + shapes @ self.known.weights, columns, len(c), unexplained)
+
+    def _shapes(self, stack: Stack) -> np.ndarray:
+        found = _numerical(self.known.nominal, stack)
+        return np.column_stack([found, np.zeros((stack.size, len(self.known.weights) - found.shape[1]))])
 
 
 @dataclass(frozen=True, eq=False)
 class _Around:
-    """Prediction at some calibration and its derivatives over standard normal numbers (n, k + m): what is known, its
-    numerical error, then the m calibrations."""
+    """Prediction at some calibration and its derivatives over standard normal numbers: those of what is known, its
+    numerical error among them, then the m calibrations."""
 
     stack: Stack
     base: np.ndarray
     columns: np.ndarray
     m: int
+    unexplained: np.ndarray
 
     @cached_property
     def answered(self) -> np.ndarray:
@@ -214,8 +244,18 @@ class _Around:
         return _part(self.stack, self.rows)
 
     @cached_property
+    def noise(self) -> Noise:
+        return measured_noise(self.part, self.base[self.kept])
+
+    @cached_property
     def white(self) -> Whitener:
-        return whitener(self.part, measured_noise(self.part, self.base[self.kept]))
+        return whitener(self.part, self.noise)
+
+    @cached_property
+    def noise_variance(self) -> np.ndarray:
+        """Of a reading: its own, and what its scan as a whole may be off by (n,)."""
+        of_scans = [c.offset**2 + c.slope**2 * THROUGH_A_SCAN for c in self.noise.channels]
+        return self.white.sigma**2 * (1 + np.repeat(of_scans, [c.size for c in self.part.channels]))
 
     @cached_property
     def residual(self) -> np.ndarray:
@@ -242,7 +282,8 @@ class _Around:
         over_p, over_c = self.split
         taken_up = self.posterior @ self.white(over_c).T @ self.white(over_p)
         left = over_p - over_c @ taken_up
-        variance = (left**2).sum(axis=1) + ((over_c @ self.posterior) * over_c).sum(axis=1) + self.white.sigma**2
+        of_calibration = ((over_c @ self.posterior) * over_c).sum(axis=1)
+        variance = (left**2).sum(axis=1) + of_calibration + self.unexplained[self.kept] ** 2 + self.noise_variance
         whole = Prediction(self.part, self.base[self.kept], np.sqrt(variance), self.white(self.residual), c)
         return whole.on(self.stack, self.kept)
 
@@ -313,7 +354,7 @@ def _moved(table: Table, name: str, step: float) -> Table:
 
 
 def _numerical(model: Model, stack: Stack) -> np.ndarray:
-    """Shapes of the base model's own error, each with a standard normal weight shared by all tables (n, q)."""
+    """Shapes of the base model's own error, each with a standard normal weight shared by all tables (n, L)."""
     shapes = [model.base.numerical(model.design, table) for table in stack.tables]
     columns = np.zeros((stack.size, max(map(len, shapes), default=0)))
     for channel in stack.channels:

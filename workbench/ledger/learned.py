@@ -52,13 +52,14 @@ class LearnedRange:
     """Where a channel was fitted.
 
     conditions: name -> low, high of the fitted rows, SI; the high end of an angle may lie beyond a full turn
-    rows, chi2_per_n: of the fit there
+    rows, chi2_per_n: of the fit there;  unexplained: rms residual beyond the noise that the fit left there, SI
     """
 
     kind: str
     response: str
     rows: int
     chi2_per_n: float
+    unexplained: float
     conditions: Mapping[str, tuple[float, float]]
 
 
@@ -77,7 +78,9 @@ class Learned:
     """All that a model file holds.
 
     base: name of the base model;  device: the ``[device]`` table, empty in files of before it was kept
-    names, covariance: of shifts of inputs, of calibrations and of parameters of effects, in this order, SI (k,), (k, k)
+    weights: of the shapes of the base model's own numerical error, standard normal numbers
+    names, covariance: of shifts of inputs, of calibrations, of parameters of effects and of weights, in this order, SI
+    (k,), (k, k)
     source: None in files of before inputs were kept, as is the covariance
     """
 
@@ -86,6 +89,7 @@ class Learned:
     effects: tuple[Effect, ...]
     inputs: tuple[FittedInput, ...] = ()
     calibrations: tuple[FittedCalibration, ...] = ()
+    weights: tuple[float, ...] = ()
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     source: Source | None = None
 
@@ -93,26 +97,37 @@ class Learned:
     def names(self) -> tuple[str, ...]:
         """Of the rows of the covariance."""
         parameters = (f"{e.name()}.{p}" for e in self.effects for p in parameters_of(e))
-        return tuple(x.name for x in (*self.inputs, *self.calibrations)) + tuple(parameters)
+        errors = (f"numerical_error_{k}" for k in range(len(self.weights)))
+        return (*(x.name for x in (*self.inputs, *self.calibrations)), *parameters, *errors)
 
 
 def learned_from(bench: Bench) -> Learned:
     """What the fit of a bench says about its device."""
+    predictor, fit, campaign = bench.fit.predictor, bench.null, bench.campaign
+    declared = list(zip(predictor.nuisances, map(float, fit.x)))
+    inputs = [FittedInput(n.tolerance, n.tolerance.sigma * z) for n, z in declared if isinstance(n, TolerancedInput)]
+    errors = [(n.systematic, z) for n, z in declared if not isinstance(n, TolerancedInput)]
+    return Learned(
+        base=bench.model.base.name,
+        device=dict(campaign.device),
+        effects=tuple(predictor.model_at(fit.x).effects[: len(predictor.model.effects)]),
+        inputs=tuple(inputs),
+        calibrations=tuple(FittedCalibration(systematic, systematic.sigma * z) for systematic, z in errors),
+        weights=tuple(map(float, fit.x[len(fit.x) - predictor.weights :])),
+        covariance=_covariance(bench),
+        source=Source(campaign.id, device_hash(campaign.device), dict(campaign.file_hashes), ranges_of(bench)),
+    )
+
+
+def _covariance(bench: Bench) -> np.ndarray:
+    """Of inputs, calibrations, parameters of effects and weights, as they stand in x, SI."""
     predictor, fit = bench.fit.predictor, bench.null
+    declared = [
+        n.tolerance.sigma if isinstance(n, TolerancedInput) else n.systematic.sigma for n in predictor.nuisances
+    ]
     effects = predictor.model_at(fit.x).effects[: len(predictor.model.effects)]
-    is_input = np.array([isinstance(n, TolerancedInput) for n in predictor.nuisances], dtype=bool)
-    inputs = [FittedInput(n.tolerance, n.tolerance.sigma * z) for n, z in zip(predictor.nuisances, fit.x)
-              if isinstance(n, TolerancedInput)]  # fmt: skip
-    calibrations = [FittedCalibration(n.systematic, n.systematic.sigma * z) for n, z in zip(predictor.nuisances, fit.x)
-                    if not isinstance(n, TolerancedInput)]  # fmt: skip
-    order = np.concatenate([np.flatnonzero(is_input), np.flatnonzero(~is_input), np.arange(is_input.size, len(fit.x))])
-    scale = np.array([*(x.tolerance.sigma for x in inputs), *(x.systematic.sigma for x in calibrations),
-                      *slopes(effects)])  # fmt: skip
-    covariance = fit.covariance[np.ix_(order, order)] * np.outer(scale, scale)
-    source = Source(bench.campaign.id, device_hash(bench.campaign.device), dict(bench.campaign.file_hashes),
-                    ranges_of(bench))  # fmt: skip
-    base, device = bench.model.base.name, dict(bench.campaign.device)
-    return Learned(base, device, tuple(effects), tuple(inputs), tuple(calibrations), covariance, source)
+    scale = np.array([*declared, *slopes(effects), *np.ones(predictor.weights)])
+    return fit.covariance * np.outer(scale, scale)
 
 
 def slopes(effects: Sequence[Effect]) -> list[float]:
@@ -135,23 +150,34 @@ def device_hash(device: Mapping[str, object]) -> str:
 
 def ranges_of(bench: Bench) -> tuple[LearnedRange, ...]:
     """One range a kind and response, over the rows that were fitted."""
-    stack = bench.fit.stack
-    squares = bench.null.residual**2
-    found: dict[tuple[str, str], list] = {}
+    stack, white = bench.fit.stack, bench.null.residual**2
+    beyond = (stack.y - bench.fit.predictor.predict(bench.null.x)) ** 2 - bench.fit.white.sigma**2
+    found: dict[tuple[str, str], list[_Part]] = {}
     for channel in (c for c in stack.channels if c.size):
         table = stack.tables[channel.table]
-        found.setdefault((table.kind, channel.response), []).append((table, squares[channel.rows]))
+        part = _Part(table, white[channel.rows], beyond[channel.rows])
+        found.setdefault((table.kind, channel.response), []).append(part)
     return tuple(_range(kind, response, parts) for (kind, response), parts in found.items())
 
 
-def _range(kind: str, response: str, parts: Sequence[tuple[Table, np.ndarray]]) -> LearnedRange:
-    squares = np.concatenate([q for _, q in parts])
-    names = dict.fromkeys(name for table, _ in parts for name in table.conditions)
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Rows of one channel: squares of the whitened residual, and of the residual beyond the noise, SI (n,)."""
+
+    table: Table
+    squares: np.ndarray
+    beyond: np.ndarray
+
+
+def _range(kind: str, response: str, parts: Sequence[_Part]) -> LearnedRange:
+    squares, beyond = (np.concatenate([getattr(p, name) for p in parts]) for name in ("squares", "beyond"))
+    names = dict.fromkeys(name for p in parts for name in p.table.conditions)
     conditions = {
-        name: span(name, np.concatenate([t.conditions[name] for t, _ in parts if name in t.conditions]))
+        name: span(name, np.concatenate([p.table.conditions[name] for p in parts if name in p.table.conditions]))
         for name in names
     }
-    return LearnedRange(kind, response, len(squares), float(np.mean(squares)), conditions)
+    unexplained = float(np.sqrt(max(beyond.mean(), 0.0)))
+    return LearnedRange(kind, response, len(squares), float(squares.mean()), unexplained, conditions)
 
 
 def is_angle(name: str) -> bool:

@@ -18,7 +18,7 @@ from effects.parameter import parameters_of
 from workbench.data.table import Systematic, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedCalibration, FittedInput, Learned, LearnedRange, Source, device_hash
-from workbench.ledger.model_schema import CovarianceSection, FileSchema, LearnedSection, content_of
+from workbench.ledger.model_schema import CovarianceSection, FileSchema, LearnedSection, RangeSection, content_of
 from workbench.models.model import Model
 
 NAME = "model.toml"
@@ -52,6 +52,7 @@ def learned_text(learned: Learned) -> str:
         s = c.systematic
         values = {"name": s.name, "kind": s.kind, "shift": c.shift, "sigma": s.sigma}
         lines += _section("calibration", values, repeated=True)
+    lines += _section("numerical_error", {"weights": learned.weights}) if learned.weights else []
     return "\n".join(lines + _covariance(learned)) + "\n"
 
 
@@ -84,7 +85,8 @@ def _source(source: Source) -> list[str]:
     head = {"campaign": source.campaign, "device_sha256": source.device_sha256, "data_sha256": source.data_sha256}
     lines = _section("learned", head)
     for r in source.ranges:
-        values = {"kind": r.kind, "response": r.response, "rows": r.rows, "chi2_per_n": r.chi2_per_n}
+        values = {"kind": r.kind, "response": r.response, "rows": r.rows, "chi2_per_n": r.chi2_per_n,
+                  "unexplained": r.unexplained}  # fmt: skip
         lines += _section("learned.range", {**values, "conditions": r.conditions}, repeated=True)
     return lines
 
@@ -139,6 +141,7 @@ def read_model(path: str | Path, library: Mapping[str, type[Effect]]) -> Learned
         calibrations=tuple(
             FittedCalibration(Systematic(c.name, c.kind, c.sigma), c.shift) for c in content.calibration
         ),
+        weights=tuple(content.numerical_error.weights) if content.numerical_error else (),
         source=_source_of(content.learned, content.device, path),
     )
     if learned.source is None:
@@ -205,12 +208,13 @@ def _source_of(section: LearnedSection | None, device: Mapping[str, object], pat
             f"{path}: [device] is not the one that the numbers were learned with; take the file as it was written."
         )
     ranges = tuple(
-        LearnedRange(
-            r.kind, r.response, r.rows, r.chi2_per_n, {k: (low, high) for k, (low, high) in r.conditions.items()}
-        )
-        for r in section.range
+        LearnedRange(r.kind, r.response, r.rows, r.chi2_per_n, r.unexplained, _spans_of(r)) for r in section.range
     )
     return Source(section.campaign, section.device_sha256, section.data_sha256, ranges)
+
+
+def _spans_of(section: RangeSection) -> dict[str, tuple[float, float]]:
+    return {name: (low, high) for name, (low, high) in section.conditions.items()}
 
 
 def _covariance_of(section: CovarianceSection | None, names: tuple[str, ...], path: Path) -> np.ndarray:

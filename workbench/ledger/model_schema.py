@@ -40,20 +40,27 @@ class CalibrationSection(_Section):
     sigma: FiniteFloat = Field(gt=0)
 
 
+class NumericalSection(_Section):
+    """``[numerical_error]``: weights of the shapes of the base model's own error, standard normal numbers."""
+
+    weights: list[FiniteFloat]
+
+
 class CovarianceSection(_Section):
-    """``[covariance]``: of inputs, calibrations and parameters of effects, SI."""
+    """``[covariance]``: of inputs, calibrations, parameters of effects and weights of the numerical error, SI."""
 
     names: list[str]
     rows: list[list[FiniteFloat]]
 
 
 class RangeSection(_Section):
-    """``[[learned.range]]``: where one channel was fitted. conditions: low and high, SI"""
+    """``[[learned.range]]``: where one channel was fitted. conditions: low and high, SI;  unexplained: SI"""
 
     kind: str
     response: str
     rows: int = Field(gt=0)
     chi2_per_n: FiniteFloat = Field(ge=0)
+    unexplained: FiniteFloat = Field(ge=0)
     conditions: dict[str, Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]]
 
 
@@ -75,6 +82,7 @@ class FileSchema(_Section):
     effect: list[dict[str, Any]] = Field(default_factory=list)
     input: list[InputSection] = Field(default_factory=list)
     calibration: list[CalibrationSection] = Field(default_factory=list)
+    numerical_error: NumericalSection | None = None
     covariance: CovarianceSection | None = None
 
 

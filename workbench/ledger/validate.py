@@ -179,15 +179,18 @@ class Left:
 
 
 def _left(table: Table, source: Source) -> Left:
+    """A kind that was not learned from is judged by what all others were learned at; what none of them had as a
+    condition is said, but says nothing of single rows."""
     kinds = {r.kind for r in source.ranges}
-    same = [r for r in source.ranges if r.kind == table.kind] or source.ranges
+    ranges = [r for r in source.ranges if r.kind == table.kind] or source.ranges
     rows, words = np.zeros(table.rows, dtype=bool), []
     if table.kind not in kinds:
         words.append(f"{table.file}: no table of kind {table.kind} was learned from, only {', '.join(sorted(kinds))}.")
     for name, values in table.conditions.items():
-        beyond = _beyond(name, values, same)
-        rows |= beyond
-        words += [_words(table, name, beyond, same)] if beyond.any() else []
+        beyond = _beyond(name, values, ranges)
+        words += [_words(table, name, beyond, ranges)] if beyond.any() else []
+        if table.kind in kinds or _spans(name, ranges):
+            rows |= beyond
     return Left(rows, tuple(words))
 
 

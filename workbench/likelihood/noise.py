@@ -120,7 +120,7 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
 
 def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
     """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
-    if not (found.offset or found.slope):
+    if not channel.size or not (found.offset or found.slope):
         return None
     scans = _scans(stack.tables[channel.table])
     raw = np.zeros((stack.size, 2 * len(scans)))

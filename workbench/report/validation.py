@@ -152,7 +152,8 @@ def _errors(v: Validation) -> Table:
     return Table(
         pd.DataFrame(table),
         "Reading minus prediction; chi²/n over the noise of the readings alone. The band holds the uncertainty of "
-        "inputs, effects and calibration and the noise. Marked: worse than as drawn.",
+        "inputs, effects and calibration, the noise, and what was left unexplained where it was learned. Marked: worse "
+        "than as drawn.",
         marked=marked,
     )
 

@@ -33,7 +33,7 @@ def test_the_warm_sweep_is_predicted_from_the_cold_one(campaign, cold):
     assert [effect.name() for effect in cold.effects] == list(EFFECTS)
     chosen = next(iter(splits(campaign).values()))
     found = validate(cold, part(campaign, [~mask for mask in chosen]), package_effects())
-    assert chi2(found.corrected) < 3.2 and chi2(found.base) > 7.5
+    assert chi2(found.corrected) < 3.2 and chi2(found.base) > 6
     assert share(found.corrected) > 0.9 and found.range_left == ()
     current, power = found.corrected
     assert power.chi2_per_n < 0.5 and power.rms_error < 25 < 65 < found.base[1].rms_error
@@ -42,7 +42,7 @@ def test_the_warm_sweep_is_predicted_from_the_cold_one(campaign, cold):
 def test_what_was_learned_helps_beyond_the_torque_it_was_learned_at(campaign):
     chosen = splits(campaign)["torque below 95 Nm learned, above predicted"]
     found = validate(learned_on(part(campaign, chosen)), part(campaign, [~m for m in chosen]), package_effects())
-    assert chi2(found.corrected) < 0.4 * chi2(found.base)
+    assert chi2(found.corrected) < 0.4 * chi2(found.base) and share(found.corrected) > 0.8
     assert all(channel.outside_range == 1.0 for channel in found.corrected)
     assert any("torque is" in words and "rows lie beyond" in words for words in found.range_left)
 
@@ -69,7 +69,7 @@ def test_the_command(cold, campaign, tmp_path, capsys):
     said, found = capsys.readouterr().out, json.loads((tmp_path / "out" / "validation.json").read_text())
     assert found["channels"] == found["corrected"]["channels"] and len(found["base"]["channels"]) == 2
     assert all(KEYS <= set(channel) for side in ("corrected", "base") for channel in found[side]["channels"])
-    assert found["corrected"]["chi2_per_n"] < 0.5 * found["base"]["chi2_per_n"]
+    assert found["corrected"]["chi2_per_n"] < 0.6 * found["base"]["chi2_per_n"]
     assert "torque_sweep_75C.current" in said and "as drawn" in said and found["sentence"] in said
     page = (tmp_path / "out" / "validation.html").read_text()
     assert "Does the model hold?" in page and page.count("data:image/png") == 2 and "http" not in page.split("<body")[1]

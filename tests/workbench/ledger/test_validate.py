@@ -11,6 +11,7 @@ from workbench.data.table import Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.ledger.applied import Known, predicted
 from workbench.ledger.learned import FittedInput, learned_from
+from workbench.ledger.model_file import read_model, write_model
 from workbench.ledger.validate import HALF_90, validate
 from workbench.likelihood.bench import bench_of
 from workbench.likelihood.nuisance import DeclaredError
@@ -84,7 +85,9 @@ def test_a_kind_and_a_condition_that_were_not_learned_are_said(learned, tmp_path
     found = validate(learned, replace(campaign, tables=(new,)), LIBRARY, nominal=NOMINAL)
     assert "no table of kind force_loop was learned from, only generic" in found.range_left[0]
     assert "humidity" in found.range_left[1] and "did not have it" in found.range_left[1]
-    assert found.corrected[0].outside_range == 1.0
+    assert found.corrected[0].outside_range == 0.0, "the displacement is where it was learned"
+    same = validate(learned, replace(campaign, tables=(replace(new, kind="generic"),)), LIBRARY, nominal=NOMINAL)
+    assert same.corrected[0].outside_range == 1.0 and len(same.range_left) == 1
 
 
 def test_the_device_of_the_file_is_used_and_another_one_is_said(learned, tmp_path):
@@ -130,6 +133,40 @@ def test_a_table_that_the_model_cannot_answer_is_said_in_its_words(learned, tmp_
         validate(learned, replace(campaign, tables=(far,)), LIBRARY, nominal=Model(Breaking(), NOMINAL.design))
 
 
+class Rough(SpringModel):
+    """A spring on a mesh so coarse that the force may have an even part of 0.3 N at the ends."""
+
+    def numerical(self, design, table):
+        return ({"force": 0.3 * (table.conditions["displacement"] / 0.01) ** 2},)
+
+
+def test_the_error_of_the_model_itself_is_learned_and_kept(tmp_path):
+    """It is the same in every campaign, so what one says of it helps the next."""
+    rough = Model(Rough(), NOMINAL.design)
+    even = lambda x: 0.45 * (x / 0.01) ** 2  # noqa: E731
+    campaign = read_campaign(written(tmp_path / "c", even, n=200, stiffness=1005.0))
+    learned = learned_from(bench_of(rough, campaign, LIBRARY))
+    assert learned.names[-1] == "numerical_error_0" and learned.weights[0] == pytest.approx(1.5, abs=0.1)
+    write_model(tmp_path / "m.toml", learned)
+    kept = read_model(tmp_path / "m.toml", LIBRARY)
+    found = validate(kept, other(tmp_path / "n", extra=even, stiffness=1005.0), LIBRARY, nominal=rough)
+    assert found.corrected[0].chi2_per_n == pytest.approx(1.0, abs=0.3) and found.base[0].chi2_per_n > 5
+    assert found.base[0].share_in_90 > 0.8, "as drawn the weight is unknown, and the band says so"
+
+
+def test_what_was_left_unexplained_is_in_the_band(tmp_path):
+    """A ripple that nothing explains stays in other data, and the model is not surer than it was right."""
+    ripple = lambda x: 0.4 * np.sin(3e3 * x)  # noqa: E731
+    campaign = read_campaign(written(tmp_path / "c", ripple, n=200))
+    learned = learned_from(bench_of(NOMINAL, campaign, LIBRARY))
+    (where,) = learned.source.ranges
+    assert where.unexplained == pytest.approx(0.4 / np.sqrt(2), rel=0.15) and where.chi2_per_n > 5
+    (channel,) = validate(
+        learned, other(tmp_path / "n", extra=ripple, stiffness=1003.0), LIBRARY, nominal=NOMINAL
+    ).corrected
+    assert channel.share_in_90 > 0.85 and channel.chi2_per_n > 5
+
+
 # ---- the band -------------------------------------------------------------------------------------------------------
 
 
@@ -148,7 +185,7 @@ def truth():
     """A stiffness known to 3 %, correlated with the cubic part, and a gain of the cell to 2 %: nearly one shape."""
     tolerance = Tolerance("stiffness", 0.01, True)
     covariance = np.array([[0.03**2, -0.8 * 0.03 * 4e4], [-0.8 * 0.03 * 4e4, 4e4**2]])
-    known = Known(NOMINAL, (FittedInput(tolerance, 0.02),), (Hardening(2e5),), covariance)
+    known = Known(NOMINAL, (FittedInput(tolerance, 0.02),), (Hardening(2e5),), np.zeros(0), covariance)
     x = np.linspace(-0.01, 0.01, 15)
     force = Response("force", np.zeros(15), np.full(15, NOISE), "N")
     zeros = np.zeros(15, dtype=int)
@@ -184,3 +221,11 @@ def test_without_calibrations_the_band_is_that_of_what_is_known(truth):
     slopes = np.column_stack([1000.0 * x, x**3])
     expected = np.sqrt(np.einsum("ij,jk,ik->i", slopes, truth.known.covariance, slopes) + NOISE**2)
     assert found.sd == pytest.approx(expected, rel=1e-6) and found.calibration.size == 0
+
+
+def test_the_uncertainty_of_a_condition_counts_once(truth):
+    """u^2 = noise^2 + (dF/dx u_x)^2"""
+    table = replace(truth.table, condition_random={"displacement": np.full(15, 2e-4)})
+    found = predicted(replace(truth.known, covariance=np.zeros((2, 2))), (), (table,))
+    slope = 1020.0 + 3 * 2e5 * table.conditions["displacement"] ** 2
+    assert found.sd == pytest.approx(np.hypot(NOISE, slope * 2e-4), rel=1e-3)
