@@ -337,7 +337,7 @@ def _print_diagnosis(d: Diagnosis, out: Path) -> None:
 
 def _print_found(d: Diagnosis) -> None:
     """What was tried, the other probabilities, the sealed rows and what to measure next."""
-    print(f"{'effect':28} {'is there':>8} {'evidence':>12} {'left out':>16}  size [90 % interval]")
+    print(f"{'effect':28} {'is there':>8} {'best with it':>12} {'left out':>16}  size [90 % interval]")
     for r in d.ranking[:8]:
         sizes = ", ".join(
             f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}{' on a bound' * (n in r.at_bound)}"

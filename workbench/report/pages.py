@@ -25,6 +25,7 @@ from workbench.report.sentences import (
     power_sentence,
     readings,
     sealed_sentence,
+    set_words,
     size_words,
     verdict_sentence,
 )  # fmt: skip
@@ -47,6 +48,7 @@ from workbench.report.words import (
 )
 
 _NOTHING_MORE: Mapping[str, str] = MappingProxyType({})
+_NO_GAIN = 0.01  # nats, a factor of 1.01 in the odds
 _UNKNOWN = "–"
 _FEW_MAPS = 6  # regime maps of one picture
 
@@ -189,7 +191,7 @@ def _table(rows: list[dict[str, object]], caption: str, marked: tuple[int, ...] 
 
 def _limits(checks: tuple[str, ...], complaints: tuple[str, ...]) -> tuple[Section, ...]:
     """What was noticed on the instruments and what limits the conclusions; no section where there is nothing."""
-    found = [Remark(check) for check in checks] + [sentence(complaint) for complaint in complaints]
+    found = [Remark(sentence(check)) for check in checks] + [sentence(complaint) for complaint in complaints]
     return (Section("What limits the conclusions", tuple(found)),) if found else ()
 
 
@@ -203,7 +205,7 @@ def diagnosis_sections(d: Diagnosis) -> tuple[Section, ...]:
 
 
 def _checks(d: Diagnosis) -> tuple[Section, ...]:
-    said = tuple(Remark(check) for check in d.checks)
+    said = tuple(Remark(sentence(check)) for check in d.checks)
     return (Section("What the data say before any model", said),) if said else ()
 
 
@@ -266,23 +268,24 @@ def _fall(before: float | None, after: float | None) -> str:
     return f"{chi2_text(before)}\N{NO-BREAK SPACE}→\N{NO-BREAK SPACE}{chi2_text(after)}"
 
 
-def _probabilities(d: Diagnosis) -> tuple[Picture | Table, ...]:
+def _probabilities(d: Diagnosis) -> tuple[str | Picture | Table, ...]:
     caption = (
         "Of an effect: that it is there, alone or with others, so that effects do not add up to 100 %. Nothing "
         "missing: no effect and nothing unknown. Something unknown: a smooth function that no effect describes, with "
         "or without effects. None of these: the same without effects. Blue: what the verdict names."
     )
-    picture = Picture(beliefs.probabilities(d), caption)
-    return (picture, _sets(d)) if d.p_sets else (picture,)
+    return (Picture(beliefs.probabilities(d), caption), *_sets(d))
 
 
-def _sets(d: Diagnosis) -> Table:
-    rows = [{"explanation": plain(words), "probability": probability_text(p)} for words, p in d.p_sets.items()]
-    caption = (
-        "Probability of an explanation: that all of it is there and nothing else, so that they exclude one another; "
-        f"these have {probability_text(sum(d.p_sets.values()))} together, less likely ones the rest."
+def _sets(d: Diagnosis) -> tuple[str | Table, ...]:
+    if not d.p_sets:
+        return ()
+    rows = [{"explanation": set_words(words), "probability": probability_text(p)} for words, p in d.p_sets.items()]
+    said = (
+        "Below, the probability of an explanation is that all of it is there and nothing else: explanations exclude "
+        f"one another. These have {probability_text(sum(d.p_sets.values()))} together, less likely ones the rest."
     )
-    return Table(pd.DataFrame(rows), caption)
+    return (said, Table(pd.DataFrame(rows), "The likeliest explanations."))
 
 
 def _before_and_after(d: Diagnosis) -> tuple[Section, ...]:
@@ -341,7 +344,7 @@ def _ranking(d: Diagnosis) -> tuple[Section, ...]:
         {
             "effect": r.name,
             "probability": probability_text(r.probability),
-            "evidence": odds_text(r.log_evidence),
+            "best with it": odds_text(r.log_evidence),
             "size (90 % interval)": _sizes_of(r),
             "chi²/n": _fall(r.chi2_per_n_before, r.chi2_per_n_after) if r.parameters else _UNKNOWN,
             "left out": _fall(r.held_out_chi2_per_n_before, r.held_out_chi2_per_n_after) if r.parameters else _UNKNOWN,
@@ -350,9 +353,10 @@ def _ranking(d: Diagnosis) -> tuple[Section, ...]:
     ]
     marked = tuple(number for number, r in enumerate(ordered) if r.name in d.names)
     caption = (
-        "Probability: that the effect is there, alone or with others. Evidence: how much more probable the fitted rows "
-        "are by the best explanation that holds the effect than by nothing; size and chi²/n without → with are of "
-        "that explanation. Effects far behind were judged by their signature only and have no fitted size."
+        "Probability: that the effect is there, alone or with others. Best with it: how much more probable the fitted "
+        "rows are by the best explanation that holds the effect, and others where they help, than by nothing; size "
+        "and chi²/n (nothing → explanation) are of that explanation. Effects without a fitted size are far behind and "
+        "were judged by their signature, most of them alone."
     )
     table = _table(rows, caption, marked) if rows else None
     return (Section("What was tried", (left_out_sentence(d), table)),) if table is not None else ()
@@ -389,6 +393,9 @@ def _next(d: Diagnosis) -> tuple[Section, ...]:
     if not d.next_measurements:
         return ()
     best = max(d.next_measurements, key=lambda m: m.gain_nats / m.cost)
+    if best.gain_nats < _NO_GAIN:
+        said = "No measurement that was weighed is expected to change the odds by 1 %."
+        return (Section("What to measure next", (said,)),)
     gain = f"expected to change the odds by {factor_text(best.gain_nats)} at cost {amount(best.cost)}"
     said = f"Best: {best.words or plain(best.kind)}, {gain}."
     caption = "Expected factor in the odds of the right explanation against the others, averaged over their logarithm."

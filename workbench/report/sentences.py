@@ -392,6 +392,12 @@ def _size(d: Diagnosis) -> str:
     return f": {sizes}"
 
 
+def set_words(words: str) -> str:
+    """An explanation, so that it is not taken for the probability of one of its parts."""
+    alone = {"nothing": "nothing missing", "something unknown": "something unknown alone (none of these)"}
+    return alone.get(words, plain(words) if " + " in words else f"{plain(words)} alone")
+
+
 def leading(d: Diagnosis) -> Ranked | None:
     """The ranked effect that the verdict is about, else the most probable one."""
     by_name = {ranked.name: ranked for ranked in d.ranking}
