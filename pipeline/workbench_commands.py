@@ -36,6 +36,7 @@ from workbench.report import (
 )
 from workbench.report.as_json import comparison_json, diagnosis_json, validation_json
 from workbench.report.sentences import (
+    NO_GAIN,
     bound_sentences,
     conclusions,
     left_out_sentence,
@@ -348,8 +349,9 @@ def _print_found(d: Diagnosis) -> None:
         f"nothing missing {d.p_nothing_missing:.3f}, something unknown {d.p_something_remains:.3f}, "
         f"none of these (unknown, no effect) {d.p_none_of_these:.3f}"
     )
+    print("Is there: probability, alone or with others. Best with it: evidence of the best explanation that holds it.")
     print(left_out_sentence(d), f"Rows that no fit has seen: {sealed_sentence(d)}", sep="\n")
-    for option in d.next_measurements[:3]:
+    for option in (m for m in d.next_measurements[:3] if m.gain_nats >= NO_GAIN):
         print(f"next: {option.words} (expected {factor_text(option.gain_nats)} in the odds)")
     print()
 

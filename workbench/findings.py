@@ -385,7 +385,10 @@ class FinalParameter:
 
 @dataclass(frozen=True)
 class LearnedAt:
-    """Where a channel was fitted. conditions: name -> low and high of the fitted rows, unit"""
+    """Where a response of a kind of measurement was fitted.
+
+    channel: ``back_emf.voltage``;  conditions: name -> low and high of the fitted rows, unit
+    """
 
     channel: str
     rows: int

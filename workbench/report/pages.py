@@ -13,6 +13,7 @@ from figures.report import Code, KeyNumber, KeyNumbers, Picture, Remark, Section
 from workbench.findings import ChannelFit, Comparison, Diagnosis, LearnedAt, Ledger, LedgerStep, Ranked
 from workbench.report import beliefs, channels, operating_range, structure
 from workbench.report.sentences import (
+    NO_GAIN,
     Reading,
     bound_sentences,
     channels_off,
@@ -48,7 +49,6 @@ from workbench.report.words import (
 )
 
 _NOTHING_MORE: Mapping[str, str] = MappingProxyType({})
-_NO_GAIN = 0.01  # nats, a factor of 1.01 in the odds
 _UNKNOWN = "–"
 _FEW_MAPS = 6  # regime maps of one picture
 
@@ -393,7 +393,7 @@ def _next(d: Diagnosis) -> tuple[Section, ...]:
     if not d.next_measurements:
         return ()
     best = max(d.next_measurements, key=lambda m: m.gain_nats / m.cost)
-    if best.gain_nats < _NO_GAIN:
+    if best.gain_nats < NO_GAIN:
         said = "No measurement that was weighed is expected to change the odds by 1 %."
         return (Section("What to measure next", (said,)),)
     gain = f"expected to change the odds by {factor_text(best.gain_nats)} at cost {amount(best.cost)}"
@@ -448,11 +448,15 @@ def _steps(ledger: Ledger) -> Table:
 def _reasons(ledger: Ledger) -> tuple[str | Remark, ...]:
     """Why each step was taken or refused."""
     said = (
-        (s.decision, f"Step {s.step}, {plain(s.effect)}, was {s.decision}: {s.reason.rstrip('.')}.")
+        (s.decision, f"Step {s.step}, {plain(s.effect)}, was {s.decision}: {_reason(s)}.")
         for s in ledger.steps
         if s.reason
     )
     return tuple(Remark(words) if decision == "refused" else words for decision, words in said)
+
+
+def _reason(step: LedgerStep) -> str:
+    return step.reason.rstrip(".").replace("chi2", "chi²")
 
 
 def _final(ledger: Ledger) -> tuple[Section, ...]:
@@ -463,7 +467,10 @@ def _final(ledger: Ledger) -> tuple[Section, ...]:
          "90 % interval": bounds(p.estimate)}
         for p in ledger.parameters
     ]  # fmt: skip
-    caption = "After the last fit of all together. Of an input: shift from the drawing; of an instrument: its error."
+    caption = (
+        "After the last fit of all together, intervals by its curvature. Of an input: shift from the drawing; of an "
+        "instrument: its error."
+    )
     return (Section("The final parameters", (Table(pd.DataFrame(rows), caption),)),)
 
 
@@ -487,7 +494,7 @@ def _learned(ledger: Ledger) -> tuple[Section, ...]:
     if not ledger.ranges:
         return ()
     rows = [
-        {"channel": r.channel, "rows": r.rows, "chi²/n": chi2_text(r.chi2_per_n), "conditions": _spans(r)}
+        {"kind and response": r.channel, "rows": r.rows, "chi²/n": chi2_text(r.chi2_per_n), "conditions": _spans(r)}
         for r in ledger.ranges
     ]
     table = Table(pd.DataFrame(rows), "Range of the conditions of the rows that were fitted.")

@@ -47,6 +47,7 @@ ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
 IMPROBABLE = 0.05  # probability of "nothing is missing" below which something is
 POOR = 2.0  # chi2/n of fitted rows above which an effect does not explain them
+NO_GAIN = 0.01  # nats, 1 % of the odds, below which a measurement is not worth its cost
 NEGLIGIBLE = 1e-3  # probability that is not worth a word
 ALARMING_PART = 1.5  # odd or even part over what noise alone gives
 
@@ -138,8 +139,8 @@ def _scoreboard(c: Comparison) -> tuple[str, bool]:
     if not off:
         worst = max(c.scoreboard, key=lambda score: score.chi2_per_n)
         return (
-            f"All {len(c.scoreboard)} channels are at the noise, as far as its size is known; the worst, "
-            f"{worst.channel}, has chi²/n = {chi2_text(worst.chi2_per_n)}.",
+            f"Every channel is at its noise, as far as the size of it is known; the worst, {worst.channel}, has "
+            f"chi²/n = {chi2_text(worst.chi2_per_n)}.",
             False,
         )
     worst = max(off, key=lambda score: score.excess_share)

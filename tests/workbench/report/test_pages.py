@@ -124,7 +124,7 @@ def test_the_signature_is_shown_where_no_effect_explains(tmp_path, diagnosis):
 
 
 def test_reasons_of_every_step_stay_visible(pages):
-    assert "was refused: the data speak for (odds 10^13.0) the effect; chi2/n left out goes from" in pages["ledger"]
+    assert "was refused: the data speak for (odds 10^13.0) the effect; chi²/n left out goes from" in pages["ledger"]
     assert len(re.findall(r"Step \d, [a-z ]+, was accepted: the data speak for", pages["ledger"])) == 3
 
 
