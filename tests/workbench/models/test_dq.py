@@ -17,7 +17,8 @@ from effects.mechanical.friction_torque import FrictionTorque
 from electrical.synchronous_machine import SynchronousMachine
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.models.dq.model import BASE, Operation
+from workbench.models.dq.model import BASE
+from workbench.models.dq.operation import Operation
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = DqMachine(4, 0.1, 3e-3, 4e-3, 0.5)
