@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from effects.base import DesignEffect, Effect, InstrumentEffect, ResponseEffect
+from effects.base import Columns, DesignEffect, Effect, InstrumentEffect, ResponseEffect, StateEffect
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel
@@ -43,12 +43,14 @@ class Model:
         kind, conditions = table.kind, dict(table.conditions)
         for effect in self._of(InstrumentEffect):
             conditions = dict(effect.on_condition(conditions, kind))
-        design = self.design_as_built
+        design, order = self.design_as_built, {"order": table.order}
+        for effect in self._of(StateEffect):
+            conditions = without_order(effect.on_state({**conditions, **order}, kind, design))
         response = self.base.respond(design, kind, conditions)
         for effect in self._of(ResponseEffect):
-            response = dict(effect.on_response(response, conditions, kind, design))
+            response = dict(effect.on_response(response, {**conditions, **order}, kind, design))
         for effect in self._of(InstrumentEffect):
-            response = dict(effect.on_reading(response, {**conditions, "order": table.order}, kind))
+            response = dict(effect.on_reading(response, {**conditions, **order}, kind))
         return response
 
     @property
@@ -61,3 +63,8 @@ class Model:
 
     def _of(self, kind: type) -> list:
         return [effect for effect in self.effects if isinstance(effect, kind)]
+
+
+def without_order(conditions: Columns) -> dict[str, np.ndarray]:
+    """The conditions that a base model is asked at; it does not know what was measured first."""
+    return {name: values for name, values in conditions.items() if name != "order"}

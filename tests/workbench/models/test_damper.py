@@ -31,6 +31,11 @@ THESIS = Damper(sqrt(2 / 3) * 0.0493 / TAU, 0.0683, 5.6, 250.0, 348.7e-6 / 1.0, 
 FREQUENCY = np.array([1.0, 4.0, 12.0, 40.0])
 AMPLITUDE = np.full(4, 2e-3)
 SHUNT = np.full(4, 1.0)
+SWEEP = Drive(FREQUENCY, AMPLITUDE, SHUNT)
+
+
+def one(frequency: float, amplitude: float = 2e-3, shunt: float = 1.0) -> Drive:
+    return Drive(*(np.array([value]) for value in (frequency, amplitude, shunt)))
 
 
 def as_printed(d: Damper, frequency, shunt):
@@ -47,7 +52,7 @@ def as_printed(d: Damper, frequency, shunt):
 
 @pytest.mark.parametrize("shunt", [0.0, 0.055, 0.465, 1e6])
 def test_linear_impedance_is_the_printed_equation(shunt):
-    ours = linear_impedance(THESIS, FREQUENCY, np.full(4, shunt))
+    ours = linear_impedance(THESIS, Drive(FREQUENCY, AMPLITUDE, np.full(4, shunt)))
     assert ours == pytest.approx(as_printed(THESIS, FREQUENCY, shunt), rel=1e-12)
 
 
@@ -56,8 +61,8 @@ def test_linear_impedance_is_the_printed_equation(shunt):
 def test_harmonic_balance_of_a_linear_damper_is_the_closed_form(stiffness, inductance):
     loss = 0.0 if stiffness == inf else 50.0
     d = replace(PLAIN, mount_stiffness=stiffness, mount_damping=loss, inductance=inductance)
-    ours = fundamental(d, Drive(FREQUENCY, AMPLITUDE, SHUNT))
-    assert ours == pytest.approx(linear_impedance(d, FREQUENCY, SHUNT), rel=1e-11)
+    ours = fundamental(d, SWEEP)
+    assert ours == pytest.approx(linear_impedance(d, SWEEP), rel=1e-11)
 
 
 def integrated(d: Damper, frequency: float, amplitude: float, shunt: float, law=lambda v: 0.0, play=0.0, contact=None):
@@ -88,15 +93,15 @@ def integrated(d: Damper, frequency: float, amplitude: float, shunt: float, law=
 
 def test_mount_and_inductance_against_integration_in_time():
     d = replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=5e-3)
-    ours = linear_impedance(d, np.array([20.0]), np.array([1.0]))[0]
+    ours = linear_impedance(d, one(20.0))[0]
     assert ours == pytest.approx(integrated(d, 20.0, 2e-3, 1.0), rel=2e-4)
 
 
 def test_a_law_behind_a_mount_with_inductance_against_integration_in_time():
     d = replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=5e-3).with_force(QuadraticDrag(3000.0))
-    ours = impedance(d, *(np.array([value]) for value in (20.0, 2e-3, 1.0)))[0]
+    ours = impedance(d, one(20.0))[0]
     right = integrated(d, 20.0, 2e-3, 1.0, law=lambda v: 3000.0 * v * abs(v))
-    assert abs(ours - linear_impedance(d, np.array([20.0]), np.array([1.0]))[0]) > 100.0  # the law matters
+    assert abs(ours - linear_impedance(d, one(20.0))[0]) > 100.0  # the law matters
     assert ours == pytest.approx(right, rel=1e-3)
 
 
@@ -104,23 +109,23 @@ def test_a_law_behind_a_mount_with_inductance_against_integration_in_time():
 def test_play_against_integration_of_a_hard_contact(frequency, shunt):
     play = 2e-4
     d = Backlash(play).on_design(PLAIN)
-    ours = impedance(d, *(np.array([value]) for value in (frequency, 2e-3, shunt)))[0]
+    ours = impedance(d, one(frequency, shunt=shunt))[0]
     contact = (5e7, 2 * sqrt(5e7 * PLAIN.moving_mass))  # N/m, critically damped, so that nothing rebounds
     right = integrated(PLAIN, frequency, 2e-3, shunt, play=play, contact=contact)
-    tight = linear_impedance(PLAIN, np.array([frequency]), np.array([shunt]))[0]
+    tight = linear_impedance(PLAIN, one(frequency, shunt=shunt))[0]
     assert abs(ours - right) < 0.12 * abs(right - tight)
 
 
 def test_coulomb_friction_has_the_describing_function_of_a_square_wave():
     d = PLAIN.with_force(CoulombFriction(10.0, reversal=1e-5))
-    ours = impedance(d, FREQUENCY, AMPLITUDE, SHUNT) - linear_impedance(PLAIN, FREQUENCY, SHUNT)
+    ours = impedance(d, SWEEP) - linear_impedance(PLAIN, SWEEP)
     assert ours.real == pytest.approx(4 * 10.0 / (pi * 2 * pi * FREQUENCY * AMPLITUDE), rel=5e-4)
     assert np.abs(ours.imag).max() < 1e-9
 
 
 def test_quadratic_drag_has_its_describing_function():
     d = PLAIN.with_force(QuadraticDrag(100.0))
-    ours = impedance(d, FREQUENCY, AMPLITUDE, SHUNT) - linear_impedance(PLAIN, FREQUENCY, SHUNT)
+    ours = impedance(d, SWEEP) - linear_impedance(PLAIN, SWEEP)
     assert ours.real == pytest.approx(8 / (3 * pi) * 100.0 * 2 * pi * FREQUENCY * AMPLITUDE, rel=2e-6)
 
 
@@ -129,9 +134,7 @@ def test_hysteresis_drag_loses_the_area_of_its_loop(distance):
     """4 level (A - d tanh(A / d)), the integral of the two branches."""
     level, amplitude = 7.0, 0.05
     d = PLAIN.with_force(HysteresisDrag(level, distance))
-    z = impedance(d, np.array([1.0]), np.array([amplitude]), np.array([1.0])) - linear_impedance(
-        PLAIN, np.array([1.0]), np.array([1.0])
-    )
+    z = impedance(d, one(1.0, amplitude)) - linear_impedance(PLAIN, one(1.0))
     omega = 2 * pi
     loss = pi * z.real[0] * omega * amplitude**2  # energy of a period from the fundamental
     assert loss == pytest.approx(4 * level * (amplitude - distance * np.tanh(amplitude / distance)), rel=0.01)
@@ -178,7 +181,7 @@ def test_force_loop_encloses_the_power_of_the_impedance():
         d, "force_loop", {"phase": phase, "frequency": 5 * same, "amplitude": 2e-3 * same, "shunt": same}
     )["force"]
     top = 2 * pi * 5 * 2e-3
-    re = impedance(d, np.array([5.0]), np.array([2e-3]), np.array([1.0])).real[0]
+    re = impedance(d, one(5.0)).real[0]
     assert np.mean(loop * top * np.cos(phase)) == pytest.approx(0.5 * re * top**2, rel=2e-4)
 
 
