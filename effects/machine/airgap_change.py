@@ -13,12 +13,17 @@ from units import MILLIMETRE
 
 @dataclass(frozen=True)
 class AirgapChange(DesignEffect):
-    """The air gap is larger or smaller than drawn all round, beyond its tolerance."""
+    """The air gap is larger or smaller than drawn all round: the bore moves, slots and shoes with it.
+
+    Grinding that leaves the slots or the rotor core is ``bore_grinding`` and ``magnet_grinding``.
+    """
 
     title = "air gap not as drawn"
     looks_like = "voltage, torque and inductance change together, cogging most of all"
     remedy = ("feeler gauge or bore and rotor diameter", "inductance")
     designs = (MachineAsBuilt,)
+    base_rate = 0.015
+    base_rate_source = "judgement: stacked tolerances of bore and rotor"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(

@@ -22,6 +22,8 @@ class CutEdgeDamage(DesignEffect):
     looks_like = "lower flux at low and medium saturation; narrow teeth suffer most"
     remedy = ("core loss and permeability of cut rings of two widths", "flux linkage at low current")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: punched sheets have it, it shows at low flux only"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     loss: float = parameter(

@@ -22,6 +22,8 @@ class DynamicEccentricity(DesignEffect):
     looks_like = "faint cogging orders near multiples of the slots; even in its size for a machine of two alike halves"
     remedy = ("run-out with a dial gauge", "bearing force", "back-EMF of single coils")
     designs = (MachineAsBuilt,)
+    base_rate = 0.02
+    base_rate_source = "judgement: bent or badly centred rotors of prototypes"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     share: float = parameter(

@@ -18,6 +18,8 @@ class LaminationStacking(DesignEffect):
     looks_like = "less torque and flux change at high current, little without current"
     remedy = ("weight of the stack", "flux linkage at the highest current")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: declared stacking factors are good to 1 or 2 %"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     loss: float = parameter(

@@ -22,6 +22,8 @@ class LostTurns(DesignEffect):
     looks_like = "one phase lower in voltage, flux change and resistance, torque ripple with the poles"
     remedy = ("resistance and back-EMF of single coils",)
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: hand-wound coils"
 
     coil: int = 0  # its number
     turns: float = parameter(

@@ -19,6 +19,8 @@ class MagnetPosition(DesignEffect):
     looks_like = "cogging orders that are multiples of the slots, hardly a trace in the fundamental of the voltage"
     remedy = ("angles between the poles with a gaussmeter",)
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: one magnet slips while the glue sets"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     magnet: int = 0  # its number

@@ -18,6 +18,8 @@ class MagnetisationPattern(DesignEffect):
     looks_like = "third harmonic of the voltage and locked-rotor torque change"
     remedy = ("field around the bare rotor", "harmonics of the back-EMF")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: what a fixture makes is seldom checked"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     share: float = parameter(

@@ -18,6 +18,8 @@ class PhaseImbalance(DesignEffect):
     looks_like = "one phase off in voltage, flux change and resistance by the same share"
     remedy = ("resistance of the phases", "back-EMF of the phases")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: hand-wound phases"
 
     phase: int = 0  # 0 A, 1 B, 2 C
     share: float = parameter(0.0, "1", prior=Normal(0.02), low=-0.15, high=0.15, source="winding by hand")

@@ -18,6 +18,8 @@ class RecoilPermeability(DesignEffect):
     looks_like = "lower voltage and inductance-like changes: the magnets are a shorter magnetic gap"
     remedy = ("demagnetisation curve of a spare magnet", "flux linkage against current")
     designs = (MachineAsBuilt,)
+    base_rate = 0.005
+    base_rate_source = "judgement: data sheets are near"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     excess: float = parameter(

@@ -22,6 +22,8 @@ class RotorSkew(DesignEffect):
     looks_like = "cogging falls most, then the higher harmonics of the voltage"
     remedy = ("cogging", "look along the magnets")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: rotors put together without a jig"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     angle: float = parameter(

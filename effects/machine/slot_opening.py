@@ -19,6 +19,8 @@ class SlotOpening(DesignEffect):
     looks_like = "cogging of native order grows with the opening; locked-rotor torque changes little"
     remedy = ("width of the openings", "cogging")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: closing of slots and burrs"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(

@@ -18,6 +18,8 @@ class SteelSaturation(DesignEffect):
     looks_like = "flux change and torque at the highest currents off, little at low current"
     remedy = ("flux linkage at the highest current", "ring sample")
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: another alloy"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(0.0, "1", prior=Normal(0.04), low=-0.2, high=0.2, source="silicon content, 1.95 to 2.1 T")

@@ -18,6 +18,8 @@ class WeakMagnet(DesignEffect):
     looks_like = "cogging orders that are multiples of the slots, new orders beside the fundamental of the voltage"
     remedy = ("gaussmeter over every pole", "back-EMF of single coils")
     designs = (MachineAsBuilt,)
+    base_rate = 0.02
+    base_rate_source = "judgement: overheated or cracked magnets"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     magnet: int = 0  # its number

@@ -19,6 +19,8 @@ class WideSlot(DesignEffect):
     looks_like = "cogging orders that are multiples of the poles, no new orders in the voltage"
     remedy = ("width of the openings",)
     designs = (MachineAsBuilt,)
+    base_rate = 0.01
+    base_rate_source = "judgement: a damaged or burred tooth"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     slot: int = 0  # its number

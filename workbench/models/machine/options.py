@@ -30,6 +30,7 @@ def options(tables: Sequence[Table]) -> list[Option]:
         _option("drag", "drag from 50 to 2000 rpm, both directions", _both(SPEEDS), ("torque",), tables),
         _option("cogging", "cogging every 1.5 deg, both directions", _turn(COGGING_STEP), ("torque",), tables),
         _option("back_emf", "back-EMF at 2000 rpm, both directions", _fast_turn(), _phases("v"), tables),
+        _option("short_circuit", "short circuit from 50 to 2000 rpm", {"speed": SPEEDS}, ("torque",), tables),
         _option("phase_resistance", "resistance at 20 to 120 degC", {"winding_T": WINDING}, _phases("r"), tables),
     ]
     points = _loaded(tables)
