@@ -39,7 +39,6 @@ class MachineAsBuilt:
     dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: against the motion, all bearings together
     iron_loss: law of the sheet, None where none is known: no loss;  iron_loss_factor: loss of the stack over it [1]
     cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine
-    flux_scale: flux linkage shown over what is there [1]; of a meter that has no calibration of its own
     """
 
     machine: Machine
@@ -76,7 +75,6 @@ class MachineAsBuilt:
     iron_loss: IronLossLaw | None = None
     iron_loss_factor: float = 1.0
     cogging_of_mesh: float = 1.0
-    flux_scale: float = 1.0
 
     @classmethod
     def drawn(

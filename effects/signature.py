@@ -14,7 +14,8 @@ from typing import ClassVar
 import numpy as np
 
 Columns = Mapping[str, np.ndarray]
-NOTHING = 1e-9  # change over the reading below which there is none: rounding of a model that has to iterate
+NOTHING = 1e-6  # change over the largest reading below which none is claimed: no instrument of a bench would show it
+FAINT = 1e-6  # change over the largest change whose power is not looked at
 
 
 class Claim:
@@ -55,8 +56,8 @@ class Power(Claim):
 
     def error(self, conditions: Columns, change: np.ndarray) -> float:
         size = np.abs(conditions[self.of])
-        rows = (size >= self.low) & (size <= self.high) & (change != 0.0)
-        groups = _groups({k: v for k, v in conditions.items() if k != self.of}, rows)
+        rows = (size >= self.low) & (size <= self.high) & (np.abs(change) > FAINT * np.abs(change).max()) & (size > 0.0)
+        groups = _groups({k: v for k, v in conditions.items() if k not in (self.of, "order")}, rows)
         slopes = [_slope(size[g], change[g]) for g in groups if len(np.unique(size[g])) > 1]
         return float(np.max(np.abs(np.array(slopes) - self.exponent))) if slopes else np.inf
 
@@ -134,7 +135,8 @@ def _slope(size: np.ndarray, change: np.ndarray) -> float:
 
 def _mirrored(conditions: Columns, of: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of rows whose named conditions have the opposite sign and whose others are the same."""
-    plain = np.stack(list(conditions.values()), axis=1)
-    turned = np.stack([-v if k in of else v for k, v in conditions.items()], axis=1)
+    columns = {name: values for name, values in conditions.items() if name != "order"}
+    plain = np.stack(list(columns.values()), axis=1)
+    turned = np.stack([-values if name in of else values for name, values in columns.items()], axis=1)
     same = np.all(np.isclose(plain[None], turned[:, None], rtol=1e-12, atol=1e-12), axis=2)
     return np.nonzero(same)

@@ -53,7 +53,7 @@ KINDS: dict[str, Kind] = {
         ("dpsi_?", "psi_?"),
         ("i_?", "angle_mech"),
         says="Flux linkages of the phases at constant currents: dpsi_a the change against no current, psi_a the whole. "
-        "Integrated voltage shares the gain of the voltage: name it in u_sys of these columns.",
+        "As the integral of the voltage it shares voltage_gain; a meter of its own declares its gain in u_sys.",
     ),
     "inductance": Kind(
         ("l_?", "l_??"), ("i_?", "angle_mech"), says="l_a: change of the flux linkage of a phase over its own current."

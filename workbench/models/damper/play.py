@@ -48,9 +48,9 @@ def _change_marched(design: Damper, drive: Drive) -> np.ndarray:
 
 
 class _Flight:
-    """Half a period of the mass of a linear damper between the two ends of its play, in units of the top velocity.
+    """Half a period of the mass of a linear damper between the ends of its play, in units of the top velocity.
 
-    The driver presses with Re(Z e^(j theta)), Z = c + K^2 / (R + R_shunt) + j omega m. It stops at ``leaves``; from there
+    The driver presses with Re(Z e^(j theta)), Z = c + K^2 / (R + R_shunt) + j omega m. It stops at ``leaves``; then
     the mass flies with cos(leaves) exp(-slowing phi) and is ahead of the driver by ``ahead``, until that is the play.
     """
 

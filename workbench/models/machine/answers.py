@@ -35,7 +35,7 @@ class Answers:
         """
         d, drawn = self.design, self.surrogate.nominal
         names = ("phase_resistance", "lead_resistance", "end_winding_inductance", "dry_friction", "viscous_friction")
-        names += ("windage", "iron_loss", "iron_loss_factor", "cogging_of_mesh", "flux_scale", "end_leakage")
+        names += ("windage", "iron_loss", "iron_loss_factor", "cogging_of_mesh", "end_leakage")
         names += ("rotor_turn", "segments", "segment_angle", "shorted_turns", "shorted_coil")
         stepped = d.segment_angle * sqrt(d.segments**2 - 1)
         return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, stepped))

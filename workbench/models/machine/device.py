@@ -138,11 +138,10 @@ def _magnet_of(values: Mapping[str, float]) -> Magnet:
 _ALIASES = {"magnet.Br": "remanence", "length": "active_length"}
 _OF_THE_MAGNET = ("remanence", "recoil_permeability")
 _OWN_FIELDS = {"active_length": "length"} | {
-    name: name for name in ("cogging_of_mesh", "flux_scale", "end_winding_inductance", "iron_loss_factor")
+    name: name for name in ("cogging_of_mesh", "end_winding_inductance", "iron_loss_factor")
 }
 _PHASES = {"resistance_a": 0, "resistance_b": 1, "resistance_c": 2}
 _SCATTER_OF_A_PHASE = 0.004  # relative, of windings of one make beside each other: length of wire and of its ends
-_GAIN_OF_A_FLUX_METER = 0.002  # relative, of an integrator or digitiser in its calibration
 _COGGING_OF_MESH = 0.01  # cogging of good meshes of two codes differs by 0.5 mNm of 49 mNm (12 slots, 10 poles)
 _BUILDING_FACTOR = 0.3  # relative: loss of stacks over the data of their sheet, and of two regions over all elements
 _END_PERMEANCE = 0.3  # of an end turn over mu_0 and its length; 0.2 to 0.5 of concentrated windings
@@ -195,7 +194,6 @@ def own_tolerances(design: MachineAsBuilt) -> tuple[Tolerance, ...]:
     return (
         _relative("cogging_of_mesh", _COGGING_OF_MESH, "cogging of one mesh against finer ones and other codes"),
         *(_relative(name, _SCATTER_OF_A_PHASE, "phases wound alike, some tenths of a per cent") for name in _PHASES),
-        _relative("flux_scale", _GAIN_OF_A_FLUX_METER, "calibration of integrators and digitisers, 0.1 to 0.5 %"),
         Tolerance("end_winding_inductance", _end_uncertainty(design), relative=False, source=ends),
         *loss,
     )

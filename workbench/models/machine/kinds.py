@@ -43,14 +43,13 @@ def _locked_rotor(answers: Answers, at: Columns) -> Found:
 def _flux_linkage(answers: Answers, at: Columns) -> Found:
     change = answers.flux_change(at["angle_mech"], _currents(at))
     whole = change + answers.magnet_linkage(at["angle_mech"])
-    shown = answers.design.flux_scale
-    return _by_phase("dpsi", shown * change.T) | _by_phase("psi", shown * whole.T)
+    return _by_phase("dpsi", change.T) | _by_phase("psi", whole.T)
 
 
 def _inductance(answers: Answers, at: Columns) -> Found:
     """l_x = dpsi_x / i_x, of the phases that carry current in every row."""
     currents = _currents(at)
-    change = answers.design.flux_scale * answers.flux_change(at["angle_mech"], currents)
+    change = answers.flux_change(at["angle_mech"], currents)
     return {f"l_{x}": change[:, k] / currents[:, k] for k, x in enumerate(PHASES) if np.all(currents[:, k] != 0.0)}
 
 
@@ -68,8 +67,7 @@ def _short_circuit(answers: Answers, at: Columns) -> Found:
     The shaft covers the copper loss, T = -sum R |I|^2/2/speed. Without the saturation that the current makes.
     """
     speed, resistances = at["speed"], answers.resistances(at)
-    if not np.all(resistances > 0):
-        raise WorkbenchError("a short circuit needs the resistance of the winding: give phase_resistance in [device]")
+    _need_resistance(answers.design)
     currents = _joined_terminals(answers, speed, resistances)
     power = (resistances * np.abs(currents) ** 2).sum(axis=1) / 2
     torque = -np.divide(power, speed, out=np.zeros_like(power), where=speed != 0.0)
@@ -107,6 +105,7 @@ def dq_machine(answers: Answers) -> DqMachine:
     """
     waves = answers.linkage_waves()[:, answers.design.machine.pole_pairs]
     l_d, l_q = _rotor_frame(answers, waves / np.abs(waves))
+    _need_resistance(answers.design)
     resistance = float(answers.resistances({"speed": np.zeros(1)}).mean())
     psi_m = float(np.abs(waves).mean())
     return DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, resistance).with_torque(_Drag(answers))
@@ -147,6 +146,11 @@ KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
 }
 _WITH_CURRENTS = ("locked_rotor", "flux_linkage", "inductance")
 _WITH_INDUCTANCE = ("short_circuit", "no_load", "dyno_map")
+
+
+def _need_resistance(design: MachineAsBuilt) -> None:
+    if not all(design.phase_resistance):
+        raise WorkbenchError("currents at speed need the resistance of the winding: give phase_resistance in [device]")
 
 
 def _by_phase(quantity: str, rows: np.ndarray) -> Found:

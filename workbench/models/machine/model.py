@@ -19,8 +19,7 @@ Signs: angles and torques count counter-clockwise, the torque is that on the rot
 outwards, and a voltage is + d(flux linkage)/dt at open terminals, with the sign of the speed. What brakes the rotor
 (``drag``) is negative at positive speed; in a table without speed the column ``direction`` says which way it creeps.
 ``no_load`` and ``dyno_map`` are answered by the fundamentals, with the flux, inductances, losses and resistance of the
-design, without saturation by the current. A gain of a flux meter is ``flux_scale`` of the model where the campaign
-declares none of its own; flux linkage from integrated voltage declares the voltage's gain in ``u_sys`` of its columns.
+design, without saturation by the current.
 """
 
 from __future__ import annotations
