@@ -137,6 +137,11 @@ class MachineAsBuilt:
         turns = tuple(n * (factor if coil.phase == phase else 1.0) for n, coil in zip(self.turns, coils))
         return replace(self, turns=turns)._with_resistance(phase, factor)
 
+    @property
+    def turns_of_phases(self) -> tuple[float, ...]:
+        """Turns of A, B and C in series."""
+        return tuple(sum(self._turns_of(phase)) for phase in range(3))
+
     def _turns_of(self, phase: int) -> list[float]:
         coils = star_of_slots(self.machine.slots, self.machine.pole_pairs).coils
         return [n for n, coil in zip(self.turns, coils) if coil.phase == phase]

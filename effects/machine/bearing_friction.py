@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import CREEP, SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,7 @@ class BearingFriction(DesignEffect):
     looks_like = "both directions of a cogging scan apart by twice the same torque"
     remedy = ("drag with a rotor without magnets",)
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 0.0))
     base_rate = 0.3
     base_rate_source = "judgement: every rotor turns in bearings, and few campaigns declare their friction"
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,7 @@ class BearingViscous(DesignEffect):
     looks_like = "drag in proportion to the speed"
     remedy = ("drag with a rotor without magnets",)
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 1.0))
     base_rate = 0.03
     base_rate_source = "judgement: greased bearings have it, seals and dry friction hide most of it"
 

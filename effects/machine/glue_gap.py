@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -23,6 +24,7 @@ class GlueGap(DesignEffect):
     looks_like = "voltage, cogging and torque constant all lower, and no temperature explains it"
     remedy = ("thickness of magnets and glue on a cut rotor", "remanence of a spare magnet")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: drawn rotors forget the glue now and then"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import PHASE_A, SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,7 @@ class InterturnShort(DesignEffect):
     looks_like = "as turns missing in one coil, and a drag that rises with the speed, at low speed in proportion to it"
     remedy = ("drag over speed", "resistance and back-EMF of single coils", "surge test")
     designs = (MachineAsBuilt,)
+    signature = (*PHASE_A, *SPEED)  # of the first variant
     contains = ("lost_turns",)
     base_rate = 0.005
     base_rate_source = "judgement: hand-wound prototypes now and then; a finished machine fails by it"

@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from effects.base import DesignEffect
+from effects.machine.places import CREEP, SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd
 from materials.iron_loss import LAWS
 
 STAND_IN = LAWS["M235-35A"]  # thin sheet; the factor holds what another grade and its punching make of it
@@ -26,6 +28,7 @@ class IronLoss(DesignEffect):
     looks_like = "drag that starts at a level, as dry friction, and rises with the speed; it falls with warm magnets"
     remedy = ("drag with a rotor without magnets, and the difference", "drag over speed")
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)))
     base_rate = 0.02
     base_rate_source = "judgement: always there, but a campaign that can show it mostly declares the sheet's loss data"
 

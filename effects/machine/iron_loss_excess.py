@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from effects.base import DesignEffect
+from effects.machine.places import CREEP, SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,7 @@ class IronLossExcess(DesignEffect):
     looks_like = "drag above the model in the proportion of the iron loss, at every speed"
     remedy = ("drag with a rotor without magnets, and the difference", "loss of a stamped ring")
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)))
     base_rate = 0.03
     base_rate_source = "judgement: punching, welding and flux that turns make it the rule, a declared factor holds most"
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from math import pi
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -24,6 +25,7 @@ class KneeDemagnetisation(DesignEffect):
     looks_like = "as narrower magnets, and the voltage is ahead or behind by half of what they lost"
     remedy = ("gaussmeter along a pole: one edge lower than the other", "back-EMF before and after an overload")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     contains = ("magnet_arc",)
     base_rate = 0.005
     base_rate_source = "judgement: after overloads of warm machines only"

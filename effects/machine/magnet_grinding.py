@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -19,6 +20,7 @@ class MagnetGrinding(DesignEffect):
     looks_like = "voltage and torque fall more than by a larger gap alone, the inductance rises hardly"
     remedy = ("diameter over the magnets", "thickness of a spare magnet")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: where fits are made by hand"
 

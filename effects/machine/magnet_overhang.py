@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import LEAKAGE
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,7 @@ class MagnetOverhang(DesignEffect):
     looks_like = "voltage and torque constant higher, as with stronger magnets, flux change with current unchanged"
     remedy = ("length of magnets and stack", "flux linkage against current")
     designs = (MachineAsBuilt,)
+    signature = LEAKAGE
     base_rate = 0.01
     base_rate_source = "judgement: overhangs are drawn mostly, and then declared"
 

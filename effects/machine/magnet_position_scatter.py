@@ -7,6 +7,7 @@ from typing import Any
 
 from effects.base import DesignEffect
 from effects.machine.around import waves
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -30,6 +31,7 @@ class MagnetPositionScatter(DesignEffect):
     )
     remedy = ("angles between the poles with a gaussmeter",)
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: as gluing by hand"
 

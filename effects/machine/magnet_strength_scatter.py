@@ -7,6 +7,7 @@ from typing import Any
 
 from effects.base import DesignEffect
 from effects.machine.around import waves
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -27,6 +28,7 @@ class MagnetStrengthScatter(DesignEffect):
     looks_like = "several cogging orders that are multiples of the slots, none of which one weak magnet explains"
     remedy = ("gaussmeter over every pole", "back-EMF of single coils")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.02
     base_rate_source = "judgement: unsorted magnets are the rule, most scatter by less than a bench can see"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,7 @@ class MagnetTemperature(DesignEffect):
     looks_like = "voltage, cogging and torque constant all lower; flux change with current hardly different"
     remedy = ("back-EMF after a night without current", "remanence of a spare magnet")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.04
     base_rate_source = "judgement: few benches read the temperature of the magnets"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -24,6 +25,7 @@ class PressFitStress(DesignEffect):
     looks_like = "slightly lower flux where the steel is not saturated, and more drag"
     remedy = ("inductance and drag before and after pressing in", "ring sample under stress")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.005
     base_rate_source = "judgement: shrunk housings are common, its trace in an air-gap machine is faint"
 

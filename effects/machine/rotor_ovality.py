@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal, Uniform
@@ -26,6 +27,7 @@ class RotorOvality(DesignEffect):
     looks_like = "cogging orders that are multiples of the slots, next to none in the voltage"
     remedy = ("run-out with a dial gauge: two waves a revolution",)
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.005
     base_rate_source = "judgement: ground or turned rotors are round"
 

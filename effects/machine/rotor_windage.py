@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,7 @@ class RotorWindage(DesignEffect):
     looks_like = "drag that grows with the square of the speed"
     remedy = ("drag up to the highest speed", "drag with the fan or the open coupling covered")
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 2.0))
     base_rate = 0.005
     base_rate_source = "judgement: seen with fans and at high speed only"
 

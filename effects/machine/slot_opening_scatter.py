@@ -7,6 +7,7 @@ from typing import Any
 
 from effects.base import DesignEffect
 from effects.machine.around import waves
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -31,6 +32,7 @@ class SlotOpeningScatter(DesignEffect):
     looks_like = "several cogging orders that are multiples of the poles, no new orders in the voltage"
     remedy = ("width of the openings with gauge blocks",)
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: stators put together from segments have it, punched rings do not"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -21,6 +22,7 @@ class SteelGrade(DesignEffect):
     looks_like = "slightly lower flux everywhere, most where the steel begins to saturate"
     remedy = ("ring sample", "flux linkage over current")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: another grade or sheet not annealed"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -23,6 +24,7 @@ class SteppedSkew(DesignEffect):
     looks_like = "as skew: cogging falls most, then the higher harmonics of the voltage; the highest orders come back"
     remedy = ("look along the magnets", "cogging", "high orders of the back-EMF")
     designs = (MachineAsBuilt,)
+    signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: rotors put together from segments only"
 

@@ -18,10 +18,12 @@ the other way round; 0 to 1), loss (electrical less shaft power). A table has an
 chooses is in ``control``; with v_dc its voltage is limited.
 
 Where a temperature is not measured the machine is at its reference temperature. Every kind also knows the states
-resistance_factor and flux_factor, phase resistance and magnet flux linkage of a row over those of the design. ``[device]`` keys are the fields of
-``DqMachine`` with a unit at their end: pole_pairs, psi_m_Vs, inductance_d_mH, inductance_q_mH, resistance_mohm (of one
-phase of a star), and if known reference_T_degC, copper_coefficient and remanence_coefficient [1/K], iron_conductance
-[1/ohm], voltage_per_dc (0.577 for space vectors up to their circle, 0.637 for six steps).
+resistance_factor and flux_factor, phase resistance and magnet flux linkage of a row over those of the design.
+
+``[device]`` keys are the fields of ``DqMachine`` with a unit at their end: pole_pairs, psi_m_Vs, inductance_d_mH,
+inductance_q_mH, resistance_mohm (of one phase of a star), and if known reference_T_degC, copper_coefficient and
+remanence_coefficient [1/K], iron_conductance [1/ohm], voltage_per_dc (0.577 for space vectors up to their circle, 0.637
+for six steps).
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from effects.machine_design import MachineAsBuilt
 from materials.conductor import COPPER
 from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
 
-LOAD_ANGLES = 4  # rotor positions of a sixth of an electrical period over which inductances are averaged
+LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
 _PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
 _MAGNET_MEMORY = 61  # rows; a magnet warms over minutes, what its reading does from row to row is noise
 
@@ -115,10 +115,16 @@ class Answers:
 
     @cached_property
     def inductances(self) -> np.ndarray:
-        """d psi of a phase / d i of another [H] (3, 3), end winding included: without current, over the rotor angle."""
+        """d psi of a phase / d i of another [H] (3, 3), end winding included: without current, over the rotor angle.
+
+        Self and mutual inductance per turn are taken alike for all phases, as they are over a whole period.
+        """
         angle = load_angles(self.design)
         columns = [self.flux_change(angle, np.tile(_PROBE * unit, (len(angle), 1))) for unit in np.eye(3)]
-        return np.stack([column.mean(axis=0) / _PROBE for column in columns], axis=1)
+        found = np.stack([column.mean(axis=0) / _PROBE for column in columns], axis=1)
+        turns = self.design.turns_of_phases
+        per_turn, own = found / np.outer(turns, turns), np.eye(3, dtype=bool)
+        return np.where(own, per_turn[own].mean(), per_turn[~own].mean()) * np.outer(turns, turns)
 
     def resistances(self, at: Columns) -> np.ndarray:
         """Of the phases with their leads (n, 3) [ohm]: R_20 (1 + alpha (T - 20 degC)) at winding_T."""
@@ -131,7 +137,7 @@ class Answers:
 
 def load_angles(design: MachineAsBuilt) -> np.ndarray:
     """Rotor angles [rad] over a sixth of an electrical period, after which the phases change their places."""
-    return np.arange(LOAD_ANGLES) * pi / (3 * design.machine.pole_pairs * LOAD_ANGLES)
+    return (np.arange(LOAD_ANGLES) + 0.5) * pi / (3 * design.machine.pole_pairs * LOAD_ANGLES)
 
 
 def at_magnet_temperatures(

@@ -115,7 +115,7 @@ def _of_shorted_turns(answers: Answers, at: Columns) -> tuple[np.ndarray, float]
     """Resistance (n,) [ohm] and inductance [H]: their share of what is left of the phase; the gap over their tooth."""
     d, layout = answers.design, answers.surrogate.layout
     phase = layout.coils[d.shorted_coil].phase
-    turns = sum(n for n, coil in zip(d.turns, layout.coils) if coil.phase == phase)
+    turns = d.turns_of_phases[phase]
     if not (d.phase_resistance[phase] and turns):
         raise WorkbenchError("shorted turns brake by their resistance: give phase_resistance in [device]")
     winding = answers.resistances(at)[:, phase] - d.lead_resistance[phase]
