@@ -18,8 +18,8 @@ from electrical.dq import DriveLimits, operating_map
 from electrical.synchronous_machine import SynchronousMachine
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.models.dq.model import BASE
 from workbench.models.dq.control import least_current
+from workbench.models.dq.model import BASE
 from workbench.models.dq.operation import Operation
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"

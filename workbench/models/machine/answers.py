@@ -77,18 +77,23 @@ class Answers:
         """Flux linkages of the phases without current [Wb] (n, 3)."""
         return self.design.length * self.kept * evaluated(self.spectrum[1:], self._on_the_rotor(angle)).T
 
-    def linkage_waves(self, turns: tuple[float, ...] | None = None) -> np.ndarray:
-        """Complex amplitudes over the revolution of the phases' flux linkages [Wb] (3, orders), or with other turns."""
-        spectrum = self.spectrum
-        if turns is not None:
-            spectrum = self._along_the_length(self.surrogate.spectrum(replace(self.in_field, turns=turns)))
-        back = np.exp(-1j * np.arange(spectrum.shape[1]) * self.design.rotor_turn)
-        return self.design.length * self.kept * spectrum[1:] * back
+    @cached_property
+    def linkage_waves(self) -> np.ndarray:
+        """Complex amplitudes over the revolution of the phases' flux linkages [Wb] (3, orders)."""
+        back = np.exp(-1j * np.arange(self.spectrum.shape[1]) * self.design.rotor_turn)
+        return self.design.length * self.kept * self.spectrum[1:] * back
 
-    def coil_wave(self, coil: int) -> np.ndarray:
-        """The same of one turn of one coil (orders,)."""
-        turns = tuple(float(k == coil) for k in range(len(self.design.turns)))
-        return self.linkage_waves(turns)[self.surrogate.layout.coils[coil].phase]
+    def tooth_wave(self, tooth: int) -> np.ndarray:
+        """Complex amplitudes of the flux of the magnets through a tooth [Wb] (orders,).
+
+        Its shape as drawn, its size in the proportion of the fundamental of the phases.
+        """
+        drawn = self.surrogate.nominal
+        now, then = (self._fundamental(design) for design in (replace(self.in_field, turns=drawn.turns), drawn))
+        return self.design.length * self.kept * self.surrogate.no_load[1 + tooth] * (now / then)
+
+    def _fundamental(self, design: MachineAsBuilt) -> float:
+        return float(np.abs(self.surrogate.spectrum(design)[1:, self.design.machine.pole_pairs]).mean())
 
     def loaded_torque(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """Torque [Nm]: cogging, and what magnets and currents make together, which goes with the magnets' flux."""

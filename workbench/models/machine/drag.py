@@ -62,7 +62,7 @@ def _region_waves(answers: Answers) -> tuple[np.ndarray, np.ndarray]:
     """
     d = answers.design
     m = d.cross_section
-    flux = answers.coil_wave(0) / d.length / d.stacking_factor
+    flux = answers.tooth_wave(0) / d.length / d.stacking_factor
     between = 1.0 - np.exp(1j * np.arange(len(flux)) * m.slot_pitch)
     passes = np.abs(between) > 1e-9  # orders that are multiples of the slots stay in the gap
     yoke = np.where(passes, flux / np.where(passes, between, 1.0), 0.0)
@@ -105,7 +105,7 @@ def shorted_turns_torque(answers: Answers, speed: np.ndarray, at: Columns) -> np
         return np.zeros_like(speed)
     resistance, inductance = _of_shorted_turns(answers, at)
     order = np.arange(answers.spectrum.shape[1])
-    linkage = d.shorted_turns * np.abs(answers.coil_wave(d.shorted_coil))
+    linkage = d.shorted_turns * np.abs(answers.tooth_wave(d.shorted_coil))
     reactance = inductance * order * np.abs(speed)[:, None]
     share = resistance[:, None] / (resistance[:, None] ** 2 + reactance**2)
     return np.abs(speed) * (share @ (order * linkage) ** 2) / 2

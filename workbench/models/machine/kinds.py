@@ -84,7 +84,7 @@ def _joined_terminals(answers: Answers, speed: np.ndarray, resistances: np.ndarr
     matrix[:, :3, :3] = 1j * omega[:, :, None] * answers.inductances + resistances[:, :, None] * np.eye(3)
     matrix[:, :3, 3], matrix[:, 3, :3] = -1.0, 1.0
     driven = np.zeros((len(speed), 4, 1), dtype=complex)
-    driven[:, :3, 0] = -1j * omega * answers.linkage_waves()[:, pairs]
+    driven[:, :3, 0] = -1j * omega * answers.linkage_waves[:, pairs]
     return np.linalg.solve(matrix, driven)[:, :3, 0]
 
 
@@ -103,7 +103,7 @@ def dq_machine(answers: Answers) -> DqMachine:
 
     Without saturation by its current; iron loss, friction and shorted turns brake the shaft.
     """
-    waves = answers.linkage_waves()[:, answers.design.machine.pole_pairs]
+    waves = answers.linkage_waves[:, answers.design.machine.pole_pairs]
     l_d, l_q = _rotor_frame(answers, waves / np.abs(waves))
     _need_resistance(answers.design)
     resistance = float(answers.resistances({"speed": np.zeros(1)}).mean())
