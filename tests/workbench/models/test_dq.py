@@ -219,3 +219,19 @@ def test_no_load_fed_and_driven():
 def test_a_map_at_currents_is_another_kind():
     with pytest.raises(WorkbenchError, match="dq_operation"):
         BASE.respond(PLAIN, "dyno_map", {"speed": SPEED, "i_d": SPEED, "i_q": SPEED})
+
+
+def test_the_bench_answers_every_option():
+    """The speeds, torques and instruments of the Prius campaign; a dynamometer map among what is proposed."""
+    campaign = read_campaign(MEASUREMENTS / "prius-2004")
+    design = BASE.design(campaign.device)
+    found = {option.kind: option for option in BASE.options(design, campaign)}
+    assert set(found) == {"back_emf", "dyno_map"}  # nobody read torque or resistance there
+    for option in found.values():
+        answer = BASE.respond(design, option.kind, option.conditions)
+        assert all(
+            np.all(np.isfinite(answer[name])) and answer[name].shape == u.shape for name, u in option.random.items()
+        )
+    assert found["dyno_map"].conditions["torque"].max() == max(
+        t.conditions["torque"].max() for t in campaign.tables[1:]
+    )

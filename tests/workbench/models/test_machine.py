@@ -132,7 +132,7 @@ def test_exact_at_one_design_after_another():
 def test_a_state_just_before_a_revolution_is_the_one_at_its_start():
     currents = {f"i_{x}": np.array([30.0, 30.0]) for x in "abc"}
     table = SimpleNamespace(kind="locked_rotor", conditions={"angle_mech": np.radians([359.848, 0.1]), **currents})
-    assert [state.angle for state in loaded_states(drawn(), [table])] == [0.0]
+    assert [s.angle for s in loaded_states(drawn(), [table]) if any(s.currents)] == [0.0]
 
 
 def test_sentences():

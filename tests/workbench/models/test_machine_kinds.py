@@ -76,7 +76,7 @@ def test_flux_of_a_tooth_comes_from_the_yoke_on_its_both_sides():
 
 
 def test_iron_loss_is_a_drag_of_its_own_shape_and_follows_the_magnets():
-    """Level, slope and root; half the loss factor halves them, it falls with weaker magnets, in teeth that are nearly full."""
+    """Level, slope and root of the speed; weaker magnets lose less, by the power of the flux density."""
     design = IronLoss(factor=1.0).on_design(drawn())
     level, slope, root = iron_torques(Answers(surrogate(), design))
     found = respond("drag", design, speed=SPEED)["torque"]

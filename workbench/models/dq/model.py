@@ -28,19 +28,20 @@ for six steps).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import sqrt
 
 import numpy as np
 
 from effects.base import Columns
 from effects.dq_design import DqMachine
-from workbench.data.table import Tolerance
+from workbench.data.table import Campaign, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models import device
-from workbench.models.base import BaseModel
+from workbench.models.base import BaseModel, Option
 from workbench.models.dq.control import least_current, within_voltage
 from workbench.models.dq.operation import PEAK_OF_LINE_RMS, Operation, newton
+from workbench.models.dq.options import options
 
 _REQUIRED = ("pole_pairs", "psi_m", "inductance_d", "inductance_q", "resistance")
 _OPTIONAL = ("reference_T", "copper_coefficient", "remanence_coefficient", "iron_conductance", "voltage_per_dc")
@@ -71,6 +72,10 @@ class DqModel(BaseModel):
                 f"a dq machine cannot answer a table of kind {kind!r}; it knows {', '.join(sorted(_ANSWERS))}"
             )
         return _ANSWERS[kind](Operation(design, conditions))
+
+    def options(self, design: DqMachine, campaign: Campaign) -> Sequence[Option]:
+        """What could be measured next, with the instruments that the campaign shows."""
+        return options(campaign.tables)
 
 
 def _back_emf(operation: Operation) -> dict[str, np.ndarray]:

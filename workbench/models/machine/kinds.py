@@ -172,12 +172,18 @@ def loaded_states(design: MachineAsBuilt, tables: Sequence[Table]) -> tuple[Load
     found: dict[LoadedState, None] = {}
     for table in tables:
         found |= dict.fromkeys(_states_of(design, table))
+    if found:  # a bench with currents may be asked for a short circuit next
+        found |= dict.fromkeys(_of_inductance(design))
     return tuple(found)
+
+
+def _of_inductance(design: MachineAsBuilt) -> list[LoadedState]:
+    return [LoadedState(_on_grid(angle), (0.0, 0.0, 0.0)) for angle in load_angles(design)]
 
 
 def _states_of(design: MachineAsBuilt, table: Table) -> list[LoadedState]:
     if table.kind in _WITH_INDUCTANCE:
-        return [LoadedState(_on_grid(angle), (0.0, 0.0, 0.0)) for angle in load_angles(design)]
+        return _of_inductance(design)
     if table.kind not in _WITH_CURRENTS:
         return []
     found = []
