@@ -13,9 +13,12 @@ from effects.machine.bearing_friction import BearingFriction
 from effects.machine.interturn_short import InterturnShort
 from effects.machine.iron_loss import STAND_IN, IronLoss
 from effects.machine.stepped_skew import SteppedSkew
+from losses.iron import iron_loss
+from losses.loci import solve_part, stator_loci
+from magnetostatics.model import OperatingPoint
 from materials.iron_loss import iron_loss_law
 from tests.effects.machine_bench import TURN, bench
-from tests.workbench.models.machine_case import LOADED, drawn, surrogate
+from tests.workbench.models.machine_case import LOADED, MIDDLE, drawn, field, surrogate
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.machine.answers import Answers
@@ -73,6 +76,17 @@ def test_flux_of_a_tooth_comes_from_the_yoke_on_its_both_sides():
     apart = yoke - yoke * np.exp(1j * orders * pitch)
     assert_allclose(3.3 * apart[5], 5.5 * tooth[5], rtol=1e-9)  # mm: flux through both widths
     assert 1.0 < np.abs(tooth[5]) < 2.0
+
+
+def test_two_regions_lose_what_all_elements_lose():
+    """Against the loci of every element of the stator, without current."""
+    part = solve_part(field(MIDDLE).model(drawn(), False), OperatingPoint(0.0, 0.0, 0.0, 0.5))
+    expected, per_speed = iron_loss(stator_loci(part), STAND_IN).total, 5 / (2 * np.pi)
+    hysteresis, eddy, excess = iron_torques(Answers(surrogate(), IronLoss(factor=1.0).on_design(drawn())))
+    length = drawn().length
+    assert_allclose(hysteresis, length * expected.hysteresis * per_speed, rtol=0.02)
+    assert_allclose(eddy, length * expected.eddy * per_speed**2, rtol=0.08)
+    assert_allclose(excess, length * expected.excess * per_speed**1.5, rtol=0.05)
 
 
 def test_iron_loss_is_a_drag_of_its_own_shape_and_follows_the_magnets():

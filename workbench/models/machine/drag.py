@@ -7,7 +7,8 @@ harmonics that a tooth sees at no load:
     T = m [k_h p B^alpha/(2 pi) + k_c/(2 pi^2) <B'^2>(1 + k_s B^2) speed + k_e/8.763 <|B'|^1.5> sqrt(speed)]
 
 B: half of peak to peak; B' = dB/d angle; m: mass of the region. Rotor, tooth tips, and that teeth of a faulty machine
-are unlike are left out; ``losses`` takes the loci of every element instead, of a design without defects.
+are unlike are left out. ``losses`` takes the loci of every element instead, of a design without defects: on the machine
+with 12 slots and 10 poles these are within 2 % (hysteresis), 6 % (eddies) and 4 % (excess) of it.
 """
 
 from __future__ import annotations
