@@ -4,7 +4,7 @@
 
 For every effect that acts through the field: the change of cogging and flux linkage over a revolution, and of torque
 and flux linkage with current, by the expansion about the drawing and by field solutions of the changed machine on the
-same meshes. Printed: rms of the difference over rms of the change, per channel; a channel that changes by less than 1e-3 of
+same meshes. Printed: rms of the difference over rms of the change, per channel; one that changes by less than 1e-3 of
 itself is left out. ``model_error`` of the effects is the largest of a row.
 """
 

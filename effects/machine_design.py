@@ -30,14 +30,15 @@ class MachineAsBuilt:
     edge_damage: share of its permeability that the stator steel has lost at its cut edges [1]
     edge_depth: how far in from the edges [m]
     skew: angle between the two ends of the machine, even along its length [rad]
-    segments, segment_angle: of the rotor along its length, each turned by the angle against its neighbour [rad]
+    segment_angles: of a rotor in two, and in three segments along its length, each turned against its neighbour [rad]
     rotor_turn: angle by which the pattern of all magnets sits too far on, against the zero of the encoder [rad]
     radial_share: how far the magnetisation has turned from parallel (0) to radial (1) [1]
     end_leakage: share of the magnets' flux that closes beyond the ends instead of through the winding [1]
     shorted_turns, shorted_coil: turns that are closed on themselves, and the coil that they belong to
     end_winding_inductance: of the end winding of a phase [H]
     dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: against the motion, all bearings together
-    iron_loss: law of the sheet, None where none is known: no loss;  iron_loss_factor: loss of the stack over it [1]
+    iron_loss: law of the sheet, None where none is declared;  iron_loss_factor: loss of the stack over it [1]
+    undeclared_iron_loss: loss of a stack without a declared law over that of a usual sheet [1]
     cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine
     """
 
@@ -59,8 +60,7 @@ class MachineAsBuilt:
     edge_damage: float = 0.0
     edge_depth: float = 0.7e-3
     skew: float = 0.0
-    segments: int = 1
-    segment_angle: float = 0.0
+    segment_angles: tuple[float, float] = (0.0, 0.0)
     rotor_turn: float = 0.0
     radial_share: float = 0.0
     end_leakage: float = 0.0
@@ -74,6 +74,7 @@ class MachineAsBuilt:
     windage: float = 0.0
     iron_loss: IronLossLaw | None = None
     iron_loss_factor: float = 1.0
+    undeclared_iron_loss: float = 0.0
     cogging_of_mesh: float = 1.0
 
     @classmethod

@@ -11,9 +11,6 @@ from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd
-from materials.iron_loss import LAWS
-
-STAND_IN = LAWS["M235-35A"]  # thin sheet; the factor holds what another grade and its punching make of it
 
 
 @dataclass(frozen=True)
@@ -38,9 +35,7 @@ class IronLoss(DesignEffect):
 
     @classmethod
     def can_act_on(cls, design: Any) -> bool:
-        return super().can_act_on(design) and (design.iron_loss is None or design.iron_loss is STAND_IN)
+        return super().can_act_on(design) and design.iron_loss is None
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
-        if not self.factor:
-            return design
-        return replace(design, iron_loss=STAND_IN, iron_loss_factor=design.iron_loss_factor * self.factor)
+        return replace(design, undeclared_iron_loss=design.undeclared_iron_loss + self.factor)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from effects.base import DesignEffect
 from effects.machine.places import FIELD
@@ -38,4 +38,5 @@ class SteppedSkew(DesignEffect):
         return cls(segments=2), cls(segments=3)
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
-        return replace(design, segments=self.segments, segment_angle=self.angle) if self.angle else design
+        place = self.segments - 2
+        return design.with_one("segment_angles", place, design.segment_angles[place] + self.angle)

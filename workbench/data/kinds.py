@@ -83,21 +83,22 @@ KINDS: dict[str, Kind] = {
     ),
     "force_loop": Kind(("force",), ("displacement", "velocity"), cost=2.0, says="Force over a driven motion."),
     "dq_operation": Kind(
-        ("v_d", "v_q", "torque", *_METERS),
+        ("v_d", "v_q", "torque"),
         ("i_d", "i_q", "speed"),
-        says="Fed with currents i_d, i_q (peak) at a speed. v_d, v_q: peak; torque at the shaft. " + _METERS_SAY,
+        says="Fed with currents i_d, i_q at a speed. v_d, v_q: peak, as the currents; torque at the shaft.",
     ),
     "dq_supply": Kind(
-        tuple(m for m in _METERS if m != "v_ll"),
+        ("current", "power"),
         ("torque", "v_ll", "speed"),
-        says="Fed by a stiff sine v_ll (RMS between lines). " + _METERS_SAY,
+        says="Fed by a stiff sine v_ll, RMS between lines. current: RMS of a line; power: electrical, into it.",
     ),
     "dyno_map": Kind(
         _METERS,
         ("speed", "torque"),
         cost=3.0,
         says="Fed by an inverter that takes the smallest current for torque at speed; v_dc, optional, limits its "
-        "voltage. Optional: winding_T, magnet_T. " + _METERS_SAY,
+        "voltage. Or at i_d and i_q (peak), with torque declared as a response. Optional: winding_T, magnet_T. "
+        + _METERS_SAY,
     ),
     "no_load": Kind(
         ("current", "power", "power_factor", "loss"),

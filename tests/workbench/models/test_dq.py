@@ -216,9 +216,14 @@ def test_no_load_fed_and_driven():
     assert fed["current"] == pytest.approx(magnetising, rel=0.05)
 
 
-def test_a_map_at_currents_is_another_kind():
-    with pytest.raises(WorkbenchError, match="dq_operation"):
-        BASE.respond(PLAIN, "dyno_map", {"speed": SPEED, "i_d": SPEED, "i_q": SPEED})
+def test_a_map_at_given_currents():
+    """The currents of the smallest size give the torque they were chosen for; one or the other, not both."""
+    i_d, i_q = least_current(Operation(PLAIN, {"speed": MAP_SPEED}), MAP_TORQUE)
+    ours = BASE.respond(PLAIN, "dyno_map", {"speed": MAP_SPEED, "i_d": i_d, "i_q": i_q})
+    expected = BASE.respond(PLAIN, "dyno_map", {"speed": MAP_SPEED, "torque": MAP_TORQUE})
+    assert all(ours[name] == pytest.approx(expected[name], rel=1e-9) for name in expected)
+    with pytest.raises(WorkbenchError, match="or in i_d and i_q"):
+        BASE.respond(PLAIN, "dyno_map", {"speed": SPEED, "torque": SPEED, "i_d": SPEED, "i_q": SPEED})
 
 
 def test_the_bench_answers_every_option():
@@ -235,3 +240,22 @@ def test_the_bench_answers_every_option():
     assert found["dyno_map"].conditions["torque"].max() == max(
         t.conditions["torque"].max() for t in campaign.tables[1:]
     )
+
+
+def test_a_dynamometer_map_is_read_from_a_file(tmp_path):
+    """Units in the names, any of the meters, torque and voltage as conditions; the model answers what was measured."""
+    (tmp_path / "map.csv").write_text(
+        "speed_rpm,torque_Nm,v_dc_V,winding_T_degC,current_A,power_kW,efficiency_percent\n"
+        "1000,10,110,40,12.0,1.3,80\n2000,5,110,42,8.0,1.2,85\n"
+    )
+    (tmp_path / "campaign.toml").write_text(
+        '[campaign]\nid = "map"\n[device]\npole_pairs = 4\npsi_m_Vs = 0.1\ninductance_d_mH = 3\ninductance_q_mH = 4\n'
+        'resistance_mohm = 500\n[[table]]\nfile = "map.csv"\nkind = "dyno_map"\n'
+        "u_random = { current_A = 0.1, power_kW = 0.01, efficiency_percent = 0.5 }\n"
+    )
+    campaign = read_campaign(tmp_path)
+    table = campaign.tables[0]
+    assert set(table.responses) == {"current", "power", "efficiency"}
+    assert table.responses["efficiency"].values == pytest.approx([0.8, 0.85])
+    ours = BASE.respond(BASE.design(campaign.device), table.kind, table.conditions)
+    assert set(table.responses) <= set(ours)

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from benchmarks.virtual_benches.machine_bench import DEVICE
 from effects.machine.bearing_friction import BearingFriction
 from effects.machine.interturn_short import InterturnShort
-from effects.machine.iron_loss import STAND_IN, IronLoss
+from effects.machine.iron_loss import IronLoss
+from effects.machine.iron_loss_excess import IronLossExcess
 from effects.machine.stepped_skew import SteppedSkew
 from losses.iron import iron_loss
 from losses.loci import solve_part, stator_loci
@@ -23,7 +24,7 @@ from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.machine.answers import Answers
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
-from workbench.models.machine.drag import _region_waves, _torques, iron_torques
+from workbench.models.machine.drag import USUAL_SHEET, _region_waves, _torques, iron_torques
 from workbench.models.machine.kinds import dq_machine, loaded_states
 
 SPEED = np.array([-150.0, 20.0, 80.0, 300.0])
@@ -63,9 +64,9 @@ def test_iron_of_a_sinusoidal_flux_has_the_loss_of_the_sheet():
     """1.2 T at 5 pole pairs and 100 rad/s, in 0.3 kg, against the law in its own frequency and peak."""
     wave = np.zeros(20, dtype=complex)
     wave[5] = 1.2j
-    hysteresis, eddy, excess = _torques(STAND_IN, 0.3, wave, 5)
+    hysteresis, eddy, excess = _torques(USUAL_SHEET, 0.3, wave, 5)
     power = 100.0 * (hysteresis + eddy * 100.0 + excess * 10.0)
-    assert_allclose(power, 0.3 * STAND_IN.specific_loss(5 * 100.0 / (2 * np.pi), 1.2), rtol=1e-4)
+    assert_allclose(power, 0.3 * USUAL_SHEET.specific_loss(5 * 100.0 / (2 * np.pi), 1.2), rtol=1e-4)
 
 
 def test_flux_of_a_tooth_comes_from_the_yoke_on_its_both_sides():
@@ -81,7 +82,7 @@ def test_flux_of_a_tooth_comes_from_the_yoke_on_its_both_sides():
 def test_two_regions_lose_what_all_elements_lose():
     """Against the loci of every element of the stator, without current."""
     part = solve_part(field(MIDDLE).model(drawn(), False), OperatingPoint(0.0, 0.0, 0.0, 0.5))
-    expected, per_speed = iron_loss(stator_loci(part), STAND_IN).total, 5 / (2 * np.pi)
+    expected, per_speed = iron_loss(stator_loci(part), USUAL_SHEET).total, 5 / (2 * np.pi)
     hysteresis, eddy, excess = iron_torques(Answers(surrogate(), IronLoss(factor=1.0).on_design(drawn())))
     length = drawn().length
     assert_allclose(hysteresis, length * expected.hysteresis * per_speed, rtol=0.02)
@@ -101,6 +102,10 @@ def test_iron_loss_is_a_drag_of_its_own_shape_and_follows_the_magnets():
     creeping = respond("cogging", design, angle_mech=np.zeros(2), direction=[1.0, -1.0])["torque"]
     assert_allclose(np.diff(creeping), 2 * level)
     assert not respond("drag", speed=SPEED)["torque"].any()
+    declared = replace(drawn(), iron_loss=USUAL_SHEET)
+    assert_allclose(respond("drag", declared, speed=SPEED)["torque"], found)
+    more = respond("drag", IronLossExcess(excess=0.5).on_design(declared), speed=SPEED)["torque"]
+    assert_allclose(more, 1.5 * found)
 
 
 def test_shorted_turns_brake_with_the_speed_and_less_beyond_their_corner():
@@ -185,7 +190,8 @@ def test_what_is_uncertain_in_every_machine():
     assert_allclose(moved.phase_resistance, [12.6e-3, 12.6e-3 * 1.008, 12.6e-3])
     ends = with_tolerance(drawn(), own["end_winding_inductance"], 1.0).end_winding_inductance
     assert 1e-6 < ends < 4e-6  # 4 coils of 7 turns, 11 mm wide
-    assert "iron_loss_factor" in {t.name for t in own_tolerances(IronLoss(factor=1.0).on_design(drawn()))}
+    declared = replace(drawn(), iron_loss=USUAL_SHEET)
+    assert "iron_loss_factor" in {t.name for t in own_tolerances(declared)}
     warmer = with_tolerance(drawn(), Tolerance("magnet_temperature", 10.0, relative=False), 1.0)
     assert_allclose(warmer.magnet.remanence, 1.3 * (1 - 0.012))
 

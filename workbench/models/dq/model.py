@@ -2,9 +2,10 @@
 
 Kinds of measurement and their columns, SI, temperatures in degrees Celsius and optional:
     back_emf       speed [, magnet_T]                               -> v_ll            RMS, line to line, open terminals
-    dq_operation   i_d, i_q, speed [, winding_T, magnet_T]          -> v_d, v_q, and the meters; i_d, i_q, v_d, v_q peak
-    dq_supply      v_ll, torque, speed [, winding_T, magnet_T]      -> the meters      fed by a stiff sine
+    dq_operation   i_d, i_q, speed [, winding_T, magnet_T]          -> v_d, v_q, torque  peak phase values; shaft torque
+    dq_supply      v_ll, torque, speed [, winding_T, magnet_T]      -> current, power  fed by a sine; RMS, electrical
     dyno_map       speed, torque [, v_dc, winding_T, magnet_T]      -> the meters      fed by an inverter
+    dyno_map       speed, i_d, i_q [, winding_T, magnet_T]          -> the meters      fed with currents, peak
     no_load        speed, v_ll [, winding_T, magnet_T]              -> the meters      fed by a sine, nothing coupled
     no_load        speed [, magnet_T]                               -> v_ll, current, power  driven with open terminals;
                                                                        power is that at the shaft, current is zero
@@ -98,22 +99,20 @@ def _drag(operation: Operation) -> dict[str, np.ndarray]:
 def _operation(operation: Operation) -> dict[str, np.ndarray]:
     m_d, m_q = operation.magnetising(operation.conditions["i_d"], operation.conditions["i_q"])
     v_d, v_q, _, _ = operation.terminals(m_d, m_q)
-    return {"v_d": v_d, "v_q": v_q, **operation.meters(m_d, m_q)}
+    return {"v_d": v_d, "v_q": v_q, "torque": operation.shaft_torque(m_d, m_q)}
 
 
 def _dyno_map(operation: Operation) -> dict[str, np.ndarray]:
-    """Given torque: the smallest currents within the voltage. A map at given currents is a ``dq_operation``."""
-    torque = _needed(operation, "torque", "dyno_map")
-    if "v_dc" not in operation.conditions:
-        return operation.meters(*least_current(operation, torque))
-    limit = operation.design.voltage_per_dc * operation.conditions["v_dc"]
-    return operation.meters(*within_voltage(operation, torque, limit))
-
-
-def _needed(operation: Operation, column: str, kind: str) -> np.ndarray:
-    if column not in operation.conditions:
-        raise WorkbenchError(f"a {kind} table needs the column {column}; with i_d and i_q instead it is a dq_operation")
-    return operation.conditions[column]
+    """At currents as given, else the smallest that give the torque within the voltage."""
+    at = operation.conditions
+    if ("torque" in at) == ({"i_d", "i_q"} <= set(at)):
+        raise WorkbenchError("a dyno_map has its conditions in torque, or in i_d and i_q, and the other as a response")
+    if "torque" not in at:
+        return operation.meters(*operation.magnetising(at["i_d"], at["i_q"]))
+    if "v_dc" not in at:
+        return operation.meters(*least_current(operation, at["torque"]))
+    limit = operation.design.voltage_per_dc * at["v_dc"]
+    return operation.meters(*within_voltage(operation, at["torque"], limit))
 
 
 def _no_load(operation: Operation) -> dict[str, np.ndarray]:
@@ -141,7 +140,8 @@ def _short_circuit(operation: Operation) -> dict[str, np.ndarray]:
 
 
 def _supply(operation: Operation) -> dict[str, np.ndarray]:
-    return operation.meters(*_at_sine(operation, operation.conditions["torque"]))
+    found = operation.meters(*_at_sine(operation, operation.conditions["torque"]))
+    return {name: found[name] for name in ("current", "power")}
 
 
 def _at_sine(operation: Operation, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -35,10 +35,10 @@ class Answers:
         """
         d, drawn = self.design, self.surrogate.nominal
         names = ("phase_resistance", "lead_resistance", "end_winding_inductance", "dry_friction", "viscous_friction")
-        names += ("windage", "iron_loss", "iron_loss_factor", "cogging_of_mesh", "end_leakage")
-        names += ("rotor_turn", "segments", "segment_angle", "shorted_turns", "shorted_coil")
-        stepped = d.segment_angle * sqrt(d.segments**2 - 1)
-        return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, stepped))
+        names += ("windage", "iron_loss", "iron_loss_factor", "undeclared_iron_loss", "cogging_of_mesh", "end_leakage")
+        names += ("rotor_turn", "segment_angles", "shorted_turns", "shorted_coil")
+        stepped = (angle * sqrt(n**2 - 1) for n, angle in enumerate(d.segment_angles, 2))
+        return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, *stepped))
 
     @cached_property
     def spectrum(self) -> np.ndarray:
@@ -49,12 +49,11 @@ class Answers:
 
     def _along_the_length(self, spectrum: np.ndarray) -> np.ndarray:
         """The mean over skew and segments."""
-        d = self.design
-        skewed = averaged(spectrum, d.skew) if d.skew else spectrum
-        if d.segments == 1 or not d.segment_angle:
-            return skewed
-        offsets = d.segment_angle * (np.arange(d.segments) - (d.segments - 1) / 2)
-        return skewed * np.cos(np.arange(spectrum.shape[1])[:, None] * offsets).mean(axis=1)
+        found = averaged(spectrum, self.design.skew) if self.design.skew else spectrum
+        for segments, angle in enumerate(self.design.segment_angles, 2):
+            places = angle * (np.arange(segments) - (segments - 1) / 2)
+            found = found * np.cos(np.arange(spectrum.shape[1])[:, None] * places).mean(axis=1) if angle else found
+        return found
 
     def _on_the_rotor(self, angle: np.ndarray) -> np.ndarray:
         """Angle of the magnets' pattern for one that the encoder means."""

@@ -19,11 +19,12 @@ import numpy as np
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
-from materials.iron_loss import EXCESS_OF_SINE, IronLossLaw
+from materials.iron_loss import EXCESS_OF_SINE, LAWS, IronLossLaw
 from units import MU_0
 from workbench.errors import WorkbenchError
 from workbench.models.machine.answers import Answers
 
+USUAL_SHEET = LAWS["M235-35A"]  # 0.35 mm; a factor holds what another grade and its punching make of it
 _SAMPLES = 4096  # of the flux density over a revolution
 
 
@@ -48,12 +49,19 @@ def _motion(at: Columns) -> tuple[np.ndarray, np.ndarray]:
 def iron_torques(answers: Answers) -> tuple[float, float, float]:
     """Hysteresis [Nm], eddies [Nms/rad] and excess [Nm sqrt(s/rad)] of the stator."""
     d = answers.design
-    if d.iron_loss is None or not d.iron_loss_factor:
+    declared = d.iron_loss is not None
+    law, size = (d.iron_loss, d.iron_loss_factor) if declared else (USUAL_SHEET, _undeclared(d))
+    if not size:
         return 0.0, 0.0, 0.0
-    tooth, yoke = _region_waves(answers)
-    parts = [_torques(d.iron_loss, mass, wave, d.machine.pole_pairs) for mass, wave in zip(_masses(d), (tooth, yoke))]
-    hysteresis, eddy, excess = (d.iron_loss_factor * sum(terms) for terms in zip(*parts))
+    regions = zip(_masses(d, law.density), _region_waves(answers))
+    hysteresis, eddy, excess = (
+        size * sum(terms) for terms in zip(*(_torques(law, mass, wave, d.machine.pole_pairs) for mass, wave in regions))
+    )
     return hysteresis, eddy, excess
+
+
+def _undeclared(design: MachineAsBuilt) -> float:
+    return design.iron_loss_factor * design.undeclared_iron_loss
 
 
 def _region_waves(answers: Answers) -> tuple[np.ndarray, np.ndarray]:
@@ -70,9 +78,9 @@ def _region_waves(answers: Answers) -> tuple[np.ndarray, np.ndarray]:
     return flux / m.tooth_width, yoke / m.back_iron_width
 
 
-def _masses(design: MachineAsBuilt) -> tuple[float, float]:
+def _masses(design: MachineAsBuilt, density: float) -> tuple[float, float]:
     """Of all teeth and of the yoke [kg]."""
-    m, depth = design.cross_section, design.length * design.stacking_factor * design.iron_loss.density
+    m, depth = design.cross_section, design.length * design.stacking_factor * density
     teeth = m.slots * m.tooth_width * (m.slot_bottom_radius - m.stator_inner_radius)
     return teeth * depth, pi * (m.stator_outer_radius**2 - m.slot_bottom_radius**2) * depth
 
