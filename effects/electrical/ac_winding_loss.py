@@ -31,8 +31,8 @@ class AcWindingLoss(StateEffect):
         Touches("short_circuit.*"),
         Touches("dq_supply.*"),
     )
-    model_error = 0.05
-    model_error_source = "Dowell's law of four layers up to R_ac = 1.3 R_dc: test_declared_errors"
+    model_error = 0.002
+    model_error_source = "benchmarks/law_errors.py: against Dowell's law of four layers"
     base_rate = 0.02
     base_rate_source = "engineering judgement: thick wire or hairpins at high speed, one machine in fifty"
 

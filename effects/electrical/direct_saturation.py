@@ -31,8 +31,8 @@ class DirectSaturation(FluxEffect):
         Touches("short_circuit.*"),
         Touches("dq_supply.*"),
     )
-    model_error = 0.2
-    model_error_source = "a curve that saturates, tanh with the same first two slopes, to 20 % of L_d lost"
+    model_error = 0.05
+    model_error_source = "benchmarks/law_errors.py: against tanh with the same slope and curvature"
     base_rate = 0.02
     base_rate_source = "engineering judgement: small beside the q axis, whose saturation is met three times as often"
 

@@ -26,8 +26,8 @@ class EddyDrag(ForceEffect):
         Touches("damping_shunt.damping"),
         Touches("impedance.re"),
     )
-    model_error = 0.03
-    model_error_source = "TODO"
+    model_error = 0.018
+    model_error_source = "benchmarks/law_errors.py: against brake curve with another power above the corner"
     base_rate = 0.02
     base_rate_source = "engineering judgement: solid back iron or housing near the magnets, one damper in fifty"
 

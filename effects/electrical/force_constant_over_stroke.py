@@ -22,8 +22,8 @@ class ForceConstantOverStroke(CouplingEffect):
         Power("impedance.re", "amplitude", 2.0),
         Power("impedance.re", "frequency", 0.0),
     )
-    model_error = 0.02
-    model_error_source = "1 - curvature x^2 at 10 % loss, the other form of the same order: test_declared_errors"
+    model_error = 0.001
+    model_error_source = "benchmarks/law_errors.py: against 1 - curvature x^2"
     base_rate = 0.01
     base_rate_source = "engineering judgement: designed out within the rated stroke"
 

@@ -23,8 +23,8 @@ class ForceConstantSaturation(CouplingEffect):
         Touches("damping_shunt.damping"),
         Touches("impedance.re"),
     )
-    model_error = 0.03
-    model_error_source = "TODO"
+    model_error = 0.015
+    model_error_source = "benchmarks/law_errors.py: against K / sqrt(1 + (i / i_s)^2)"
     base_rate = 0.01
     base_rate_source = "engineering judgement: rated currents are chosen below it, one damper in a hundred"
 

@@ -12,13 +12,16 @@ from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power, Touches
 
+SUBSTITUTIONS = 6  # each leaves the share rise P of the error before
+
 
 @dataclass(frozen=True)
 class ShuntHeating(StateEffect):
-    """The shunt resistor is as warm as its loss in each row: R_s = R_s,cold (1 + rise P),  P = R_s,cold i^2 of the cold
-    circuit,  i = K v_rms / (R + R_s,cold).
+    """The shunt resistor is as warm as its loss in each row: R_s = R_s,cold (1 + rise P),  P = R_s i^2,
+    i = K v_rms / (R + R_s), by repeated substitution.
 
     Validity: rows last longer than the seconds that a resistor without heat sink needs; inductance is left out of i.
+    Tables that give no velocity are left alone.
     """
 
     title = "shunt warms with its own loss"
@@ -44,15 +47,26 @@ class ShuntHeating(StateEffect):
     )
 
     def on_state(self, conditions: Columns, kind: str, design: Damper) -> Columns:
-        if "shunt" not in conditions or self.is_null:
+        if "shunt" not in conditions or not has_velocity(conditions) or self.is_null:
             return conditions
-        shunt = conditions["shunt"]
-        current = design.force_constant * rms_velocity(conditions, design) / (design.internal_resistance + shunt)
-        return {**conditions, "shunt": shunt * (1.0 + self.rise * shunt * current**2)}
+        cold = warm = conditions["shunt"]
+        emf = design.force_constant * rms_velocity(conditions)
+        for _ in range(SUBSTITUTIONS):
+            warm = self.warmed(cold, warm, emf / (design.internal_resistance + warm))
+        return {**conditions, "shunt": warm}
+
+    def warmed(self, cold: np.ndarray, warm: np.ndarray, current: np.ndarray) -> np.ndarray:
+        """Resistance of a shunt [ohm] that loses as much as one of resistance ``warm`` at a current [A] does."""
+        return cold * (1.0 + self.rise * warm * current**2)
 
 
-def rms_velocity(conditions: Columns, design: Damper) -> np.ndarray | float:
-    """RMS velocity of each row [m/s]; the top velocity of the device where a table gives none."""
+def has_velocity(conditions: Columns) -> bool:
+    """Whether the velocity of each row is known, and with it how much is lost in the circuit."""
+    return "velocity" in conditions or "frequency" in conditions
+
+
+def rms_velocity(conditions: Columns) -> np.ndarray:
+    """RMS velocity of each row [m/s]: of the sine, or the one that is held."""
     if "frequency" in conditions:
         return 2 * np.pi * conditions["frequency"] * conditions["amplitude"] / np.sqrt(2.0)
-    return np.abs(conditions.get("velocity", design.test_velocity))
+    return np.abs(conditions["velocity"])

@@ -10,7 +10,7 @@ import numpy as np
 from effects.base import Columns, StateEffect
 from effects.damper_design import Damper
 from effects.dq_design import DqMachine
-from effects.electrical.shunt_heating import rms_velocity
+from effects.electrical.shunt_heating import has_velocity, rms_velocity
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Touches
@@ -25,6 +25,7 @@ class WindingHeating(StateEffect):
 
     P: copper loss at the resistance declared, R i^2 or 1.5 R i^2 (peak). alpha = 0.00393 / K (IEC 60028).
     Validity: rows last about equally long. Supply tables: i is the q current of the torque, their i_d is left out.
+    Short circuits and tables without velocity or current are left alone.
     """
 
     title = "winding warms up during the test"
@@ -85,10 +86,10 @@ class WindingHeating(StateEffect):
 def _copper_loss(conditions: Columns, design: Damper | DqMachine) -> np.ndarray | None:
     """Loss in the winding of each row [W]; None where no current is known."""
     if isinstance(design, Damper):
-        if "shunt" not in conditions:
+        if "shunt" not in conditions or not has_velocity(conditions):
             return None
         resistance = design.internal_resistance
-        current = design.force_constant * rms_velocity(conditions, design) / (resistance + conditions["shunt"])
+        current = design.force_constant * rms_velocity(conditions) / (resistance + conditions["shunt"])
         return resistance * current**2
     squared = _squared_current(conditions, design)
     return None if squared is None else 1.5 * design.resistance * squared

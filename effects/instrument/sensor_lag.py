@@ -27,8 +27,8 @@ class SensorLag(InstrumentEffect):
         Touches("impedance.re"),
         Touches("back_emf.v_?"),
     )
-    model_error = 0.03
-    model_error_source = "TODO"
+    model_error = 0.1
+    model_error_source = "benchmarks/law_errors.py: against low-pass of second order, up to 1 ms"
     base_rate = 0.02
     base_rate_source = "engineering judgement: a filter setting forgotten, one bench in fifty"
 

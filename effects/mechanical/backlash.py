@@ -23,8 +23,8 @@ class Backlash(DesignEffect):
         Touches("impedance.re"),
         Touches("impedance.im"),
     )
-    model_error = 0.02
-    model_error_source = "TODO"
+    model_error = 0.006
+    model_error_source = "benchmarks/law_errors.py: against flight and contact piece by piece"
     base_rate = 0.02
     base_rate_source = "engineering judgement: worn or loose rod ends, one rig in fifty"
 

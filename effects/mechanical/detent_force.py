@@ -39,7 +39,7 @@ class DetentForce(ForceEffect):
     pitch: float = parameter(
         5e-3,
         "m",
-        prior=LogNormal(5e-3, 1.2),
+        prior=LogNormal(5e-3, 0.7),
         low=5e-4,
         high=0.2,
         source="geometry: slot pitches 5 to 20 mm, less through a gear",

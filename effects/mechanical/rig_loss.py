@@ -34,6 +34,8 @@ class RigLoss(ResponseEffect):
         Touches("impedance.re"),
         Touches("impedance.im"),
     )
+    model_error = 0.008
+    model_error_source = "benchmarks/law_errors.py: against another rounding of the reversal"
     base_rate = 0.02
     base_rate_source = "engineering judgement: force estimated through a belt or gear, one rig in fifty"
 

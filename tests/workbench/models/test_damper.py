@@ -20,8 +20,10 @@ from effects.mechanical.rig_loss import RigLoss
 from workbench.data.campaign import read_campaign
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
+from workbench.models.damper import play as marching
 from workbench.models.damper.harmonic_balance import Drive, fundamental
 from workbench.models.damper.model import BASE, impedance, linear_impedance, steady_force
+from workbench.models.damper.play import change_by_play
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = Damper(60.0, 1.2, 2.0, 20.0)
@@ -246,7 +248,7 @@ def test_device_table_is_read_in_its_units():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"force_constant_N_per_A": -1.0}, "positive"),
+        ({"force_constant_N_per_A": -1.0}, "negative"),
         ({"force_constant_N_per_A": "60"}, "number"),
         ({"stroke_mm": 40.0}, "does not use"),
     ],
@@ -268,3 +270,52 @@ def test_a_missing_key_an_unknown_kind_and_tolerance_get_a_sentence():
 def test_a_tolerance_moves_its_input():
     moved = BASE.with_tolerance(PLAIN, Tolerance("force_constant_N_per_A", 0.01, True), 2.0)
     assert moved == replace(PLAIN, force_constant=60.0 * 1.02)
+
+
+LAWS = {
+    "linear": PLAIN,
+    "with a law": PLAIN.with_force(CoulombFriction(5.0)),
+    "on a mount": replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=2e-3).with_force(
+        QuadraticDrag(30.0)
+    ),
+    "with play": replace(PLAIN, mount_clearance=1e-4),
+}
+TABLES = {
+    "damping_velocity": {"velocity": np.array([-0.3, 0.1, 0.2]), "shunt": np.full(3, 2.0)},
+    "damping_shunt": {"shunt": np.array([0.5, 2.0, 5.0]), "velocity": np.full(3, 0.3)},
+    "impedance": {"frequency": np.array([1.0, 5.0, 20.0]), "amplitude": np.full(3, 2e-3), "shunt": np.full(3, 2.0)},
+}
+
+
+@pytest.mark.parametrize("design", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("kind", TABLES)
+def test_states_of_a_row_are_another_device(design, kind):
+    """A winding and an oil as warm in every row as in another design answer as that design."""
+    states = {"resistance_factor": np.full(3, 1.2), "viscous_factor": np.full(3, 0.7)}
+    found = BASE.respond(design, kind, TABLES[kind] | states)
+    warm = replace(design, internal_resistance=1.2 * 1.2, viscous_damping=0.7 * 20.0)
+    for column, values in BASE.respond(warm, kind, TABLES[kind]).items():
+        assert found[column] == pytest.approx(values, rel=1e-9)
+
+
+def test_states_belong_to_their_row():
+    states = {"viscous_factor": np.array([1.0, 0.5, 2.0])}
+    one_by_one = [replace(LAWS["on a mount"], viscous_damping=20.0 * factor) for factor in states["viscous_factor"]]
+    expected = [BASE.respond(d, "impedance", TABLES["impedance"])["re"][k] for k, d in enumerate(one_by_one)]
+    found = BASE.respond(LAWS["on a mount"], "impedance", TABLES["impedance"] | states)["re"]
+    assert found == pytest.approx(np.array(expected), rel=1e-6)
+
+
+def test_voltage_at_a_shunt_is_that_across_the_shunt_and_not_across_a_warm_winding():
+    conditions = {"velocity": np.array([0.2]), "shunt": np.array([3.0]), "resistance_factor": np.array([1.5])}
+    voltage = BASE.respond(PLAIN, "back_emf", conditions)["voltage"]
+    assert voltage == pytest.approx([60 * 0.2 * 3.0 / (3.0 + 1.5 * 1.2)])
+
+
+@pytest.mark.parametrize("play", [1e-6, 1e-4])
+def test_flight_between_the_ends_of_a_play_is_the_march(play, monkeypatch):
+    d, drive = replace(PLAIN, mount_clearance=play), Drive(np.array([1.0, 12.0, 40.0]), np.full(3, 2e-3), np.ones(3))
+    exact = change_by_play(d, drive)
+    monkeypatch.setattr(marching, "STEPS", 1280)
+    marched = marching._change_marched(d, drive)
+    assert np.abs(exact - marched).max() < 0.01 * np.abs(exact).max()

@@ -22,7 +22,7 @@ import numpy as np
 
 from effects.base import Columns
 from effects.damper_design import Damper
-from workbench.data.table import Tolerance
+from workbench.data.table import OPEN_CIRCUIT, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models import device
 from workbench.models.base import BaseModel
@@ -30,7 +30,6 @@ from workbench.models.damper.harmonic_balance import Drive, force_over_a_period,
 from workbench.models.damper.play import change_by_play, is_linear
 from workbench.models.damper.steady_circuit import circuit_current, coupling_factor
 
-OPEN_CIRCUIT = 1e6  # ohm; the convention of the campaigns for open terminals
 SLOPE_POINTS = np.linspace(0.1, 1.0, 10)  # velocities of the straight line of damping_shunt, of the top velocity
 LOOP_POINTS = 256  # steps of a period of a force loop; linear in between: 8e-5 of the amplitude
 

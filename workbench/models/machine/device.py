@@ -34,7 +34,7 @@ from materials.magnet import Magnet
 from units import MU_0
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.device import numbers
+from workbench.models.device import numbers, require_positive, require_whole
 
 LABORATORY = 22.0  # degC, at which a device table states its remanence when it does not say
 _DIMENSIONS = (
@@ -67,6 +67,8 @@ _PATTERNS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation(
 def machine_of_device(device: Mapping[str, object]) -> MachineAsBuilt:
     """The machine as drawn. Raises WorkbenchError when the table lacks something or the machine cannot be built."""
     values = numbers(_without_unit_traps(device), _REQUIRED, _OPTIONAL)
+    require_positive(values, *_REQUIRED)
+    require_whole(values, "slots", "poles")
     try:
         machine = _machine_of(values, device)
         check_machine(machine)
@@ -83,10 +85,7 @@ def _without_unit_traps(device: Mapping[str, object]) -> dict[str, object]:
         "phase_resistance_mohm_20degC": "phase_resistance_mohm",
         "magnet_temperature_degC": "magnet_temperature",
     }
-    table = {renamed.get(key, key): value for key, value in device.items()}
-    if "remanence_coefficient_percent_per_K" in table:
-        table["remanence_coefficient"] = table.pop("remanence_coefficient_percent_per_K") / 100
-    return table
+    return {renamed.get(key, key): value for key, value in device.items()}
 
 
 def _machine_of(values: Mapping[str, float], device: Mapping[str, object]) -> Machine:
