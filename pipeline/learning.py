@@ -190,7 +190,8 @@ def _scale(entry: Mapping[str, Any], device: Device) -> float | None:
     """From the shift of an input to a relative one; None where the nominal value is not in the file."""
     if entry.get("relative"):
         return 1.0
-    key = names(device).get(split_unit(str(entry.get("name")))[0])
+    name, known = str(entry.get("name")), names(device)
+    key = known.get(name, known.get(split_unit(name)[0]))
     if key is None:
         return None
     unit = split_unit(key)[1]
