@@ -210,6 +210,7 @@ class ActuatorBench(Bench):
             _tolerance("psi_m_mVs", "sigma_rel = 0.015", "remanence +-2 %, air gap +-0.04 mm"),
             _tolerance("phase_resistance", "sigma_rel = 0.02", "diameter of the wire and length of the end turns"),
             _tolerance("inductance", "sigma_rel = 0.1", "air gap, end turns, saturation"),
+            _tolerance("saturation", "sigma_rel = 0.2", "a parabola in the place of the flux map"),
             _tolerance("equivalent_mass", "sigma_rel = 0.03", "drawn parts, bearings not counted"),
             *(() if designed.gears is None else (
                 _tolerance("efficiency_driven", "sigma_rel = 0.01", "friction coefficient of the meshes, +-30 %"),

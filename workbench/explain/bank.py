@@ -131,8 +131,9 @@ class Prepared:
     @cached_property
     def curvature(self) -> np.ndarray:
         """Precision of z in each cell, prior included (K, k, k)."""
-        k = self.signature.parameters
-        return np.einsum("ank,bnk->kab", self.tangents, self.signature.tangents) + 1e-9 * np.eye(k)
+        found = np.einsum("ank,bnk->kab", self.tangents, self.signature.tangents)
+        largest = np.trace(found, axis1=1, axis2=2)[:, None, None]  # rounding of it makes two alike parameters singular
+        return found + (1e-9 + 1e-12 * largest) * np.eye(self.signature.parameters)
 
     @cached_property
     def slope(self) -> np.ndarray:
