@@ -82,6 +82,7 @@ STACKING = Factor("stacking", "share of the length that is steel")
 STEEL_FIELD = Factor("steel_field", "field that the steel needs")
 STEEL_SATURATION = Factor("steel_saturation", "polarisation at which the steel saturates")
 END_LEAKAGE = Share("end_leakage", "flux of the magnets that closes beyond the ends")
+MAGNET_FLUX = Share("magnet_flux", "flux of the magnets that the winding lacks")
 RESISTANCE = Factor("resistance", "resistance of the winding")
 IRON_LOSS = Factor("iron_loss", "iron loss")
 ROTOR_FRICTION = Added("rotor_friction", "dry friction on the rotor", "Nm")
@@ -91,8 +92,8 @@ OUTPUT_VISCOUS = Added("output_viscous", "viscous friction at the output", "Ns/m
 LOAD_LOSS = Share("load_loss", "effort that the transmission keeps")
 
 QUANTITIES = (
-    REMANENCE, RECOIL, STACKING, STEEL_FIELD, STEEL_SATURATION, END_LEAKAGE, RESISTANCE, IRON_LOSS, ROTOR_FRICTION,
-    ROTOR_VISCOUS, OUTPUT_FRICTION, OUTPUT_VISCOUS, LOAD_LOSS,
+    REMANENCE, RECOIL, STACKING, STEEL_FIELD, STEEL_SATURATION, END_LEAKAGE, MAGNET_FLUX, RESISTANCE, IRON_LOSS,
+    ROTOR_FRICTION, ROTOR_VISCOUS, OUTPUT_FRICTION, OUTPUT_VISCOUS, LOAD_LOSS,
 )  # fmt: skip
 
 
@@ -149,9 +150,13 @@ NOTHING_LEARNED = Learned()
 
 
 def case_as_learned(case: FieldCase, learned: Learned) -> FieldCase:
-    """The machines and materials of a study with the magnets, the steel and the end leakage of the bench."""
-    leakage = Share.joined(END_LEAKAGE, (case.end_leakage, learned.of(END_LEAKAGE)))
-    return replace(case, materials=materials_as_learned(case.materials, learned), end_leakage=leakage)
+    """The machines and materials of a study with the magnets, the steel and the end leakage of the bench.
+
+    Flux that the winding lacks, for a reason that the bench did not tell, acts as end leakage does: the field inside
+    the stack stays, so that iron which is less saturated gives nothing back.
+    """
+    lost = END_LEAKAGE.joined((case.end_leakage, learned.of(END_LEAKAGE), learned.of(MAGNET_FLUX)))
+    return replace(case, materials=materials_as_learned(case.materials, learned), end_leakage=lost)
 
 
 def materials_as_learned(materials: MachineMaterials, learned: Learned) -> MachineMaterials:

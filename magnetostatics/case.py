@@ -23,7 +23,8 @@ class FieldCase:
     layers, coil_pitch [slots, None: what the star of slots gives], packing: of the winding; copper over slot area
     density: mesh of sweep, optima and maps; detail: mesh for single states that are looked at
     nominal_density, overload_density: amplitudes of the current density in the copper [A/m^2]
-    end_leakage: share of the magnets' flux that closes beyond the ends of the stack, where no plane field sees it
+    end_leakage: share of the magnets' flux that closes beyond the ends of the stack, where no plane field sees it, or
+        that the winding lacks for another reason
     """
 
     family: MachineFamily

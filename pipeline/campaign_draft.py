@@ -338,7 +338,7 @@ def _dq_tables(designed: Designed) -> tuple[TableDraft, ...]:
     flux = float(machine.flux_linkage(0.0, 0.0)[0])
     volts = machine.pole_pairs * fastest * flux
     speeds = np.linspace(fastest / _SPEEDS, fastest, _SPEEDS)
-    currents = np.linspace(0.0, designed.winding.limits.current_peak, _CURRENT_STEPS)
+    currents = np.linspace(0.0, designed.continuous_current, _CURRENT_STEPS)  # beyond, constants do not hold
     slow = np.full(2 * _CURRENT_STEPS, fastest / 4)
     i_q = np.concatenate([currents, -currents])
     operation = {"i_d_A": 0 * i_q, "i_q_A": i_q, "speed_rpm": slow / RPM}

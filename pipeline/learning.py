@@ -13,6 +13,7 @@ from drivetrain.learned import (
     END_LEAKAGE,
     IRON_LOSS,
     LOAD_LOSS,
+    MAGNET_FLUX,
     OUTPUT_FRICTION,
     OUTPUT_VISCOUS,
     RECOIL,
@@ -92,7 +93,7 @@ def _warm_copper(rise: float, device: Device) -> float:
 
 MEANINGS: Mapping[str, tuple[Meaning, ...]] = {
     "magnet_temperature": (Meaning("rise", REMANENCE, _warm_magnet),),
-    "weak_magnets": (Meaning("loss", REMANENCE, _less),),  # flux in proportion to the remanence
+    "weak_magnets": (Meaning("loss", MAGNET_FLUX, _as_it_is),),  # psi_m and K, by the law of the effect itself
     "recoil_permeability": (Meaning("excess", RECOIL, _more),),  # of a permeability near one
     "lamination_stacking": (Meaning("loss", STACKING, _less),),
     "steel_grade": (Meaning("excess", STEEL_FIELD, _more),),
@@ -130,8 +131,8 @@ NO_MEANING: Mapping[str, str] = {
 INPUTS: Mapping[str, Quantity] = {
     "remanence": REMANENCE,
     "magnet.Br": REMANENCE,
-    "psi_m": REMANENCE,
-    "force_constant": REMANENCE,
+    "psi_m": MAGNET_FLUX,
+    "force_constant": MAGNET_FLUX,
     "recoil_permeability": RECOIL,
     "resistance": RESISTANCE,
     "phase_resistance": RESISTANCE,
@@ -181,7 +182,8 @@ def _of_inputs(
             others.append(name)
             continue
         spread = spreads.get(name)
-        value, uncertainty = 1.0 + scale * float(entry["shift"]), None if spread is None else scale * spread
+        shift, uncertainty = scale * float(entry["shift"]), None if spread is None else scale * spread
+        value = -shift if quantity == MAGNET_FLUX else 1.0 + shift  # a share that is lost, or a factor
         lessons.append(Lesson(name, f"fitted {name}", quantity, value, uncertainty))
     return lessons, [f"{', '.join(others)}: of the machine that was measured, not of the design."] if others else []
 
