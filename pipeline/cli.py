@@ -34,11 +34,13 @@ COMMANDS = {
                    "add an effect to the model: accepted only if the held-out error falls"),
     "ledger": Command("pipeline.workbench_commands", "add_ledger",
                       "diagnose and add by itself until nothing more is named; the ledger"),
+    "validate": Command("pipeline.workbench_commands", "add_validate",
+                        "apply a model file to data that it was not learned from, without fitting the device again"),
     "effects": Command("pipeline.workbench_commands", "add_effects",
                        "what the library knows, one line each; a name shows its equation"),
     "new-effect": Command("pipeline.workbench_commands", "add_new_effect",
                           "a skeleton of one's own effect, from the residual of a campaign"),
-    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for a plain CSV file"),
+    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for plain data files"),
 }  # fmt: skip
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from math import sqrt
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from drivetrain.learned import (
     END_LEAKAGE,
@@ -30,12 +30,12 @@ from drivetrain.learned import (
 )
 from effects.base import Effect, InstrumentEffect
 from effects.library import Library
-from effects.parameter import parameters_of
 from materials.conductor import COPPER
 from materials.magnet import NDFEB_REMANENCE_COEFFICIENT
-from study.errors import StudyError
 from units import split_unit
 from workbench.data.column_units import factor
+from workbench.ledger.learned import FittedInput
+from workbench.ledger.model_file import read_model
 from workbench.models.device import names
 
 Device = Mapping[str, Any]  # the [device] table of a campaign, drawing units
@@ -143,17 +143,13 @@ INPUTS: Mapping[str, Quantity] = {
 def learned_from(path: Path, library: Library) -> Learned:
     """What a model file teaches.
 
-    Raises StudyError where it is no model file, or holds an effect or a parameter that is not known.
+    Raises WorkbenchError where it is no model file, or holds an effect or a parameter that is not known.
     """
-    content = _content(path)
-    effects = [_effect(entry, library, path) for entry in content.get("effect", [])]
-    try:
-        device, spreads = content.get("device", {}), _spreads(content)
-        inputs, left = _of_inputs(content.get("input", []), device, spreads)
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise StudyError(f"--with {path}: its inputs or their covariance cannot be read ({error!r}).") from None
-    lessons = tuple(inputs) + tuple(lesson for effect in effects for lesson in _lessons(effect, device, spreads))
-    unused = [_no_meaning(effect) for effect in effects if effect.name() not in MEANINGS]
+    found = read_model(path, library)
+    spreads = dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist()))  # none in a file without covariance
+    inputs, left = _of_inputs(found.inputs, found.device, spreads)
+    lessons = tuple(inputs) + tuple(one for effect in found.effects for one in _lessons(effect, found.device, spreads))
+    unused = [_no_meaning(effect) for effect in found.effects if effect.name() not in MEANINGS]
     return Learned(lessons, tuple(unused + left), path.name)
 
 
@@ -171,63 +167,29 @@ def _no_meaning(effect: Effect) -> str:
 
 
 def _of_inputs(
-    entries: list[dict[str, Any]], device: Device, spreads: Mapping[str, float]
+    entries: Iterable[FittedInput], device: Device, spreads: Mapping[str, float]
 ) -> tuple[list[Lesson], list[str]]:
     """Lessons of fitted inputs, and one sentence for those that are of the specimen."""
     lessons, others = [], []
     for entry in entries:
-        name, scale = str(entry.get("name")), _scale(entry, device)
-        quantity = INPUTS.get(name)
+        quantity, scale = INPUTS.get(entry.name), _scale(entry, device)
         if quantity is None or scale is None:
-            others.append(name)
+            others.append(entry.name)
             continue
-        spread = spreads.get(name)
-        shift, uncertainty = scale * float(entry["shift"]), None if spread is None else scale * spread
+        shift, spread = scale * entry.shift, spreads.get(entry.name)
         value = -shift if quantity == MAGNET_FLUX else 1.0 + shift  # a share that is lost, or a factor
-        lessons.append(Lesson(name, f"fitted {name}", quantity, value, uncertainty))
+        uncertainty = None if spread is None else scale * spread
+        lessons.append(Lesson(entry.name, f"fitted {entry.name}", quantity, value, uncertainty))
     return lessons, [f"{', '.join(others)}: of the machine that was measured, not of the design."] if others else []
 
 
-def _scale(entry: Mapping[str, Any], device: Device) -> float | None:
+def _scale(entry: FittedInput, device: Device) -> float | None:
     """From the shift of an input to a relative one; None where the nominal value is not in the file."""
-    if entry.get("relative"):
+    if entry.tolerance.relative:
         return 1.0
-    name, known = str(entry.get("name")), names(device)
-    key = known.get(name, known.get(split_unit(name)[0]))
+    known = names(device)
+    key = known.get(entry.name, known.get(split_unit(entry.name)[0]))
     if key is None:
         return None
     unit = split_unit(key)[1]
     return 1.0 / (float(device[key]) * (factor(unit, f"[device] {key}") if unit else 1.0))
-
-
-def _spreads(content: Mapping[str, Any]) -> dict[str, float]:
-    """Standard uncertainty of inputs and of parameters of effects, where the file states a covariance."""
-    stated = content.get("covariance", {})
-    rows = stated.get("rows", [])
-    return {name: sqrt(max(0.0, rows[k][k])) for k, name in enumerate(stated.get("names", []))}
-
-
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StudyError(f"--with {path}: cannot be read as a model file: {error}.") from None
-    if not isinstance(content.get("model"), dict) or not isinstance(content.get("effect", []), list):
-        raise StudyError(f"--with {path}: is no model file; `airgap add` and `airgap ledger` write one.")
-    return content
-
-
-def _effect(entry: Any, library: Library, path: Path) -> Effect:
-    name = entry.get("name") if isinstance(entry, dict) else None
-    if name not in library:
-        raise StudyError(f"--with {path}: the effect {name!r} is not known; name its file with --effects-from.")
-    cls = library[name]
-    values = {key: value for key, value in entry.items() if key != "name"}
-    for key, p in parameters_of(cls).items():
-        value = values.get(key, p.null)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not p.low <= value <= p.high:
-            raise StudyError(f"--with {path}: {name}.{key} must be a number from {p.low:g} to {p.high:g}.")
-    try:
-        return cls(**values)
-    except TypeError as error:
-        raise StudyError(f"--with {path}: {name} is not as the library knows it ({error}).") from None

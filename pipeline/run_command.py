@@ -85,8 +85,7 @@ def _learned(options: argparse.Namespace) -> Learned | None:
             raise StudyError("--out goes with --with: the first design has its place in results/<study>/.")
         return None
     with exit_on_wrong_campaign():
-        library = own_library(options)
-    learned = learned_from(Path(options.model), library)
+        learned = learned_from(Path(options.model), own_library(options))
     for lesson in learned.lessons:
         print(f"learned: {lesson.reason}: {lesson.words}", flush=True)
     for sentence in learned.unused:

@@ -1,12 +1,18 @@
 """A model file of the workbench as what it means for a design; what means nothing is said."""
 
+import numpy as np
 import pytest
 
 from drivetrain.learned import END_LEAKAGE, IRON_LOSS, REMANENCE, RESISTANCE, ROTOR_FRICTION
 from effects.library import package_effects
+from effects.machine.magnet_temperature import MagnetTemperature
 from effects.parameter import parameters_of
 from pipeline.learning import MEANINGS, NO_MEANING, learned_from
-from study.errors import StudyError
+from workbench.data.table import Tolerance
+from workbench.errors import WorkbenchError
+from workbench.ledger.learned import FittedInput, LearnedRange, Source, device_hash
+from workbench.ledger.learned import Learned as File
+from workbench.ledger.model_file import write_model
 
 LIBRARY = package_effects()
 HEAD = '[model]\nbase = "machine"\n'
@@ -66,12 +72,14 @@ def test_what_means_nothing_for_a_design_is_said(tmp_path):
 
 
 def test_fitted_inputs_and_their_covariance_count(tmp_path):
-    found = taught(
-        tmp_path,
-        '[[input]]\nname = "remanence"\nshift = -0.02\nsigma = 0.01\nrelative = true',
-        '[[effect]]\nname = "magnet_temperature"\nrise = 40.0',
-        '[covariance]\nnames = ["remanence", "magnet_temperature.rise"]\nrows = [[1e-6, 0.0], [0.0, 4.0]]',
-    )
+    inputs = (FittedInput(Tolerance("remanence", 0.01, True, "certificate"), -0.02),)
+    effects, device = (MagnetTemperature(40.0),), {"slots": 12}
+    seen = LearnedRange("back_emf", "v_a", 10, 1.0, 0.0, {"speed": (0.0, 100.0)})
+    source = Source("bench", device_hash(device), {}, (seen,))
+    covariance = np.diag([1e-6, 4.0])
+    file = File("machine", device, effects, inputs, covariance=covariance, source=source)
+    write_model(tmp_path / "model.toml", file)
+    found = learned_from(tmp_path / "model.toml", LIBRARY)
     assert found.of(REMANENCE) == pytest.approx(0.98 * (1 - 0.044))
     assert [one.uncertainty for one in found.lessons] == pytest.approx([1e-3, 2 * 0.0011])
 
@@ -86,14 +94,14 @@ def test_a_shift_in_si_is_taken_over_the_device(tmp_path):
     "text, said",
     [
         ("[model", "cannot be read as a model file"),
-        ("x = 1", "is no model file"),
+        ("x = 1", "missing in this model file"),
         (HEAD + '[[effect]]\nname = "ghost"', "'ghost' is not known"),
         (HEAD + '[[effect]]\nname = "end_leakage"\nshare = 7.0', "must be a number from 0 to 0.3"),
-        (HEAD + '[[effect]]\nname = "end_leakage"\nslope = 0.1', "not as the library knows it"),
-        (HEAD + '[[input]]\nname = "remanence"\nrelative = true', "inputs or their covariance cannot be read"),
+        (HEAD + '[[effect]]\nname = "end_leakage"\nslope = 0.1', "has no parameter 'slope'"),
+        (HEAD + '[[input]]\nname = "remanence"\nrelative = true', "missing in this model file"),
     ],
 )
 def test_a_wrong_file_is_one_sentence(tmp_path, text, said):
     (tmp_path / "model.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(StudyError, match=said):
+    with pytest.raises(WorkbenchError, match=said):
         learned_from(tmp_path / "model.toml", LIBRARY)

@@ -10,12 +10,14 @@ from workbench.errors import WorkbenchError
 
 @dataclass(frozen=True)
 class Kind:
-    """responses: patterns of response columns;  axes: patterns of its natural conditions;  cost: of measuring once
-    more"""
+    """responses: patterns of response columns;  axes: patterns of its natural conditions;  cost: of measuring once more
+    says: what was done and what the columns mean, for the manual
+    """
 
     responses: tuple[str, ...]
     axes: tuple[str, ...] = ()
     cost: float = 1.0
+    says: str = ""
 
     def is_response(self, column: str) -> bool:
         return any(fnmatch(column, pattern) for pattern in self.responses)
@@ -30,7 +32,7 @@ KINDS: dict[str, Kind] = {
     "phase_resistance": Kind(("r_?", "resistance"), ("winding_T",), cost=0.3),
     "drag": Kind(("torque", "force", "power"), ("speed", "velocity")),
     "short_circuit": Kind(("torque", "force", "current", "i_?"), ("speed", "velocity"), cost=1.5),
-    "damping_velocity": Kind(("force", "torque"), ("velocity", "speed", "shunt")),
+    "damping_velocity": Kind(("force", "torque"), ("velocity", "shunt")),
     "locked_force": Kind(("force", "torque"), ("current", "direction")),
     "damping_shunt": Kind(("damping",), ("shunt",)),
     "impedance": Kind(("re", "im"), ("frequency", "amplitude", "shunt"), cost=2.0),

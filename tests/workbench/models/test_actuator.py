@@ -102,7 +102,7 @@ def test_effects_of_a_damper_act_and_tolerances_move_what_is_drawn():
 
 
 @pytest.mark.parametrize(
-    "change, said", [({"output": "lever"}, "output must be"), ({"psi_m_mVs": -1.0}, "psi_m must be positive")]
+    "change, said", [({"output": "lever"}, "output must be"), ({"psi_m_mVs": -1.0}, "psi_m must be a? ?positive")]
 )
 def test_a_wrong_device_is_said(change, said):
     with pytest.raises(WorkbenchError, match=said):

@@ -8,7 +8,8 @@ Kinds of measurement and their columns, SI, temperatures in degrees Celsius and 
     drag           speed [, magnet_T]                               -> torque          braking torque at open terminals
     phase_resistance  [winding_T]                                   -> resistance
 
-Where a temperature is not measured the machine is at its reference temperature.
+Where a temperature is not measured the machine is at its reference temperature. Every kind also knows the states
+resistance_factor and flux_factor, phase resistance and magnet flux linkage of a row over those of the design.
 """
 
 from __future__ import annotations
@@ -69,13 +70,14 @@ class Operation:
         self.rows = len(next(iter(conditions.values())))
         self.speed = conditions.get("speed", np.zeros(self.rows))
         self.omega = design.pole_pairs * self.speed
-        self.resistance = design.resistance * self._warm(design.copper_coefficient, "winding_T")
-        self.psi_m = design.psi_m * self._warm(design.remanence_coefficient, "magnet_T")
+        self.resistance = design.resistance * self._warm(design.copper_coefficient, "winding_T", "resistance_factor")
+        self.psi_m = design.psi_m * self._warm(design.remanence_coefficient, "magnet_T", "flux_factor")
 
-    def _warm(self, coefficient: float, column: str) -> np.ndarray:
+    def _warm(self, coefficient: float, column: str, state: str) -> np.ndarray:
+        factor = self.conditions.get(state, np.ones(self.rows))
         if not coefficient or column not in self.conditions:
-            return np.ones(self.rows)
-        return 1.0 + coefficient * (self.conditions[column] - self.design.reference_T)
+            return factor
+        return factor * (1.0 + coefficient * (self.conditions[column] - self.design.reference_T))
 
     def flux_linkage(self, i_d: np.ndarray, i_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """psi_d, psi_q [Vs] at magnetising currents [A]."""

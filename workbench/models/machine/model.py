@@ -27,7 +27,7 @@ from units import DEGREE
 from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
-from workbench.models.device import names, numbers
+from workbench.models.device import names, numbers, require_positive, require_whole
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.options import options
@@ -90,6 +90,8 @@ class MachineBench(BaseModel):
     def design(self, device: Mapping[str, object]) -> MachineAsBuilt:
         """The machine as drawn. Raises WorkbenchError when the table lacks something or the machine cannot be built."""
         values = numbers(_without_unit_traps(device), _REQUIRED, _OPTIONAL)
+        require_positive(values, *_REQUIRED)
+        require_whole(values, "slots", "poles")
         try:
             machine = _machine_of(values, device)
             check_machine(machine)
@@ -367,10 +369,7 @@ def _without_unit_traps(device: Mapping[str, object]) -> dict[str, object]:
         "remanence_reference_degC": "remanence_reference",
         "phase_resistance_mohm_20degC": "phase_resistance_mohm",
     }
-    table = {renamed.get(key, key): value for key, value in device.items()}
-    if "remanence_coefficient_percent_per_K" in table:
-        table["remanence_coefficient"] = table.pop("remanence_coefficient_percent_per_K") / 100
-    return table
+    return {renamed.get(key, key): value for key, value in device.items()}
 
 
 def _machine_of(values: Mapping[str, float], device: Mapping[str, object]) -> Machine:
