@@ -13,8 +13,9 @@ from tqdm import tqdm
 
 from disk import write_atomically
 from effects.base import Effect
-from effects.library import Library, effects_of_file, library
+from effects.library import Library
 from effects.parameter import parameters_of
+from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
@@ -37,8 +38,6 @@ from workbench.report import (
 from workbench.report.as_json import comparison_json, diagnosis_json, validation_json
 from workbench.report.sentences import conclusions, readings, verdict_sentence
 from workbench.report.validation import validation_sentence, warnings
-
-EXIT_WRONG_INPUT = 2
 
 Run = Callable[[argparse.Namespace], None]  # a command
 
@@ -69,14 +68,14 @@ def add_validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", help="model.toml that `airgap ledger` or `airgap add` wrote")
     parser.add_argument("data", help="folder of a campaign of the same device; its [device] may be left out")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<id of the data>/")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_validate)
 
 
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """What the library knows; a name shows its equation."""
     parser.add_argument("name", nargs="?")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_effects)
 
 
@@ -100,7 +99,7 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
         parser.add_argument("campaign", nargs="?", help="folder of a campaign whose residual gives the first guess")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<campaign id>/")
     parser.add_argument("--model", metavar="FILE", help="model file; default model.toml in the results, if it is there")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=run)
 
 
@@ -109,54 +108,9 @@ def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
 
 
-def _own_effects(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--effects-from",
-        action="append",
-        default=[],
-        metavar="FILE.py",
-        help="import effects of one's own: this runs the file; repeatable, a folder means its .py files",
-    )
-
-
-@contextmanager
-def exit_on_wrong_campaign() -> Iterator[None]:
-    """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
-    try:
-        yield
-    except WorkbenchError as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(EXIT_WRONG_INPUT) from None
-
-
-def _library(options: argparse.Namespace) -> Library:
-    for file in options.effects_from:
-        if not Path(file).exists():
-            raise WorkbenchError(f"--effects-from {file}: there is no such file.")
-        print(f"importing effects from {file}: this runs the file", file=sys.stderr, flush=True)
-        _must_hold_an_effect(file)
-    return library(options.effects_from)
-
-
-def _must_hold_an_effect(file: str) -> None:
-    """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    path = Path(file)
-    found: Library = {}
-    for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
-        try:
-            found |= effects_of_file(own)
-        except Exception as error:  # whatever the user's own file raises
-            raise WorkbenchError(f"{own}: cannot be imported: {type(error).__name__}: {error}.") from None
-    if not found:
-        raise WorkbenchError(
-            f"{file}: holds no effect; one is a frozen dataclass derived from effects.base, with a title and a "
-            "parameter."
-        )
-
-
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
-    campaign, effects = read_campaign(options.campaign), _library(options)
+    campaign, effects = read_campaign(options.campaign), own_library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
@@ -218,7 +172,7 @@ def _ledger(options: argparse.Namespace) -> None:
 
 def _validate(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        effects = _library(options)
+        effects = own_library(options)
         learned, campaign = read_model(options.model, effects), read_campaign(options.data)
         with _progress() as progress:
             validation = validate(learned, campaign, effects, progress)
@@ -231,7 +185,7 @@ def _validate(options: argparse.Namespace) -> None:
 
 def _effects(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        found = _library(options)
+        found = own_library(options)
         if options.name is None:
             width = max(len(name) for name in found)
             for name, cls in found.items():

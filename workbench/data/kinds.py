@@ -73,7 +73,14 @@ KINDS: dict[str, Kind] = {
         cost=1.5,
         says="Driven with joined terminals. torque as in drag; current: RMS, mean square of the phases; i_a: RMS.",
     ),
-    "damping_velocity": Kind(("force",), ("velocity", "shunt"), says="Driven at constant velocity over a shunt."),
+    "damping_velocity": Kind(
+        ("force", "torque"), ("velocity", "shunt"), says="Driven at constant velocity over a shunt."
+    ),
+    "locked_force": Kind(
+        ("force", "torque"),
+        ("current", "direction"),
+        says="Output held, or moved slowly in a direction +1 or -1, at a current (RMS of a line). force or torque there.",
+    ),
     "damping_shunt": Kind(("damping",), ("shunt",), says="Damping over the resistance of the shunt."),
     "impedance": Kind(
         ("re", "im"),
@@ -81,7 +88,7 @@ KINDS: dict[str, Kind] = {
         cost=2.0,
         says="Driven by a sine; re, im: fundamental of the force over that of the velocity.",
     ),
-    "force_loop": Kind(("force",), ("displacement", "velocity"), cost=2.0, says="Force over a driven motion."),
+    "force_loop": Kind(("force", "torque"), ("displacement", "velocity"), cost=2.0, says="Force over a driven motion."),
     "dq_operation": Kind(
         ("v_d", "v_q", "torque"),
         ("i_d", "i_q", "speed"),
