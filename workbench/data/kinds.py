@@ -79,7 +79,7 @@ KINDS: dict[str, Kind] = {
     "locked_force": Kind(
         ("force", "torque"),
         ("current", "direction"),
-        says="Output held, or moved slowly in a direction +1 or -1, at a current (RMS of a line). force or torque there.",
+        says="Output held, or moved slowly in a direction +1 or -1, at a current (RMS of a line).",
     ),
     "damping_shunt": Kind(("damping",), ("shunt",), says="Damping over the resistance of the shunt."),
     "impedance": Kind(
