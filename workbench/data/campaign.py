@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from workbench.data.column_units import factor, split_unit
+from workbench.data.conventions import with_conventions
 from workbench.data.expression import evaluate
 from workbench.data.kinds import Kind, kind_of
 from workbench.data.table import Campaign, Response, Systematic, Table, Tolerance
@@ -47,7 +48,7 @@ def read_campaign(folder: str | Path) -> Campaign:
         reader.complaints.append(
             "no row is held out: an accepted effect cannot be checked on data that no fit has seen"
         )
-    return Campaign(
+    campaign = Campaign(
         id=str(head.get("id", folder.name)),
         folder=str(folder),
         device=_section(content, "device") if "device" in content else {},
@@ -57,7 +58,9 @@ def read_campaign(folder: str | Path) -> Campaign:
         repeats=repeats,
         file_hashes=reader.hashes,
         complaints=tuple(reader.complaints),
+        conventions=_section(content, "conventions") if "conventions" in content else {},
     )
+    return with_conventions(campaign)
 
 
 def columns_of_systematics(folder: str | Path) -> dict[str, tuple[tuple[str, str], ...]]:
@@ -161,7 +164,8 @@ class _Reader:
             if c.role == "condition" and c.random is not None
         }
         held_out = self._held_out(frame, columns, repeat, name)
-        return Table(entry["kind"], name, conditions, responses, scan, repeat, held_out, condition_random)
+        units = {c.name: c.unit for c in columns.values() if c.role in ("condition", "group")}
+        return Table(entry["kind"], name, conditions, responses, scan, repeat, held_out, condition_random, units)
 
     def _complain_of(self, responses: Mapping[str, Response], rows: int, name: str) -> None:
         if not responses:

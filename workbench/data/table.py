@@ -30,7 +30,7 @@ class Table:
 
     kind: measurement kind, for example "back_emf"
     conditions: columns that the model is asked at, by SI-less name ("angle_mech", "i_a", "velocity"), SI (n,)
-    condition_random: their declared random uncertainties, SI (n,), where any
+    condition_random: their declared random uncertainties, SI (n,), where any;  condition_units: as in the file
     responses: measured columns by name without unit ("v_a", "torque", "force", "re", "im")
     scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
     held_out: rows that no fit may see (n,) bool
@@ -44,6 +44,7 @@ class Table:
     repeat: np.ndarray
     held_out: np.ndarray
     condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
+    condition_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -88,6 +89,7 @@ class Campaign:
 
     device: the ``[device]`` table as read, keys with units;  repeats: declared number of repeats
     file_hashes: SHA-256 of every data file;  complaints: what had to be left out or limits the conclusions
+    conventions: what each file means by its columns, see ``workbench.data.conventions``; already applied
     """
 
     id: str
@@ -99,3 +101,4 @@ class Campaign:
     repeats: int
     file_hashes: Mapping[str, str]
     complaints: tuple[str, ...] = ()
+    conventions: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

@@ -49,7 +49,7 @@ class Model:
             response = dict(effect.on_response(response, conditions, kind, design))
         for effect in self._of(InstrumentEffect):
             response = dict(effect.on_reading(response, {**conditions, "order": table.order}, kind))
-        return response
+        return response | _between_lines(response, table)
 
     @property
     def design_as_built(self) -> Any:
@@ -61,3 +61,15 @@ class Model:
 
     def _of(self, kind: type) -> list:
         return [effect for effect in self.effects if isinstance(effect, kind)]
+
+
+def _between_lines(response: dict[str, np.ndarray], table: Table) -> dict[str, np.ndarray]:
+    """Voltages between two phases, v_ab = v_a - v_b, where a table has them and the model answers for the phases."""
+    pairs = {name: (f"v_{name[2]}", f"v_{name[3]}") for name in table.responses if _is_between_lines(name)}
+    return {
+        n: response[p] - response[m] for n, (p, m) in pairs.items() if n not in response and {p, m} <= set(response)
+    }
+
+
+def _is_between_lines(name: str) -> bool:
+    return len(name) == 4 and name.startswith("v_") and set(name[2:]) < set("abc")

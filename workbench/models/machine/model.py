@@ -29,8 +29,9 @@ from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
 from workbench.models.device import names, numbers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
-from workbench.models.machine.field import LoadedState
+from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.options import options
+from workbench.models.machine.rough import ROUGH, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
 
 CACHE = Path("results") / "cache"
@@ -77,7 +78,7 @@ class MachineBench(BaseModel):
 
     plan: MeshPlan = MeshPlan()
     cache: Path | None = CACHE
-    surrogate: Surrogate | None = None
+    surrogate: Surrogate | RoughSurrogate | None = None
     builder: SurrogateBuilder | None = None
     about_drawing: Surrogate | None = None
     name: str = field(default="machine", init=False)
@@ -139,6 +140,10 @@ class MachineBench(BaseModel):
     def exact(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
         return self.recentred(design).respond(design, kind, conditions)
+
+    def anywhere(self, design: MachineAsBuilt) -> MachineBench:
+        """The same bench with fields of the drawing, answering at any angle and current; a second."""
+        return replace(self, surrogate=RoughSurrogate(MachineField(design, ROUGH)))
 
     @property
     def is_expansion(self) -> bool:
