@@ -1,6 +1,6 @@
 """One mistake of a laboratory, made in the files of a right campaign.
 
-    for mistake in MISTAKES["damper"]: folder = mistaken(mistake, right_folder, new_folder)
+for mistake in MISTAKES["damper"]: folder = mistaken(mistake, right_folder, new_folder)
 """
 
 from __future__ import annotations
@@ -115,7 +115,9 @@ def both(*changes: Change) -> Change:
 ANGLE, SPEED = "angle_mech_deg", "speed_rpm"
 V = ("v_a_V", "v_b_V", "v_c_V")
 I = ("i_a_A", "i_b_A", "i_c_A")  # noqa: E741
-EMF, COG, LOCKED, FLUX, OHM = (f"{n}.csv" for n in ("back_emf", "cogging", "locked_rotor", "flux_linkage", "phase_resistance"))
+EMF, COG, LOCKED, FLUX, OHM = (
+    f"{n}.csv" for n in ("back_emf", "cogging", "locked_rotor", "flux_linkage", "phase_resistance")
+)
 TURNED = (EMF, COG, LOCKED, FLUX)
 SWAPPED, ZERO, SIGN, UNIT = "swapped_phases", "angle_zero", "sign", "unit_factor"
 DIRECTION, ELECTRICAL, LINE, PEAK = "angle_direction", "electrical_or_mechanical", "line_or_phase", "rms_or_peak"
@@ -130,7 +132,7 @@ def _angle_in_radians(frame: pd.DataFrame) -> pd.DataFrame:
 _MACHINE = (
     Mistake("phases rotated A, B, C", (SWAPPED, ZERO), (EMF,), exchanged(V, V[1:] + V[:1])),
     Mistake("B and C swapped", (SWAPPED,), (EMF,), exchanged(V[1:], V[:0:-1])),
-    Mistake("all voltages inverted", (SIGN,), (EMF,), inverted(*V)),
+    Mistake("all voltages inverted", (SIGN, ZERO), (EMF,), inverted(*V)),
     Mistake("phase B inverted", ("inverted_phase",), (EMF,), inverted("v_b_V")),
     Mistake("degrees declared as rad", (UNIT,), (EMF,), _angle_in_radians),
     Mistake("electrical angle", (ELECTRICAL,), (EMF,), scaled((ANGLE,), 5.0)),
@@ -152,8 +154,8 @@ _MACHINE = (
     Mistake("v_a clipped at 80 %", ("clipped",), (EMF,), clipped("v_a_V", 0.8)),
     Mistake("v_c stuck for a tenth of the rows", ("stuck",), (EMF,), stuck("v_c_V", 0.3, 0.4)),
     Mistake("v_c stuck always", ("stuck",), (EMF,), stuck("v_c_V", 0.0, 1.0)),
-    Mistake("torque inverted, locked rotor", (SIGN,), (LOCKED,), inverted("torque_Nm")),
-    Mistake("torque inverted, both tables", (SIGN,), (LOCKED, COG), inverted("torque_Nm")),
+    Mistake("torque inverted, locked rotor", (SIGN, MOTOR), (LOCKED,), inverted("torque_Nm")),
+    Mistake("torque inverted, both tables", (SIGN, MOTOR), (LOCKED, COG), inverted("torque_Nm")),
     Mistake("mNm for Nm, locked rotor", (UNIT,), (LOCKED,), scaled(("torque_Nm",), 1000.0)),
     Mistake("mNm for Nm, cogging", (UNIT,), (COG,), scaled(("torque_Nm",), 1000.0)),
     Mistake("torque cell not set to zero", ("zero",), (COG,), shifted("torque_Nm", 0.8)),
@@ -165,7 +167,7 @@ _MACHINE = (
     Mistake("winding temperature in kelvin", (UNIT,), (OHM,), shifted("winding_T_degC", 273.15)),
     Mistake("linkage of phase a inverted", ("inverted_phase",), (FLUX,), inverted("dpsi_a_Vs")),
     Mistake("linkage in mVs", (UNIT,), (FLUX,), scaled(("dpsi_a_Vs", "dpsi_b_Vs", "dpsi_c_Vs"), 1e3)),
-    Mistake("clockwise and B, C swapped", (DIRECTION, SIGN), (EMF,), both(inverted(ANGLE), exchanged(V[1:], V[:0:-1]))),
+    Mistake("clockwise and B, C swapped", (SIGN, ZERO), (EMF,), both(inverted(ANGLE), exchanged(V[1:], V[:0:-1]))),
     Mistake("mV and phase A inverted", (UNIT, "inverted_phase"), (EMF,), both(scaled(V, 1e3), inverted("v_a_V"))),
 )  # fmt: skip
 

@@ -1,7 +1,7 @@
 """Conventions of a laboratory: what a file means by its columns, written down in ``[conventions]`` of campaign.toml.
 
     [conventions]
-    "back_emf.csv" = { swap = [["v_b_V", "v_c_V"]], invert = ["v_a_V"], factor = { v_a_V = 0.001 }, angle = "electrical" }
+    "back_emf.csv" = { swap = [["v_b_V", "v_c_V"]], factor = { v_a_V = 0.001 }, angle = "electrical" }
 
 Columns are named as in the file, or without their unit. For each file, applied in this order:
 

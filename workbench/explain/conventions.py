@@ -48,6 +48,7 @@ from workbench.explain.mistakes import (
     nearest,
     of_the_table,
     orders,
+    quantity,
     scaled_groups,
     slack,
     zero_grid,
@@ -59,10 +60,14 @@ POOL = 16  # readings of a table that are kept
 SECONDS = 6  # leading readings of a table that a second fix is tried beside
 BEAM = 60  # readings of a campaign that are kept while its tables are gone through
 ALIKE = 3.0  # nats of likelihood between two readings that the data cannot tell apart
-HABIT = 1.0  # nats for a fix that another file needs too
+ONCE_MORE = 0.3  # nats for a fix that another file needs too
+APART = 4.0  # nats where tables of one encoder do not agree about its angle
+SAME = 1.0  # nats that a fix may cost a table that cannot tell whether it needs it
 MET = 0.12  # relative misfit of a channel, below which there is nothing to settle in it
 EXPLAINED = 0.5  # that a channel may be left with by a fix that improves it; signs and exchanges have no size to fit
 EXPLAINED_SIGN = 0.8
+POWER = 0.3  # misfit against taking power, that a drag may be left with by a change of its sign
+LOUD = 10.0  # times its uncertainty that a drag must be, before its sign is judged
 BETTER = 0.8  # of the misfit before, that counts as improved
 SCANNED_ROWS = 60  # of a table over the full turn
 SCAN_STEP = 5 * DEGREE  # electrical, of ``zero_grid``
@@ -119,7 +124,7 @@ def settle(
     readers = [_Reader(model, campaign, table) for table in campaign.tables if table.responses]
     readings = _readings_of_all(readers)
     best = _joint(readings)
-    fixes = _sharpened(readers, best[0].fixes)
+    fixes = _sharpened(readers, _habits(readers, best[0].fixes))
     broken = tuple(fix for fix in _broken_channels(model, applied(campaign, fixes)))
     return _conventions(campaign, readers, readings, best, fixes, broken)
 
@@ -175,7 +180,8 @@ class _Reader:
     def readings(self) -> list[Reading]:
         """The best readings, with at most two fixes and a zero of the angle."""
         nothing = self.as_it_is
-        if max(nothing.errors.values()) < MET:
+        met = np.maximum(MET, 1.5 * self.allowed)
+        if np.all(np.array(list(nothing.errors.values())) < met):
             return [nothing]
         none: tuple[tuple[Fix, float], ...] = ()
         found = self.with_responses(none)
@@ -200,9 +206,16 @@ class _Reader:
         errors = dict(zip(found.names, found.errors(same, one)[0].tolist()))
         return Reading(fixes, costs, float(found.log_likelihood(same, one).max()), errors)
 
+    @property
+    def _is_loud(self) -> bool:
+        """Whether the readings stand far above their uncertainty, so that an offset or drift is none of their sign."""
+        return all(np.mean((r.values / r.random) ** 2) > LOUD**2 for r in self.table.responses.values())
+
     def _explains(self, reading: Reading) -> bool:
         """Whether every channel that a reading improves is well met with it."""
         sized = any(isinstance(f, (Scaled, AngleUnit, Offset, TemperatureScale)) for f in reading.fixes)
+        if self.table.kind == "drag" and reading.fixes:
+            return self._is_loud and max(reading.errors.values()) < POWER
         most = EXPLAINED if sized else EXPLAINED_SIGN
         before = list(self.as_it_is.errors.values())
         return all(now <= most or now > BETTER * was for was, now in zip(before, reading.errors.values()))
@@ -245,7 +258,8 @@ class _Reader:
             for group in scaled_groups(found.names):
                 members = np.array([name in group for name in found.names])
                 gain = found.gains(order.holds, order.sign, members)
-                nice = nearest(group[0], 1 / gain, self.pairs) if gain > 0 else None
+                alone = len(group) == 1 < sum(quantity(n) == quantity(group[0]) for n in found.names)
+                nice = nearest(group[0], 1 / gain, self.pairs, alone) if gain > 0 else None
                 if nice is None:
                     continue
                 gains = order.sign * np.where(members, 1 / nice.value, 1.0)
@@ -317,6 +331,18 @@ class _Reader:
         slots = self.campaign.device.get("slots")
         return float(slots) if isinstance(slots, (int, float)) else None
 
+    def has(self, fix: Fix) -> bool:
+        """Whether the table has what a fix is about."""
+        if isinstance(fix, Scaled):
+            return all(column in self.table.conditions for column in fix.columns)
+        return self.turns
+
+    def fall(self, fixes: Iterable[Fix], more: Fix) -> float:
+        """Nats that one more fix costs."""
+        mine = tuple(fix for fix in fixes if fix.file == self.table.file)
+        without = self._alone(mine, (), self.slack).log_likelihood
+        return without - self._alone((*mine, replace(more, file=self.table.file)), (), self.slack).log_likelihood
+
     def again(self, reading: Reading) -> Reading:
         """A reading of the angle that another table proposed, for this one."""
         fixes = tuple(replace(fix, file=self.table.file) for fix in reading.fixes)
@@ -372,9 +398,15 @@ class _Whole:
     def with_table(self, reading: Reading) -> _Whole:
         habits, net = dict(self.habits), self.net + reading.log_likelihood
         for fix, cost in zip(reading.fixes, reading.costs):
-            net += HABIT if fix.anywhere in habits else -(cost + OVERWHELMING)
+            net -= ONCE_MORE if fix.anywhere in habits else cost + OVERWHELMING
             habits[fix.anywhere] = cost
         return _Whole(self.fixes + reading.fixes, habits, self.log_likelihood + reading.log_likelihood, net)
+
+    def agreeing(self, turning: int) -> _Whole:
+        """With what it costs that only some of the tables with an angle share a habit of the angle."""
+        of_angle = [fix.anywhere for fix in self.fixes if _is_of_the_angle(fix)]
+        apart = sum(of_angle.count(habit) < turning for habit in set(of_angle))
+        return replace(self, net=self.net - APART * apart)
 
     @property
     def posterior(self) -> float:
@@ -390,7 +422,22 @@ def _joint(readings: Sequence[Sequence[Reading]]) -> list[_Whole]:
         beam = sorted(longer, key=lambda w: -w.net)[:BEAM]
         nothing = min(longer, key=lambda w: len(w.fixes))
         beam += [nothing] if nothing not in beam else []
-    return beam
+    turning = sum(any(_is_of_the_angle(f) for r in of_table for f in r.fixes) for of_table in readings)
+    return sorted((whole.agreeing(turning) for whole in beam), key=lambda w: -w.net)
+
+
+def _habits(readers: Sequence[_Reader], fixes: tuple[Fix, ...]) -> tuple[Fix, ...]:
+    """The fixes, and those of the angle and the speed also in tables that cannot tell, if no table speaks against."""
+    for habit in dict.fromkeys(fix.anywhere for fix in fixes if _is_of_the_shaft(fix)):
+        rest = [r for r in readers if not any(f.anywhere == habit for f in fixes if f.file == r.table.file)]
+        falls = [r.fall(fixes, habit) for r in rest if r.has(habit)]
+        if all(fall < SAME for fall in falls):
+            fixes += tuple(replace(habit, file=r.table.file) for r in rest if r.has(habit))
+    return fixes
+
+
+def _is_of_the_shaft(fix: Fix) -> bool:
+    return _is_of_the_angle(fix) or isinstance(fix, Scaled) and fix.columns == ("speed",)
 
 
 def _sharpened(readers: Sequence[_Reader], fixes: tuple[Fix, ...]) -> tuple[Fix, ...]:

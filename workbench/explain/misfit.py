@@ -23,8 +23,11 @@ from workbench.models.model import Model
 
 PIECES = 12  # independent pieces of the curve of a channel; a physical effect is smooth over the conditions
 ALLOWANCE = 0.05  # of the reading, that a device may be off by without any convention being suspected
+ROUGH_WITH_CURRENT = 0.15  # what proportion leaves of fields with current, see ``models.machine.rough``
 MOST_ALLOWED = 0.3  # with the declared tolerances
 MOST_ROWS = 160  # of a table that are looked at
+LARGER = 3.0  # times what the model says, that a reading may be before it is strange
+STRANGE, MOST_STRANGE = 2.0, 10.0  # nats for each power of e beyond, and at most
 TINY = 1e-12
 
 
@@ -44,7 +47,14 @@ class Sums:
 
     def log_likelihood(self, holds: np.ndarray, gain: np.ndarray) -> np.ndarray:
         """ln L (g, o) when channel j holds the readings of model column holds[o, j], gain[o, j] times too large."""
-        return -0.5 * np.sum(self.pieces * np.log(self.squares(holds, gain) + TINY), axis=2)
+        fit = -0.5 * np.sum(self.pieces * np.log(self.squares(holds, gain) + TINY), axis=2)
+        return fit - self._strange(holds, gain)
+
+    def _strange(self, holds: np.ndarray, gain: np.ndarray) -> np.ndarray:
+        """Nats (g, o) for readings that are far larger than all that the model says: no effect is that large."""
+        c = gain**2 * self.c[:, np.arange(len(self.names)), holds]
+        larger = np.log(np.maximum(self.a / (LARGER**2 * c + TINY * self.a), 1.0)) * (c > 0)
+        return np.minimum(STRANGE * larger, MOST_STRANGE).sum(axis=2)
 
     def errors(self, holds: np.ndarray, gain: np.ndarray) -> np.ndarray:
         """Misfit of each channel relative to its readings at the best offset of the angle, nothing allowed (o, r)."""
@@ -116,7 +126,8 @@ def allowances(model: Model, table: Table, tolerances: tuple[Tolerance, ...]) ->
     """What the device may be off by in each channel, relative: ALLOWANCE and the declared tolerances (r,)."""
     table, here = thinned(table, MOST_ROWS), np.zeros(1)
     nominal = predicted(model, table, here)[0]
-    square = np.full(len(nominal), ALLOWANCE**2)
+    loaded = model.base.is_expansion and any(name.startswith("i_") for name in table.conditions)
+    square = np.full(len(nominal), ROUGH_WITH_CURRENT**2 if loaded else ALLOWANCE**2)
     for tolerance in () if model.base.is_expansion else tolerances:
         moved = replace(model, design=model.base.with_tolerance(model.design, tolerance, 1.0))
         change = predicted(moved, table, here)[0] - nominal

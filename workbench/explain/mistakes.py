@@ -1,4 +1,4 @@
-"""What a file may mean by its columns: every reading of a table that is tried, and what each is believed to be worth."""
+"""What a file may mean by its columns: every reading of a table that is tried, and what each is believed to cost."""
 
 from __future__ import annotations
 
@@ -57,16 +57,16 @@ _BOTH = [
 ]
 _POUND = _both(4.4482216, USUAL)  # N in a pound-force
 _KILOGRAM = _both(9.80665, USUAL)  # N in a kilogram-force
-_FOOT = _both(1.3558179, RARE)  # Nm in a foot-pound
 _INCH = _both(0.11298483, USUAL)  # Nm in an inch-pound
 _BY_QUANTITY: dict[str, list[Nice]] = {
     "v": _TENS + _TWO + _PEAK + _LINE + _BOTH,
     "i": _TENS + _TWO + _PEAK + _LINE,
     "power": _TENS + _TWO + _both(3.0, USUAL, "line_or_phase"),
-    "torque": _TENS + _TWO + _KILOGRAM + _FOOT + _INCH,
+    "torque": _TENS + _TWO + _KILOGRAM + _INCH,
     "force": _TENS + _TWO + _KILOGRAM + _POUND,
     "speed": _both(2 * pi / 60, COMMON) + _both(2 * pi, USUAL) + _both(60.0, USUAL),
-    "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL) + _TWO,
+    "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL),
+    "shunt": _TENS,
     "frequency": _both(2 * pi, COMMON) + _both(60.0, USUAL) + _both(1e3, USUAL),
     "amplitude": _both(1e3, COMMON) + _TWO + _PEAK,
 }
@@ -91,12 +91,15 @@ def factors(column: str, pole_pairs: float | None) -> list[Nice]:
     return found
 
 
-def nearest(column: str, value: float, pole_pairs: float | None) -> Nice | None:
-    """The factor with a name that is nearest to a value, None where none is near."""
+def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) -> Nice | None:
+    """The factor with a name that is nearest to a value, None where none is near.
+
+    alone: one channel of several of its quantity, for which only another power of ten is believed
+    """
     if not value > 0:
         return None
     apart = lambda nice: abs(log(nice.value / value))  # noqa: E731
-    best = min(factors(column, pole_pairs), key=apart, default=None)
+    best = min(_TENS if alone else factors(column, pole_pairs), key=apart, default=None)
     return best if best is not None and apart(best) < NEAR else None
 
 

@@ -31,7 +31,7 @@ from workbench.models.device import names, numbers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.options import options
-from workbench.models.machine.rough import ROUGH, RoughSurrogate
+from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
 
 CACHE = Path("results") / "cache"
@@ -141,9 +141,10 @@ class MachineBench(BaseModel):
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
         return self.recentred(design).respond(design, kind, conditions)
 
-    def anywhere(self, design: MachineAsBuilt) -> MachineBench:
-        """The same bench with fields of the drawing, answering at any angle and current; a second."""
-        return replace(self, surrogate=RoughSurrogate(MachineField(design, ROUGH)))
+    def anywhere(self, design: MachineAsBuilt) -> RoughMachine:
+        """The machine from a few fields of the drawing, at any angle and current; about a second."""
+        rough = RoughSurrogate(MachineField(design, ROUGH))
+        return RoughMachine(rough, replace(self, surrogate=rough))
 
     @property
     def is_expansion(self) -> bool:

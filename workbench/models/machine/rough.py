@@ -10,28 +10,32 @@ judged by it, effects cannot.
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
+from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
 from geometry.winding import WindingLayout
+from workbench.models.base import BaseModel
 from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.surrogate import _projection, coefficients, evaluated, slope
 
 ROUGH = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)  # cogging of 12/10 to a tenth, flux to 1e-3
 AMPERE_TURNS = (200.0, 600.0, 1200.0, 2400.0)  # of a coil, that saturation is taken at
 _ORDERS = 118
+_STEPS = 7200  # angles of a revolution that are looked up
 _AROUND = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 
 
 class RoughSurrogate:
-    """Answers what ``Surrogate`` answers, from ``fields`` of the drawing."""
+    """What ``fields`` of the drawing say, solved when first asked."""
 
     def __init__(self, fields: MachineField):
         self.fields, self.nominal = fields, fields.nominal
-        self.states = None
 
     @property
     def layout(self) -> WindingLayout:
@@ -67,13 +71,67 @@ class RoughSurrogate:
         states = [LoadedState(angle, (i, -i / 2, -i / 2)) for i in (0.0, *currents.tolist())]
         return self.fields.loaded(self.nominal, states)
 
-    def with_current(self, design: MachineAsBuilt, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
-        """Torque and phase flux linkages per metre (n, 4) at angles [rad] (n,) and phase currents [A] (n, 3)."""
+    @lru_cache(maxsize=4)  # noqa: B019  it lives as long as one search for conventions
+    def around(self, turns: tuple[float, ...], remanence: float) -> np.ndarray:
+        """Torque, phase flux linkages and their slopes per metre at _STEPS angles (7, steps)."""
+        design = replace(self.nominal, turns=turns).with_magnet(remanence=remanence)
         spectrum = self.spectrum(design)
-        slopes, alone = evaluated(slope(spectrum[1:]), angle), evaluated(spectrum, angle)
+        angle = np.arange(_STEPS) * 2 * np.pi / _STEPS
+        return np.concatenate([evaluated(spectrum, angle), evaluated(slope(spectrum[1:]), angle)])
+
+    def saturated(self, design: MachineAsBuilt, currents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the torque and inductance [H/m] that currents [A] (3, n) leave (n,) each."""
         levels, share, inductance = self._saturation
         more = design.turns[0] / self.nominal.turns[0]
-        size = np.sqrt(2 / 3 * np.sum(currents**2, axis=1)) * more
-        torque = alone[0] + np.interp(size, levels, share) * np.einsum("nk,kn->n", currents, slopes)
-        henry = more**2 * np.interp(size, levels, inductance)
-        return np.column_stack([torque, alone[1:].T + henry[:, None] * currents])
+        size = np.sqrt(2 / 3 * np.sum(currents**2, axis=0)) * more
+        return np.interp(size, levels, share), more**2 * np.interp(size, levels, inductance)
+
+
+@dataclass(frozen=True, eq=False)
+class RoughMachine(BaseModel):
+    """The machine bench by looking up; ``other`` answers for what no field is needed for."""
+
+    surrogate: RoughSurrogate
+    other: BaseModel
+    name: str = "machine"
+
+    @property
+    def is_expansion(self) -> bool:
+        return True
+
+    def respond(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
+        """Response columns, SI; see ``MachineBench``."""
+        if kind not in _LOOKED_UP:
+            return self.other.respond(design, kind, conditions)
+        around = self.surrogate.around(design.turns, design.magnet.remanence)
+        place = np.rint(np.mod(conditions["angle_mech"], 2 * np.pi) * _STEPS / (2 * np.pi)).astype(int) % _STEPS
+        kept = 1.0 - design.end_leakage
+        found = design.length * np.take(around, place, axis=1) * np.array([kept**2, *[kept] * 6])[:, None]
+        return _LOOKED_UP[kind](self.surrogate, design, found, conditions)
+
+
+def _back_emf(surrogate: RoughSurrogate, design: MachineAsBuilt, found: np.ndarray, at: Columns) -> dict:
+    warm = at.get("magnet_T", design.magnet.reference_temperature) - design.magnet.reference_temperature
+    voltages = found[4:] * at["speed"] * (1.0 + design.magnet.temperature_coefficient * warm)
+    return {f"v_{x}": voltages[k] for k, x in enumerate("abc")}
+
+
+def _cogging(surrogate: RoughSurrogate, design: MachineAsBuilt, found: np.ndarray, at: Columns) -> dict:
+    return {"torque": found[0]}
+
+
+def _locked_rotor(surrogate: RoughSurrogate, design: MachineAsBuilt, found: np.ndarray, at: Columns) -> dict:
+    currents = np.array([at[f"i_{x}"] for x in "abc"])
+    share, _ = surrogate.saturated(design, currents)
+    return {"torque": found[0] + share * np.sum(currents * found[4:], axis=0)}
+
+
+def _flux_linkage(surrogate: RoughSurrogate, design: MachineAsBuilt, found: np.ndarray, at: Columns) -> dict:
+    currents = np.array([at[f"i_{x}"] for x in "abc"])
+    _, inductance = surrogate.saturated(design, currents)
+    return {f"dpsi_{x}": design.length * inductance * currents[k] for k, x in enumerate("abc")}
+
+
+_LOOKED_UP: dict[str, Callable[..., dict[str, np.ndarray]]] = {
+    "back_emf": _back_emf, "cogging": _cogging, "locked_rotor": _locked_rotor, "flux_linkage": _flux_linkage,
+}  # fmt: skip
