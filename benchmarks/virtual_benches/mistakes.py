@@ -167,7 +167,7 @@ _MACHINE = (
     Mistake("winding temperature in kelvin", (UNIT,), (OHM,), shifted("winding_T_degC", 273.15)),
     Mistake("linkage of phase a inverted", ("inverted_phase",), (FLUX,), inverted("dpsi_a_Vs")),
     Mistake("linkage in mVs", (UNIT,), (FLUX,), scaled(("dpsi_a_Vs", "dpsi_b_Vs", "dpsi_c_Vs"), 1e3)),
-    Mistake("clockwise and B, C swapped", (SIGN, ZERO), (EMF,), both(inverted(ANGLE), exchanged(V[1:], V[:0:-1]))),
+    Mistake("clockwise and B, C swapped", (ZERO, SIGN), (EMF,), both(inverted(ANGLE), exchanged(V[1:], V[:0:-1]))),
     Mistake("mV and phase A inverted", (UNIT, "inverted_phase"), (EMF,), both(scaled(V, 1e3), inverted("v_a_V"))),
 )  # fmt: skip
 
@@ -204,7 +204,7 @@ _DAMPER = (
 )  # fmt: skip
 
 GRID, DRAG, SHORT = "operation.csv", "drag.csv", "short_circuit.csv"
-DQ, VDQ = ("i_d_A", "i_q_A"), ("v_d_V", "v_q_V")
+DQ, VDQ, BRAKE = ("i_d_A", "i_q_A"), ("v_d_V", "v_q_V"), ("torque_Nm", "current_A")
 
 _DQ = (
     Mistake("rad/s under rpm, back-EMF", (UNIT,), (EMF,), scaled((SPEED,), np.pi / 30)),
@@ -228,7 +228,7 @@ _DQ = (
     Mistake("braking torque negative", (SIGN,), (SHORT,), inverted("torque_Nm")),
     Mistake("drag gives power", (SIGN,), (DRAG,), inverted("torque_Nm")),
     Mistake("peak for RMS current", (PEAK,), (SHORT,), scaled(("current_A",), np.sqrt(2))),
-    Mistake("torque and current exchanged", (COLUMNS,), (SHORT,), exchanged(("torque_Nm", "current_A"), ("current_A", "torque_Nm"))),
+    Mistake("torque and current exchanged", (COLUMNS,), (SHORT,), exchanged(BRAKE, BRAKE[::-1])),
     Mistake("i_q late by a row", (SHIFTED,), (GRID,), late("i_q_A")),
     Mistake("torque late by a row", (SHIFTED,), (GRID,), late("torque_Nm")),
     Mistake("v_q clipped", ("clipped",), (GRID,), clipped("v_q_V", 0.7)),

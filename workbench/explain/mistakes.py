@@ -29,6 +29,7 @@ from workbench.data.table import Table
 OVERWHELMING = 8.0  # nats, odds of 3000 to 1, by which the data must prefer each fix beyond what it is believed
 COMMON, USUAL, RARE = 4.0, 5.5, 7.5  # minus ln of how often a first file has this mistake
 NEAR = 0.15  # of the logarithm of a factor, beyond which it is another one
+NEAR_TEN = 0.5  # the same for a power of ten, which no effect comes near
 HAND_SET = 20 * DEGREE  # electrical, that a hand misses when it turns a rotor to its zero; less is an encoder's offset
 SENSELESS = ("angle", "phase", "direction")  # quantities that no factor is looked for in
 SIGNED = ("speed", "velocity", "i", "torque", "displacement", "v")
@@ -100,7 +101,7 @@ def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) ->
         return None
     apart = lambda nice: abs(log(nice.value / value))  # noqa: E731
     best = min(_TENS if alone else factors(column, pole_pairs), key=apart, default=None)
-    return best if best is not None and apart(best) < NEAR else None
+    return best if best is not None and apart(best) < (NEAR_TEN if best in _TENS else NEAR) else None
 
 
 # ---- readings of a table that need another answer of the model -----------------------------------------------------
