@@ -298,7 +298,8 @@ class NextMeasurement:
 class Diagnosis:
     """All that ``diagnose`` found.
 
-    verdict: nothing_missing, effect, group, pair, partial, none_of_these or cannot_tell;  probability: of the verdict
+    verdict: nothing_missing, effect, group, pair, partial, none_of_these, cannot_tell or convention
+    probability: of the verdict
     abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
         {3.0: 0.4, 10.0: 1.0}
     before, after: the failing channel without and with the leading effect, the same rows
@@ -329,6 +330,9 @@ class Diagnosis:
     p_partial: Mapping[str, float] = field(default_factory=dict)
     # of a pair: name -> names that may stand for it
     alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    fix: str = ""  # of the verdict "convention": the text for campaign.toml
+    checks: tuple[str, ...] = ()  # what needs no model
+    conventions: tuple[str, ...] = ()  # what the columns look like, a sentence each
 
 
 @dataclass(frozen=True)

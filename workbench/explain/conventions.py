@@ -53,6 +53,7 @@ from workbench.explain.mistakes import (
     slack,
     zero_grid,
 )
+from workbench.findings import Diagnosis
 from workbench.models.base import Progress
 from workbench.models.model import Model
 
@@ -127,6 +128,17 @@ def settle(
     fixes = _sharpened(readers, _habits(readers, best[0].fixes))
     broken = tuple(fix for fix in _broken_channels(model, applied(campaign, fixes)))
     return _conventions(campaign, readers, readings, best, fixes, broken)
+
+
+def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: float) -> Diagnosis:
+    """The diagnosis of a campaign whose conventions are not settled: no effect is looked for."""
+    nothing_is_missing, none_of_these = 0.0, 0.0
+    return Diagnosis(
+        conventions.campaign.id, model.base.name, "convention", conventions.names, conventions.probability, (),
+        nothing_is_missing, none_of_these, {}, {}, (), (), {}, seed, wall_s,
+        complaints=conventions.campaign.complaints, fix=conventions.fix, checks=conventions.checks,
+        conventions=conventions.sentences,
+    )  # fmt: skip
 
 
 # ---- one table -------------------------------------------------------------------------------------------------------

@@ -15,6 +15,8 @@ from workbench.errors import WorkbenchError
 from workbench.explain.agreement import repeats_itself
 from workbench.explain.bank import Prepared, signature
 from workbench.explain.calibration import Screen, abstention_power, alarm_threshold
+from workbench.explain.conventions import diagnosis_of as of_conventions
+from workbench.explain.conventions import settle
 from workbench.explain.hypotheses import (
     Hypothesis,
     Rival,
@@ -88,6 +90,9 @@ def diagnose(
     from workbench.explain.results import diagnosis_of
 
     start = perf_counter()
+    conventions = settle(model, campaign, library, progress)
+    if not conventions.are_right:
+        return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")
     bench = bench_of(model, campaign, library)
     random = np.random.default_rng(seed)
