@@ -61,6 +61,7 @@ POOL = 16  # readings of a table that are kept
 SECONDS = 6  # leading readings of a table that a second fix is tried beside
 BEAM = 60  # readings of a campaign that are kept while its tables are gone through
 ALIKE = 3.0  # nats of likelihood between two readings that the data cannot tell apart
+ALIKE_FACTOR = 9.0  # the same between two factors on one column, since a hidden effect of 15 % moves one to the other
 ONCE_MORE = 0.3  # nats for a fix that another file needs too
 APART = 4.0  # nats where tables of one encoder do not agree about its angle
 SAME = 1.0  # nats that a fix may cost a table that cannot tell whether it needs it
@@ -74,7 +75,7 @@ SCANNED_ROWS = 60  # of a table over the full turn
 SCAN_STEP = 5 * DEGREE  # electrical, of ``zero_grid``
 FEW = 5  # readings at one value that may be chance
 CLIPPED_SHARE = 0.02  # of the readings of a channel
-BEYOND = 0.9  # share of the readings at an end that the model must place beyond it
+BEYOND = 0.7  # share of the readings at an end that the model must place beyond it
 STUCK_RUN = 8  # equal readings one after the other
 STUCK_MOVES = 0.5  # of the rms of a channel that the model must change meanwhile
 
@@ -271,16 +272,12 @@ class _Reader:
                 members = np.array([name in group for name in found.names])
                 gain = found.gains(order.holds, order.sign, members)
                 alone = len(group) == 1 < sum(quantity(n) == quantity(group[0]) for n in found.names)
-                nice = nearest(group[0], 1 / gain, self.pairs, alone) if gain > 0 else None
-                if nice is None:
-                    continue
-                gains = order.sign * np.where(members, 1 / nice.value, 1.0)
-                value = float(found.log_likelihood(order.holds[None], gains[None]).max())
-                errors = found.errors(order.holds[None], gains[None])[0]
-                fix = Scaled(self.table.file, group, nice.value, nice.means)
-                out.append(
-                    self._reading(base, order, ((fix, nice.cost + (len(group) < 2 < len(members))),), value, errors)
-                )
+                for nice in nearest(group[0], 1 / gain, self.pairs, alone) if gain > 0 else ():
+                    gains = order.sign * np.where(members, 1 / nice.value, 1.0)
+                    value = float(found.log_likelihood(order.holds[None], gains[None]).max())
+                    errors = found.errors(order.holds[None], gains[None])[0]
+                    fix = Scaled(self.table.file, group, nice.value, nice.means)
+                    out.append(self._reading(base, order, ((fix, nice.cost),), value, errors))
         return out
 
     def _offsets(self) -> list[tuple[Fix, float]]:
@@ -478,7 +475,7 @@ def _broken_channels(model: Model, campaign: Campaign) -> list[Fix]:
     for table in campaign.tables:
         nominal = predicted(model, table, np.zeros(1))[0] if table.responses else ()
         for r, s in zip(table.responses.values(), nominal):
-            found += _stuck(table, r, s) or _clipped(table, r, s)
+            found += _clipped(table, r, s) or _stuck(table, r, s)
     return found
 
 
@@ -494,10 +491,19 @@ def _stuck(table: Table, r: Response, s: np.ndarray) -> list[Fix]:
     return []
 
 
+def _as_large(s: np.ndarray, readings: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """The model as large as the readings are in some rows: an effect may lie in them besides."""
+    square = float(np.sum(s[rows] ** 2))
+    return s * (float(np.sum(readings[rows] * s[rows])) / square) if square > 0 else s
+
+
 def _clipped(table: Table, r: Response, s: np.ndarray) -> list[Fix]:
     found: list[Fix] = []
+    if np.ptp(r.values) == 0:
+        return found
     for sign, edge in ((1, r.values.max()), (-1, r.values.min())):
         at = r.values == edge
+        s = _as_large(s, r.values, (r.values < r.values.max()) & (r.values > r.values.min()))
         beyond = sign * (s - edge) > 0
         far = sign * (s - edge) > ALLOWED_BEYOND * abs(edge)
         enough = at.sum() >= max(FEW, CLIPPED_SHARE * table.rows)
@@ -556,15 +562,23 @@ def _equivalents(best: list[_Whole]) -> list[_Whole]:
     out = []
     for other in best[1:]:
         mine = set(other.habits)
-        near = other.log_likelihood > lead.log_likelihood - ALIKE
+        alike = ALIKE_FACTOR if _other_factors(mine, set(lead.habits)) else ALIKE
+        near = other.log_likelihood > lead.log_likelihood - alike
         if near and len(mine) <= len(lead.habits) + 1 and not any(h <= mine for h in habits):
             habits.append(mine)
             out.append(other)
     return sorted(out, key=lambda w: len(w.habits))
 
 
+def _other_factors(one: set[Fix], other: set[Fix]) -> bool:
+    """Whether two readings differ by the sizes of factors alone."""
+    bare = [{replace(f, factor=1.0, means=()) if isinstance(f, Scaled) else f for f in fixes} for fixes in (one, other)]
+    return bare[0] == bare[1]
+
+
 def _as_simple(other: _Whole, lead: _Whole) -> bool:
-    return len(other.habits) <= len(lead.habits) and other.net > lead.net - ALIKE
+    alike = ALIKE_FACTOR if _other_factors(set(other.habits), set(lead.habits)) else ALIKE
+    return len(other.habits) <= len(lead.habits) and other.net > lead.net - alike
 
 
 def _names_of(fixes: Iterable[Fix], others: Iterable[_Whole]) -> tuple[str, ...]:

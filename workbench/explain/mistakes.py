@@ -26,9 +26,9 @@ from workbench.data.conventions import (
 )
 from workbench.data.table import Table
 
-OVERWHELMING = 8.0  # nats, odds of 3000 to 1, by which the data must prefer each fix beyond what it is believed
+OVERWHELMING = 7.0  # nats, odds of 1000 to 1, by which the data must prefer each fix beyond what it is believed
 COMMON, USUAL, RARE = 4.0, 5.5, 7.5  # minus ln of how often a first file has this mistake
-NEAR = 0.15  # of the logarithm of a factor, beyond which it is another one
+NEAR = 0.2  # of the logarithm of a factor, beyond which it is another one; effects reach 20 %
 NEAR_TEN = 0.5  # the same for a power of ten, which no effect comes near
 HAND_SET = 20 * DEGREE  # electrical, that a hand misses when it turns a rotor to its zero; less is an encoder's offset
 SENSELESS = ("angle", "phase", "direction")  # quantities that no factor is looked for in
@@ -92,16 +92,16 @@ def factors(column: str, pole_pairs: float | None) -> list[Nice]:
     return found
 
 
-def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) -> Nice | None:
-    """The factor with a name that is nearest to a value, None where none is near.
+def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) -> list[Nice]:
+    """The factors with a name that are near a value, at most two.
 
     alone: one channel of several of its quantity, for which only another power of ten is believed
     """
     if not value > 0:
-        return None
-    apart = lambda nice: abs(log(nice.value / value))  # noqa: E731
-    best = min(_TENS if alone else factors(column, pole_pairs), key=apart, default=None)
-    return best if best is not None and apart(best) < (NEAR_TEN if best in _TENS else NEAR) else None
+        return []
+    known = _TENS if alone else factors(column, pole_pairs)
+    near = [nice for nice in known if abs(log(nice.value / value)) < (NEAR_TEN if nice in _TENS else NEAR)]
+    return sorted(near, key=lambda nice: abs(log(nice.value / value)))[:2]
 
 
 # ---- readings of a table that need another answer of the model -----------------------------------------------------
