@@ -21,6 +21,7 @@ from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Validation
 from workbench.ledger.model_file import NAME, read_model, with_effects
@@ -106,6 +107,11 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
 def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
+    parser.add_argument(
+        "--accept-conventions",
+        action="store_true",
+        help="go on with what the columns of the files look like, where campaign.toml does not say it",
+    )
 
 
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
@@ -129,6 +135,17 @@ def _from_elsewhere(source: str, here: str) -> str:
     )
 
 
+def _settled(options: argparse.Namespace, campaign: Campaign, effects: Library, model: Model) -> Campaign:
+    """The campaign with the conventions that were found in it, where the user accepts them."""
+    if not options.accept_conventions:
+        return campaign
+    with _progress() as progress:
+        conventions = settle(model, campaign, effects, progress)
+    if not conventions.are_right:
+        print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
+    return conventions.campaign
+
+
 def _compare(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
@@ -141,6 +158,7 @@ def _compare(options: argparse.Namespace) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -150,6 +168,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -162,6 +181,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -287,6 +307,8 @@ def _print_diagnosis(d: Diagnosis, out: Path) -> None:
     print(f"nothing missing {d.p_nothing_missing:.3f}, none of these {d.p_none_of_these:.3f}")
     for option in d.next_measurements[:3]:
         print(f"next: {option.words} ({option.gain_nats:.1f} nats)")
+    if d.fix:
+        print("", d.fix, sep="\n")
     print("", verdict_sentence(d), *conclusions(d), f"results in {out}", sep="\n")
 
 

@@ -353,6 +353,7 @@ def verdict_sentence(d: Diagnosis) -> str:
         "partial": lambda: f"{_explains(names)} a part{_size(d)}, but something remains.",
         "none_of_these": lambda: f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}.",
         "cannot_tell": lambda: _cannot_tell(d),
+        "convention": lambda: " ".join(d.conventions),
     }[d.verdict]() + f" Probability {probability_text(d.probability)}."
 
 

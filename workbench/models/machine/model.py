@@ -42,6 +42,7 @@ from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.kinds import KINDS, PHASES, loaded_states
 from workbench.models.machine.options import options
+from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate
 
 CACHE = Path("results") / "cache"
@@ -58,7 +59,7 @@ class MachineBench(BaseModel):
 
     plan: MeshPlan = MeshPlan()
     cache: Path | None = CACHE
-    surrogate: Surrogate | None = None
+    surrogate: Surrogate | RoughSurrogate | None = None
     builder: SurrogateBuilder | None = None
     about_drawing: Surrogate | None = None
     name: str = field(default="machine", init=False)
@@ -110,6 +111,11 @@ class MachineBench(BaseModel):
     def exact(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
         return self.recentred(design).respond(design, kind, conditions)
+
+    def anywhere(self, design: MachineAsBuilt) -> RoughMachine:
+        """The machine from a few fields of the drawing, at any angle and current; about a second."""
+        rough = RoughSurrogate(MachineField(design, ROUGH))
+        return RoughMachine(rough, replace(self, surrogate=rough))
 
     @property
     def is_expansion(self) -> bool:
