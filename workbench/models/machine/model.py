@@ -40,6 +40,7 @@ from workbench.models.device import names
 from workbench.models.machine.answers import Answers, at_magnet_temperatures
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
+from workbench.models.machine.field import MachineField
 from workbench.models.machine.kinds import KINDS, PHASES, loaded_states
 from workbench.models.machine.options import options
 from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
