@@ -25,6 +25,8 @@ COMMANDS = {
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
+    "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",
+                             "write the bench campaign of a design, to be measured"),
     "compare": Command("pipeline.workbench_commands", "add_compare", "where does the model fail against a campaign?"),
     "diagnose": Command("pipeline.workbench_commands", "add_diagnose",
                         "which effect is missing, how sure, what to measure next?"),

@@ -13,13 +13,15 @@ from tqdm import tqdm
 
 from disk import write_atomically
 from effects.base import Effect
-from effects.library import Library, effects_of_file, library
+from effects.library import Library
 from effects.parameter import parameters_of
+from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Ranked, Validation
 from workbench.ledger.model_file import NAME, read_model, with_effects
@@ -47,8 +49,6 @@ from workbench.report.sentences import (
 )
 from workbench.report.validation import validation_sentence, warnings
 from workbench.report.words import factor_text, odds_text
-
-EXIT_WRONG_INPUT = 2
 
 Run = Callable[[argparse.Namespace], None]  # a command
 
@@ -79,14 +79,14 @@ def add_validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", help="model.toml that `airgap ledger` or `airgap add` wrote")
     parser.add_argument("data", help="folder of a campaign of the same device; its [device] may be left out")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<id of the data>/")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_validate)
 
 
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """What the library knows; a name shows its equation."""
     parser.add_argument("name", nargs="?")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_effects)
 
 
@@ -110,63 +110,23 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
         parser.add_argument("campaign", nargs="?", help="folder of a campaign whose residual gives the first guess")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<campaign id>/")
     parser.add_argument("--model", metavar="FILE", help="model file; default model.toml in the results, if it is there")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=run)
 
 
 def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
-
-
-def _own_effects(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--effects-from",
-        action="append",
-        default=[],
-        metavar="FILE.py",
-        help="import effects of one's own: this runs the file; repeatable, a folder means its .py files",
+        "--accept-conventions",
+        action="store_true",
+        help="go on with what the columns of the files look like, where campaign.toml does not say it",
     )
-
-
-@contextmanager
-def exit_on_wrong_campaign() -> Iterator[None]:
-    """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
-    try:
-        yield
-    except WorkbenchError as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(EXIT_WRONG_INPUT) from None
-
-
-def _library(options: argparse.Namespace) -> Library:
-    for file in options.effects_from:
-        if not Path(file).exists():
-            raise WorkbenchError(f"--effects-from {file}: there is no such file.")
-        print(f"importing effects from {file}: this runs the file", file=sys.stderr, flush=True)
-        _must_hold_an_effect(file)
-    return library(options.effects_from)
-
-
-def _must_hold_an_effect(file: str) -> None:
-    """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    path = Path(file)
-    found: Library = {}
-    for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
-        try:
-            found |= effects_of_file(own)
-        except Exception as error:  # whatever the user's own file raises
-            raise WorkbenchError(f"{own}: cannot be imported: {type(error).__name__}: {error}.") from None
-    if not found:
-        raise WorkbenchError(
-            f"{file}: holds no effect; one is a frozen dataclass derived from effects.base, with a title and a "
-            "parameter."
-        )
 
 
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
-    campaign, effects = read_campaign(options.campaign), _library(options)
+    campaign, effects = read_campaign(options.campaign), own_library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
@@ -185,6 +145,17 @@ def _from_elsewhere(source: str, here: str) -> str:
     )
 
 
+def _settled(options: argparse.Namespace, campaign: Campaign, effects: Library, model: Model) -> Campaign:
+    """The campaign with the conventions that were found in it, where the user accepts them."""
+    if not options.accept_conventions:
+        return campaign
+    with _progress() as progress:
+        conventions = settle(model, campaign, effects, progress)
+    if not conventions.are_right:
+        print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
+    return conventions.campaign
+
+
 def _compare(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
@@ -197,6 +168,7 @@ def _compare(options: argparse.Namespace) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -206,6 +178,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -218,6 +191,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -228,7 +202,7 @@ def _ledger(options: argparse.Namespace) -> None:
 
 def _validate(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        effects = _library(options)
+        effects = own_library(options)
         learned, campaign = read_model(options.model, effects), read_campaign(options.data)
         with _progress() as progress:
             validation = validate(learned, campaign, effects, progress)
@@ -241,7 +215,7 @@ def _validate(options: argparse.Namespace) -> None:
 
 def _effects(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        found = _library(options)
+        found = own_library(options)
         if options.name is None:
             width = max(len(name) for name in found)
             for name, cls in found.items():

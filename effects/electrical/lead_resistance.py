@@ -44,4 +44,4 @@ class LeadResistance(DesignEffect):
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
         more = (self.resistance if self.phase in ("", x) else 0.0 for x in PHASES)
-        return replace(design, phase_resistance=tuple(r + m for r, m in zip(design.phase_resistance, more)))
+        return replace(design, lead_resistance=tuple(r + m for r, m in zip(design.lead_resistance, more)))

@@ -83,7 +83,8 @@ class Waveforms:
         if kind == "flux_linkage":
             return {f"dpsi_{x}": 1e-3 * at[f"i_{x}"] * (1 + 0.1 * np.cos(2 * phase)) for x, phase in phases.items()}
         warm = 1 + 0.00393 * (at["winding_T"] - 20.0)
-        return {f"r_{x}": r * warm for x, r in zip("abc", design.phase_resistance)}
+        both = zip("abc", design.phase_resistance, design.lead_resistance)
+        return {f"r_{x}": r * warm + lead for x, r, lead in both}
 
 
 def table(kind: str, responses: tuple[str, ...], **conditions) -> Table:
@@ -186,7 +187,7 @@ def check_declared(cls: type[Effect]) -> None:
     assert not cls.__doc__.startswith(f"{cls.__name__}("), "the docstring states the law"
     parameters = parameters_of(cls)
     assert parameters, "an effect without a parameter has no null"
-    assert 0.0 < cls.base_rate <= 0.2 and cls.base_rate_source, "a base rate and its source are needed"
+    assert 0.0 < cls.base_rate <= 0.5 and cls.base_rate_source, "a base rate and its source are needed"
     for name, p in parameters.items():
         assert p.unit and p.source, f"{name} lacks its unit or source"
         assert p.low <= p.null <= p.high, f"the null of {name} is outside its bounds"
@@ -257,8 +258,8 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 def check_signature(cls: type[Effect]) -> None:
     """At a typical size readings change at the places of its claims and at no other; its claims hold as it vanishes."""
     cases = [case for case in cases_of(cls) if case.tables]
-    if not cases or not cls.signature and _needs_a_field(cls):
-        return
+    if not cases or _needs_a_field(cls):
+        return  # held against the surrogate of a machine: test_machine_signatures
     assert cls.signature, "an effect claims what it does to readings"
     for case in cases:
         base, effect = case.places(), sized(first(cls, case))
@@ -276,7 +277,7 @@ def check_signature(cls: type[Effect]) -> None:
 
 
 def _needs_a_field(cls: type[Effect]) -> bool:
-    return cls.designs == (MachineAsBuilt,)
+    return cls.__module__.startswith("effects.machine.")
 
 
 CHECKS: tuple[Callable[[type[Effect]], None], ...] = (

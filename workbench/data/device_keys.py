@@ -49,6 +49,7 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("copper_coefficient_per_K", "relative change of the resistance with winding_T; default 0", False),
         DeviceKey("remanence_coefficient_per_K", "relative change of psi_m with magnet_T; default 0", False),
         DeviceKey("iron_conductance", "1/ohm, in parallel with the induced voltage; default 0", False),
+        DeviceKey("voltage_per_dc", "largest peak phase voltage over v_dc; default 0.577, six steps 0.637", False),
     ),
     "machine": (
         DeviceKey("slots", "slots, a coil on every tooth"),
@@ -65,6 +66,9 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("recoil_permeability", "relative; default 1.05", False),
         DeviceKey("stacking_factor", "steel over stack length; default 1", False),
         DeviceKey("coils_in_series_per_phase", "slots / 3, for the check", False),
-        DeviceKey("phase_resistance_mohm_20degC", "of one phase at 20 degC, for tables of resistance", False),
+        DeviceKey("phase_resistance_mohm_20degC", "of one phase at 20 degC, without leads", False),
+        DeviceKey("magnet_temperature_degC", "of the magnets where no magnet_T is read; default: the reference", False),
+        DeviceKey("end_winding_inductance_uH", "of a phase; default 0, uncertain by what half circles have", False),
+        DeviceKey("iron_loss_grade", "M235-35A, M400-50A or M19; without it no iron loss", False),
     ),
 }

@@ -4,13 +4,13 @@ by (remounting, drift), single wild readings.
 The declared uncertainty gives the shape over the rows; its size is measured. Differences between repeats are taken of
 reading minus nominal model, so that conditions that were not set quite alike do no harm. Of a scan
 
-    z = offset + slope (t - 1/2) + AR(1) noise of size 1,   t: how far through the scan, 0 to 1
+    z = (offset + slope (t - 1/2)) / u + AR(1) noise of size 1,   t: how far through the scan, 0 to 1
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -25,6 +25,7 @@ DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the r
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
 POOLED_PAIRS = 30.0  # neighbours that the correlation common to all channels counts for in each channel
 LARGEST_CORRELATION = 0.95
+POOLED_SCANS = 6.0  # offsets and slopes that the spread common to all channels counts for in each channel
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
 LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
 
@@ -34,7 +35,7 @@ class ChannelNoise:
     """scale: measured over declared size;  rho: correlation of neighbours in a scan
 
     dof: degrees of freedom of the scale;  pairs: differences used;  wild: readings found wild
-    offset, slope: standard deviations of what a scan as a whole is off by, of the size of the noise
+    scans: standard deviation of offset and of slope of a scan as a whole, of the size of the noise
     """
 
     channel: str
@@ -43,8 +44,7 @@ class ChannelNoise:
     dof: float
     pairs: int
     wild: int
-    offset: float = 0.0
-    slope: float = 0.0
+    scans: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,12 +120,12 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
 
 def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
     """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
-    if not channel.size or not (found.offset or found.slope):
+    if not channel.size or not found.scans:
         return None
     scans = _scans(stack.tables[channel.table])
     raw = np.zeros((stack.size, 2 * len(scans)))
     for k, rows in enumerate(scans):
-        shapes = np.column_stack([np.full(len(rows), found.offset), found.slope * _through(len(rows))])
+        shapes = found.scans * _scan_shapes(stack.u[channel.rows][rows])
         raw[channel.rows.start + rows, 2 * k : 2 * k + 2] = shapes * white.sigma[channel.rows][rows][:, None]
     return law_error(channel.rows, white(raw)[channel.rows])
 
@@ -147,11 +147,11 @@ def measured_noise(stack: Stack, nominal: np.ndarray) -> Noise:
     nominal: readings of the nominal model (n,)
     """
     whole = [_deviation(stack, channel, nominal) for channel in stack.channels]
-    deviations = [_within_scans(stack.tables[c.table], d) for c, d in zip(stack.channels, whole)]
+    deviations = [_within_scans(stack.tables[c.table], stack.u[c.rows], d) for c, d in zip(stack.channels, whole)]
     scales = [_scale(d) for d in deviations]
     rhos = _correlations(stack, deviations, scales)
     inflation = np.ones(stack.size)
-    channels = []
+    channels, scans = [], []
     for channel, d, scale, rho, all_of_it in zip(stack.channels, deviations, scales, rhos, whole):
         ratio = np.nan_to_num(np.abs(d.row) / scale.size) if scale.pairs else np.zeros(channel.size)
         inflation[channel.rows] = np.maximum(ratio / WILD, 1.0)
@@ -165,10 +165,11 @@ def measured_noise(stack: Stack, nominal: np.ndarray) -> Noise:
                 dof,
                 scale.pairs,
                 int((ratio > REPORTED).sum()),
-                *_of_whole_scans(stack.tables[channel.table], all_of_it.spread / size, rho),
             )
         )
-    return Noise(tuple(channels), inflation)
+        u = stack.u[channel.rows]
+        scans.append(_of_whole_scans(stack.tables[channel.table], u, all_of_it.spread / size, rho))
+    return Noise(tuple(replace(c, scans=spread) for c, spread in zip(channels, _spreads(scans))), inflation)
 
 
 def noise_on_rows(noise: Noise, stack: Stack, chosen: Sequence[np.ndarray]) -> Noise:
@@ -213,14 +214,16 @@ def _deviation(stack: Stack, channel: Channel, nominal: np.ndarray) -> _Deviatio
     return _Deviation(spread, row, len(stations) * (repeats - 1))
 
 
-def _within_scans(table: Table, whole: _Deviation) -> _Deviation:
+def _within_scans(table: Table, u: np.ndarray, whole: _Deviation) -> _Deviation:
     """The deviations less mean and slope of every scan that is long enough to have them."""
     spread, row = whole.spread.copy(), whole.row.copy()
     for rows in _scans(table):
         known = rows[np.isfinite(spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
-        line = _line(known, rows, np.clip(spread[known], *_fence(spread[known])))
+        shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
+        values = np.clip(spread[known], *_fence(spread[known]))
+        line = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0]
         free = np.sqrt(len(known) / (len(known) - 2))
         spread[known] = (spread[known] - line) * free
         row[known] -= line
@@ -234,27 +237,49 @@ def _fence(values: np.ndarray) -> tuple[float, float]:
     return middle - reach, middle + reach
 
 
-def _line(known: np.ndarray, rows: np.ndarray, values: np.ndarray) -> np.ndarray:
-    t = _through(len(rows))[np.searchsorted(rows, known)]
-    mean, centred = values.mean(), t - t.mean()
-    return mean + centred * (centred @ values) / (centred @ centred)
+@dataclass(frozen=True, eq=False)
+class _Scans:
+    """Offsets and slopes of the scans of a channel, of the size of its noise, and their variance by noise (s,)."""
+
+    found: np.ndarray
+    noise: np.ndarray
 
 
-def _of_whole_scans(table: Table, z: np.ndarray, rho: float) -> tuple[float, float]:
-    """Standard deviations of offset and slope of the scans beyond what noise of correlation rho gives them."""
-    found = []
+def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _Scans:
+    found, noise = [], []
     for rows in _scans(table):
         known = rows[np.isfinite(z[rows])]
         if len(known) >= SHORTEST_SCAN:
-            t = _through(len(rows))[np.searchsorted(rows, known)]
+            shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
             values = np.clip(z[known], *_fence(z[known]))
-            centred = t - t.mean()
-            noise = (1 + rho) / (1 - rho) / len(known)
-            found.append((values.mean() ** 2 - noise, (centred @ values / (centred @ centred)) ** 2 - 12 * noise))
-    if not found:
-        return 0.0, 0.0
-    offset, slope = np.sqrt(np.maximum(np.mean(found, axis=0), 0.0))
-    return float(offset), float(slope)
+            found += list(np.linalg.lstsq(shapes, values, rcond=None)[0])
+            noise += list((1 + rho) / (1 - rho) * np.diagonal(np.linalg.pinv(shapes.T @ shapes)))
+    return _Scans(np.array(found), np.array(noise))
+
+
+def _scan_shapes(u: np.ndarray) -> np.ndarray:
+    """An offset and a slope in the unit of the reading over the rows of a scan, of rms 1 over their u (n, 2)."""
+    shapes = np.column_stack([np.ones(len(u)), _through(len(u))]) / u[:, None]
+    size = np.sqrt(np.mean(shapes**2, axis=0))
+    return shapes / np.where(size > 0, size, 1.0)
+
+
+def _spreads(scans: Sequence[_Scans]) -> list[float]:
+    """Standard deviation of offset and of slope of the scans of every channel beyond what noise gives them, drawn
+    towards the one common to all: three repeats alone say little of it."""
+    found, noise = (np.concatenate([getattr(s, name) for s in scans]) for name in ("found", "noise"))
+    common = _excess(found, noise)
+    own = [(_excess(s.found, s.noise), len(s.found)) for s in scans]
+    return [float(np.sqrt((POOLED_SCANS * common + n * e) / (POOLED_SCANS + n))) for e, n in own]
+
+
+def _excess(found: np.ndarray, noise: np.ndarray) -> float:
+    """Variance of values beyond that of their noise, each weighed by how well it tells."""
+    excess = 0.0
+    for _ in range(5):
+        weight = 1.0 / (noise + excess) ** 2
+        excess = max(float(np.sum(weight * (found**2 - noise)) / weight.sum()), 0.0) if len(found) else 0.0
+    return excess
 
 
 def matched_rows(table: Table) -> np.ndarray | None:

@@ -93,7 +93,8 @@ def _number(key: str, value: object) -> float:
     return float(found)
 
 
-MAY_BE_NEGATIVE = ("_T", "_coefficient", "_reference", "_zero", "_offset", "_angle")  # ends of names of quantities
+# Ends of names of quantities.
+MAY_BE_NEGATIVE = ("_T", "_temperature", "_coefficient", "_reference", "_zero", "_offset", "_angle")
 
 
 def _short(value: object) -> str:

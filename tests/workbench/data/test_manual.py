@@ -27,7 +27,7 @@ def test_what_is_written_by_hand_names_everything():
         assert f"| `{role}` |" in TEXT
 
 
-EXAMPLES = {"steel": "M400-50A", "magnetisation": "parallel"}
+EXAMPLES = {"steel": "M400-50A", "magnetisation": "parallel", "iron_loss_grade": "M400-50A"}
 
 
 @pytest.mark.parametrize("model", DEVICE_KEYS)
