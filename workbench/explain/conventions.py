@@ -145,6 +145,7 @@ def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: floa
         checks=conventions.checks,
         fix=conventions.fix,
         conventions=conventions.sentences,
+        provenance=dict(conventions.campaign.file_hashes),
     )
 
 

@@ -360,11 +360,12 @@ def verdict_sentence(d: Diagnosis) -> str:
         "partial": lambda: f"{_explains(names)} a part{_size(d)}{_rest(d)}.{_besides(d)}",
         "none_of_these": lambda: _none_of_these(d),
         "cannot_tell": lambda: _cannot_tell(d),
-        "convention": lambda: (
-            f"{' '.join(d.conventions) or f'The data look as if read by another convention: {listed(names)}.'} "
-            "No effect is named until this is settled."
-        ),
+        "convention": lambda: " ".join(d.conventions) or _convention(names),
     }[d.verdict]() + f" Probability {probability_text(d.probability)}."
+
+
+def _convention(names: list[str]) -> str:
+    return f"The data look as if read by another convention: {listed(names)}. No effect is named until this is settled."
 
 
 _COUNTS = {2: "Two", 3: "Three", 4: "Four"}

@@ -198,7 +198,7 @@ def test_every_verdict_says_what_its_probability_is_of(diagnosis):
 
 def test_a_convention_is_its_own_sentence_and_names_no_effect(diagnosis):
     found = replace(of(diagnosis, "convention"), conventions=("v_b and v_c look swapped.",), names=("swapped_phases",))
-    assert verdict_sentence(found).startswith("v_b and v_c look swapped. No effect is named")
+    assert verdict_sentence(found).startswith("v_b and v_c look swapped. Probability")
     assert conclusions(found) == () and not any(r.name in verdict_sentence(found) for r in diagnosis.ranking)
 
 
