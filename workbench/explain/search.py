@@ -201,14 +201,17 @@ def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None
 
 
 def student_gain(hypothesis: Hypothesis, gain: float) -> float:
-    """A Gaussian gain of ln p in the likelihood of the fits, taken from the channels that fit worst [nats]."""
-    problem = hypothesis.problem
+    """A Gaussian gain of ln p in the likelihood of the fits [nats]: what pulled tolerances cost comes back as it is,
+    the rest is taken from the channels that fit worst."""
+    problem, x = hypothesis.problem, hypothesis.fit.x
     squares, sizes = problem.squares(hypothesis.fit.residual), problem.sizes
     excess = np.maximum(squares - sizes, 0.0)
-    if gain <= 0 or excess.sum() == 0:
+    pulls = 0.5 * float(x @ x)
+    left = gain - pulls
+    if left <= 0 or excess.sum() == 0:
         return gain
-    fall = np.minimum(2 * gain * excess / excess.sum(), excess)
-    return min(gain, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
+    fall = np.minimum(2 * left * excess / excess.sum(), excess)
+    return pulls + min(left, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
 
 
 def _exactly(search: Search, progress: Progress) -> None:
