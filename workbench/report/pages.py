@@ -499,8 +499,9 @@ def _learned(ledger: Ledger) -> tuple[Section, ...]:
     ]
     table = Table(pd.DataFrame(rows), "Range of the conditions of the rows that were fitted.")
     beyond = (
-        "Beyond these conditions the model was not tested. airgap validate MODEL DATA applies it to other data and "
-        "says where they leave this range."
+        "Beyond these conditions the model was not tested, except on the rows that no fit has seen, of which the "
+        "diagnosis says where they lie. airgap validate MODEL DATA applies it to other data and says where they leave "
+        "this range."
     )
     return (Section("Where the model was learned", (table, Remark(beyond))),)
 
