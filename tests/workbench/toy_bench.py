@@ -86,6 +86,7 @@ class ForceOffset(InstrumentEffect):
 
     title: ClassVar[str] = "zero of the force cell"
     looks_like: ClassVar[str] = "the same force everywhere"
+    base_rate: ClassVar[float] = RATE
     offset: float = parameter(0.0, "N", prior=Normal(0.2), low=-100.0, high=100.0, source="made up")
 
     def on_reading(self, response, conditions, kind):
