@@ -83,8 +83,8 @@ def test_every_probability_that_is_printed_has_one_meaning(diagnosed):
 
 def test_same_file_and_seed_same_verdict_to_the_digit(hidden, diagnosed):
     again = diagnose(*hidden, LIBRARY)
-    for name in ("p_sets", "ranking", "probability", "sure", "abstention_power", "detection_limits", "next_measurements",
-                 "residual_signature", "sealed", "p_something_remains"):  # fmt: skip
+    for name in ("p_sets", "ranking", "probability", "sure", "abstention_power", "detection_limits",
+                 "next_measurements", "residual_signature", "sealed", "p_something_remains"):  # fmt: skip
         assert repr(getattr(again, name)) == repr(getattr(diagnosed, name)), name
 
 

@@ -13,7 +13,6 @@ from effects.parameter import parameter
 from effects.prior import LogNormal, Normal
 from workbench.models.base import BaseModel
 
-
 RATE = 0.1  # base rate of each of the few things that so simple a device may have
 
 

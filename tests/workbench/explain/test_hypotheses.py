@@ -15,7 +15,7 @@ from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
-from workbench.explain.search import best_alone, searched, student_gain
+from workbench.explain.search import Search, best_alone, less_one, searched, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
 from workbench.likelihood.signatures import grid, signature, signatures_of
@@ -274,6 +274,20 @@ def test_three_and_four_effects_at_once_are_found_by_fits(tmp_path, truth):
     assert all(abs(effect.size - 0.25) < 0.1 for effect in search.fitted[wanted].effects)
 
 
+def test_what_leads_is_weighed_against_itself_without_each_of_its_effects(tmp_path):
+    """A search that knows nothing and a pair only, where one of the pair was hidden alone."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    signatures = signatures_of(bench, (WAVES["wave2"](), WAVES["wave5"]()))
+    pair = fitted_from(bench, (WAVES["wave2"](), WAVES["wave5"]()), bench.null.x, np.array([0.8, 0.1]))
+    none, both, one = frozenset(), frozenset(WAVES).intersection(signatures.names), frozenset(("wave2",))
+    search = Search(bench, signatures, beliefs_of(WAVES, signatures.names), (), {none: null_of(bench), both: pair})
+    assert search.ranked[0] == both
+    less_one(search, lambda words: None)
+    assert search.ranked[0] == one and set(search.fitted) == {none, one, frozenset(("wave5",)), both}
+    straight = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.5]))
+    assert search.log_evidence(one) == pytest.approx(straight.log_evidence, abs=1e-2)
+
+
 def test_probabilities_of_a_search_add_up_to_one(bench):
     found = searched(bench, LIBRARY).posterior
     assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)
@@ -289,7 +303,7 @@ def test_a_fit_that_has_no_answer_is_left_out_and_said(bench):
 
     search = searched(bench, LIBRARY | {"stuck": Stuck})
     assert search.failed["stuck"] == "no steady state" and frozenset(("stuck",)) not in search.fitted
-    assert frozenset(("stuck",)) not in search.posterior.sets
+    assert frozenset(("stuck",)) not in search.posterior.alone
 
 
 def test_the_residual_that_is_explained_is_carried_back_to_the_drawing(bench):

@@ -138,7 +138,7 @@ def test_whitening_knows_that_scans_are_off_as_a_whole():
 
 
 def resistances(lost=(), seed=0):
-    """A damper at three shunts, one of them open, both ways; its temperature was logged, not set. Force N, noise 1.8 N."""
+    """A damper at three shunts, one of them open, both ways; its temperature was logged, not set. Noise 1.8 N."""
     random = np.random.default_rng(seed)
     speed, shunt = (v.ravel() for v in np.meshgrid(np.linspace(-0.4, 0.4, 16), [0.3, 1.0, 1e6]))
     repeat = np.repeat([0, 1, 2], len(speed))
