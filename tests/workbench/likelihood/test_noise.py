@@ -163,7 +163,7 @@ def test_a_lost_row_and_a_logged_temperature_do_not_inflate_the_noise(lost):
 
 def test_an_open_circuit_leaves_the_other_shunts_apart():
     """1e6 ohm stands for open; 0.3 and 1 ohm stay two places, also where rows are lost."""
-    one, _ = resistances(lost=(7,))
+    one, _ = resistances(lost=(48 + 7,))  # of the second repeat, at 0.3 ohm
     stations = matched_rows(one)
     shunts = one.conditions["shunt"][stations]
     assert (shunts == shunts[:, :1]).all() and set(shunts[:, 0]) == {0.3, 1.0, 1e6}
