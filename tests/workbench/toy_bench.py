@@ -13,7 +13,6 @@ from effects.parameter import parameter
 from effects.prior import LogNormal, Normal
 from workbench.models.base import BaseModel
 
-
 RATE = 0.1  # base rate of each of the few things that so simple a device may have
 
 
@@ -86,6 +85,7 @@ class ForceOffset(InstrumentEffect):
 
     title: ClassVar[str] = "zero of the force cell"
     looks_like: ClassVar[str] = "the same force everywhere"
+    base_rate: ClassVar[float] = RATE
     offset: float = parameter(0.0, "N", prior=Normal(0.2), low=-100.0, high=100.0, source="made up")
 
     def on_reading(self, response, conditions, kind):

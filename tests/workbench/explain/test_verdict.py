@@ -1,4 +1,4 @@
-"""Hand-made probabilities and the one verdict that each of them allows; every number printed is that of its sentence."""
+"""Hand-made probabilities and the one verdict that each allows; every number printed is that of its sentence."""
 
 import numpy as np
 import pytest
