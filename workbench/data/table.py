@@ -15,6 +15,7 @@ class Response:
 
     values, random: reading and its declared random standard uncertainty, SI (n,)
     unit: as in the file, for people; scale: file unit -> SI factor
+    bandwidth: frequency above which the recorder lets nothing pass [Hz], None where it is not known
     """
 
     name: str
@@ -22,6 +23,7 @@ class Response:
     random: np.ndarray
     unit: str
     scale: float = 1.0
+    bandwidth: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

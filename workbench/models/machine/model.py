@@ -30,8 +30,10 @@ from workbench.models.base import BaseModel, Option
 from workbench.models.device import names, numbers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState
+from workbench.models.machine.numerical import shapes_of
 from workbench.models.machine.options import options
-from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
+from workbench.models.machine.spectra import averaged, evaluated, slope
+from workbench.models.machine.surrogate import Surrogate
 
 CACHE = Path("results") / "cache"
 LABORATORY = 22.0  # degC, at which a device table states its remanence when it does not say
@@ -153,28 +155,14 @@ class MachineBench(BaseModel):
         return options(campaign.tables)
 
     def numerical(self, design: MachineAsBuilt, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
-        """Standard uncertainty of the responses that the mesh leaves, SI."""
-        if self.surrogate is None or table.kind not in _NUMERICAL:
+        """What meshes and the recorder of the voltages leave open, see ``numerical.py``; of the machine as drawn."""
+        if self.about_drawing is None:
             return ()
-        sizes = self._scales.get(table.kind, {})
-        return ({name: np.full(table.rows, size) for name, size in sizes.items()},)
+        return shapes_of(self.about_drawing, tuple(_KINDS), table, _drawn_answers)
 
-    @cached_property
-    def _scales(self) -> dict[str, dict[str, float]]:
-        answers = _Answers(self.surrogate, self.surrogate.nominal)
-        length, states = self.surrogate.nominal.length, self.surrogate.states
-        found = {"cogging": {"torque": _NUMERICAL["cogging"] * float(np.abs(answers.spectrum[0, 1:]).max()) * length}}
-        if states is not None:
-            torque = float(np.abs(states.base[:, 0]).max()) * length
-            linkage = (
-                self.surrogate.nominal.turns[0]
-                * float(np.abs(states.base[:, 1:]).max())
-                * length
-                * len(self.surrogate.layout.coils_of(0))
-            )
-            found["locked_rotor"] = {"torque": _NUMERICAL["locked_rotor"] * torque}
-            found["flux_linkage"] = {f"dpsi_{x}": _NUMERICAL["flux_linkage"] * linkage for x in _PHASES}
-        return found
+
+def _drawn_answers(surrogate: Surrogate, table: Table) -> dict[str, np.ndarray]:
+    return _KINDS[table.kind](_Answers(surrogate, surrogate.nominal), table.conditions)
 
 
 class _Asked:
@@ -192,8 +180,6 @@ class _Asked:
 
 
 _COGGING_OF_MESH = 0.01  # cogging of good meshes of two codes differs by 0.5 mNm of 49 mNm (12 slots, 10 poles)
-# Of the largest value; 720 against 1440 edges on the sliding circle with twice the elements across a tooth.
-_NUMERICAL = {"cogging": 0.005, "locked_rotor": 2e-4, "flux_linkage": 1.5e-4}
 
 
 @dataclass(frozen=True, eq=False)
