@@ -177,8 +177,8 @@ class Store:
         if not piece.with_current:
             return Kept(piece, (), arrays, () if arrays is None else None)
         known = () if arrays is None else _states(arrays.pop("states"))
-        missing = tuple(state for state in states if state not in set(known))
-        return Kept(piece, known, arrays, missing or None)
+        there = set(known)
+        return Kept(piece, known, arrays, tuple(state for state in states if state not in there) or None)
 
     def save(self, kept: Kept, arrays: Arrays) -> Kept:
         """Adds what was missing."""

@@ -53,6 +53,10 @@ def _replaced(thing: Any, path: tuple[str, ...], value: float) -> Any:
 
 REMANENCE, AIRGAP = ("magnet", "remanence"), ("machine", "airgap")
 TOLERANCED = (REMANENCE, AIRGAP)  # of every machine: what they do to all other changes is known too
+STEEL = (
+    ("saturation_scale",),
+    ("stacking_factor",),
+)  # flux that the steel carries: alike to weaker or stronger magnets
 LESS_ARC = (-0.03, -0.08, -0.13)  # where neighbouring magnets touch a smaller arc is another mesh: no derivative there
 
 
@@ -67,13 +71,13 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
     magnets, slots = range(nominal.machine.poles), range(nominal.machine.slots)
     return (
         *arc,
-        Coordinate(REMANENCE, 1e-4, (-0.13 * remanence, -0.055 * remanence, 0.04 * remanence)),
+        Coordinate(REMANENCE, 1e-4, tuple(share * remanence for share in (-0.13, -0.055, 0.04, 0.09, 0.15))),
         Coordinate(("magnet", "recoil_permeability"), 1e-4, (0.08,)),
         Coordinate(AIRGAP, 1e-7, (-0.2 * gap, 0.2 * gap)),
         Coordinate(("machine", "slot_opening"), 1e-7, (-0.2 * opening, 0.2 * opening)),
         Coordinate(("field_scale",), 1e-4, (0.6, 1.6)),
-        Coordinate(("saturation_scale",), 1e-4, (-0.1, -0.05, 0.05)),
-        Coordinate(("stacking_factor",), 1e-4, (-0.12, -0.05)),
+        Coordinate(("saturation_scale",), 1e-4, (-0.08, 0.05)),
+        Coordinate(("stacking_factor",), 1e-4, (-0.1, -0.04)),
         Coordinate(("edge_damage",), 1e-4, (0.5,)),
         Coordinate(("radial_share",), 1e-4, (-0.4, 0.4)),
         *(Coordinate(("magnet_strengths",), 1e-4, (-0.3, -0.12), k, MAGNET) for k in magnets),

@@ -57,36 +57,14 @@ class Node:
         return nominal
 
 
-@dataclass(frozen=True)
-class Joint:
-    """What two coordinates do together beyond what each does to the slope of the other: second power of the first."""
-
-    first: Coordinate
-    first_size: float
-    second: Coordinate
-    second_size: float
-
-    @property
-    def node(self) -> Node:
-        return Node(((self.first, self.first_size), (self.second, self.second_size)))
-
-
 def toleranced(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
     """The coordinates of ``TOLERANCED``."""
     return tuple(c for c in smooth_coordinates(nominal) if c.path in TOLERANCED)
 
 
-def joints(nominal: MachineAsBuilt) -> tuple[Joint, ...]:
-    """Weak magnets and steel that carries less: the same saturation seen from two sides."""
-    named = {c.path[-1]: c for c in smooth_coordinates(nominal)}
-    magnets, size = named["remanence"], named["remanence"].sizes[0] / 2
-    return tuple(Joint(magnets, size, named[name], -0.06) for name in ("stacking_factor", "saturation_scale"))
-
-
 def regular_nodes(nominal: MachineAsBuilt) -> tuple[Node, ...]:
     """Those of the coordinates that leave the machine symmetric."""
-    found = [node for c in all_coordinates(nominal) if c.breaks == BOTH for node in _nodes_of(c, nominal)]
-    return tuple(found) + tuple(joint.node for joint in joints(nominal))
+    return tuple(node for c in all_coordinates(nominal) if c.breaks == BOTH for node in _nodes_of(c, nominal))
 
 
 def irregular_nodes(nominal: MachineAsBuilt) -> tuple[Node, ...]:

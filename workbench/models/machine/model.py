@@ -213,16 +213,7 @@ class _Answers:
         """Torque [Nm]: cogging, and what magnets and currents make together, which goes with the magnets' flux."""
         both = self.design.length * self.surrogate.with_current(self.design, angle, currents)[:, 0]
         alone = self.design.length * evaluated(self.spectrum[:1], angle)[0]
-        return self.kept * (both - alone) + self.kept**2 * alone + self._shifted(angle)
-
-    def _shifted(self, angle: np.ndarray) -> np.ndarray:
-        """Torque of an eccentricity beyond its first derivative [Nm], as without current."""
-        d = self.design
-        if not (any(d.stator_shift) or any(d.rotor_shift)):
-            return np.zeros_like(angle)
-        centred = replace(d, stator_shift=(0.0, 0.0), rotor_shift=(0.0, 0.0))
-        apart = self.surrogate.spectrum(d)[:1] - self.surrogate.spectrum(centred)[:1]
-        return d.length * evaluated(averaged(apart, d.skew), angle)[0]
+        return self.kept * (both - alone) + self.kept**2 * alone
 
     def flux_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """Flux linkages of the phases against those without current [Wb] (n, 3)."""

@@ -88,7 +88,7 @@ class Surrogate:
         """One order of the drawing over the revolution alone, times a complex number."""
         only = np.zeros_like(self.no_load)
         only[:, order] = turn * self.no_load[:, order]
-        return replace(self, no_load=only, idle=Terms((), only.shape))
+        return replace(self, no_load=only, idle=self.idle.none())
 
     @cached_property
     def layout(self) -> WindingLayout:
@@ -215,14 +215,13 @@ def surrogate_of(
 ) -> Surrogate:
     """From the results of all pieces of ``pieces.py`` by their names."""
     drawn, changes = found["no load"], _changes(found, "no load ")
-    idle = terms_of(nominal, changes)
+    idle = terms_of(nominal, drawn["base"], changes)
     if not states:
         return Surrogate(nominal, drawn["fine"], drawn["base"], idle, None, None)
     with_current = _states_last(_changes(found, "loaded "))
-    angles = np.array([state.angle for state in states])
-    there = lambda row: _at_angles(row, angles)  # noqa: E731
+    there = _at_angles(np.array([state.angle for state in states]), drawn["base"].shape[1])
     slopes = Changes({name: there(row) for name, row in changes.slopes.items()}, {})
-    loaded = loaded_terms_of(nominal, with_current, idle.each(there), slopes)
+    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, idle.each(there), slopes)
     return Surrogate(nominal, drawn["fine"], drawn["base"], idle, loaded, _samples(found, states))
 
 
@@ -249,9 +248,10 @@ def _samples(found: Mapping, states: tuple[LoadedState, ...]) -> LoadedSamples:
     return LoadedSamples(places, found["loaded fine"]["fine"], here["base"], angle, scale, per_coil)
 
 
-def _at_angles(spectrum: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Values (rows, n) of functions over the revolution, term by term."""
-    return (spectrum @ np.exp(1j * np.outer(np.arange(spectrum.shape[1]), angles))).real
+def _at_angles(angles: np.ndarray, orders: int) -> Callable[[np.ndarray], np.ndarray]:
+    """From coefficients (rows, orders) to values at angles (rows, n)."""
+    turning = np.exp(1j * np.outer(np.arange(orders), angles))
+    return lambda spectrum: (spectrum @ turning).real
 
 
 def _cut(rows: np.ndarray, length: int) -> np.ndarray:

@@ -3,22 +3,27 @@
 Along one coordinate x, piecewise cubics through nodes with their slopes (Hermite): exact in value and slope at every
 node, C1 between, the last piece goes on beyond. A toleranced coordinate t beside it changes its effect:
 
-    f(x, t) = f(x) + g(t) + t d f/dt(x)|_0,   d f/dt known at the nodes of x, a polynomial through them between
+    f(x, t) = f(x) + g(t) + t (d f/dt(x) - d f/dt(0)),   d f/dt known at the nodes of x, piecewise cubics between
 
 A shift by r in the direction a: the same in r, with a sum of cos n(a - a_k) through the directions a_k.
+
+Steel that carries s times the flux at s times the field, between magnets of s times the remanence, makes the same field
+s times over: psi(B_r, s) = s psi(B_r/s, 1), torque with s^2. So what a steel does is first what other magnets do to the
+drawing, exactly for the saturation without current, and only the rest is a curve of its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import combinations
 
 import numpy as np
 
 from effects.machine_design import MachineAsBuilt
-from workbench.models.machine.coordinates import BOTH, ROTOR, SHIFTS, Coordinate, all_coordinates
-from workbench.models.machine.expansion import LEAST_DIRECTIONS, Joint, Node, joints, shift_of, toleranced
+from workbench.models.machine.coordinates import BOTH, REMANENCE, ROTOR, SHIFTS, STEEL, Coordinate, all_coordinates
+from workbench.models.machine.expansion import LEAST_DIRECTIONS, Node, shift_of, toleranced
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +55,11 @@ class Part:
         """(terms, 1 + coils, n), None where the nodes were not solved."""
         raise NotImplementedError
 
+    @property
+    def name(self) -> str:
+        """Of the coordinate that it is about."""
+        raise NotImplementedError
+
     def lines(self) -> dict[str, np.ndarray]:
         """By coordinate, the numbers (terms,) that as rows would make the sum the coordinate itself."""
         raise NotImplementedError
@@ -63,6 +73,10 @@ class Curve(Part):
     place: int
     partners: tuple[tuple[Coordinate, int], ...]
 
+    @property
+    def name(self) -> str:
+        return self.c.name
+
     @cached_property
     def nodes(self) -> np.ndarray:
         return np.array(sorted((0.0, *self.c.sizes)))
@@ -72,7 +86,7 @@ class Curve(Part):
         x = p[self.place]
         if x == 0.0:
             return None
-        crossed = _lagrange(self.nodes, x) if self.partners else np.zeros(0)
+        crossed = through(self.nodes, x) if self.partners else np.zeros(0)
         return np.concatenate([*hermite(self.nodes, x), *(p[place] * crossed for _, place in self.partners)])
 
     def lines(self) -> dict[str, np.ndarray]:
@@ -86,7 +100,7 @@ class Curve(Part):
         values = [node.get("change", 0.0) for node in found]
         slopes = [node.get("own", changes.slopes.get(self.c.name)) for node in found]
         if slopes[list(self.nodes).index(0.0)] is None:
-            slopes = np.tensordot(_lagrange_slopes(self.nodes), np.array(_alike(values)), 1)
+            slopes = list(np.tensordot(_lagrange_slopes(self.nodes), np.array(_alike(values)), 1))
         crossed = [_crossed(node, changes, partner) for partner, _ in self.partners for node in found]
         return np.array(_alike([*values, *slopes, *crossed]))
 
@@ -100,6 +114,10 @@ class Shift(Part):
     places: tuple[int, int]
     partners: tuple[tuple[Coordinate, int], ...]
     count: int
+
+    @property
+    def name(self) -> str:
+        return self.x.name
 
     @cached_property
     def radii(self) -> np.ndarray:
@@ -118,7 +136,7 @@ class Shift(Part):
             return None
         r, turn = float(np.hypot(x, y)), float(np.arctan2(y, x))
         values, slopes = hermite(self.radii, r)
-        crossed = _lagrange(self.radii, r)[1:]
+        crossed = through(self.radii, r)[1:]
         radial = np.concatenate([values[1:], slopes[1:], *(p[place] * crossed for _, place in self.partners)])
         along = slopes[0] * np.array([np.cos(turn), np.sin(turn)])
         return np.concatenate([along, np.outer(radial, _around(self.directions, turn)).ravel()])
@@ -155,47 +173,92 @@ class Shift(Part):
 
 
 @dataclass(frozen=True, eq=False)
-class Together(Part):
-    """What two coordinates do together beyond what their curves say; its row is what is left at its node."""
+class Twice(Part):
+    """Two toleranced coordinates, whose curves both hold their mixed second derivative: once too often."""
 
-    joint: Joint
-    places: tuple[int, int]
+    first: Curve
+    second: Curve
+
+    @property
+    def name(self) -> str:
+        return f"{self.first.name} {self.second.name}"
 
     def weights(self, p: np.ndarray) -> np.ndarray | None:
-        x, y = p[self.places[0]] / self.joint.first_size, p[self.places[1]] / self.joint.second_size
-        return None if x == 0.0 or y == 0.0 else np.array([x * x * y])
+        both = p[self.first.place] * p[self.second.place]
+        return None if both == 0.0 else np.array([-both])
 
     def lines(self) -> dict[str, np.ndarray]:
         return {}
 
     def rows(self, changes: Changes) -> np.ndarray | None:
-        return changes.nodes[self.joint.node.name]["change"]
+        """The mixed second derivative at the drawing, as the curve of the first has it (1, 1 + coils, n)."""
+        nodes, partner = self.first.nodes, self.second.c
+        found = [changes.at(self.first.c, size) if size else {} for size in nodes]
+        crossed = np.array(_alike([_crossed(node, changes, partner) for node in found]))
+        return np.tensordot(parabola_slopes(nodes)[list(nodes).index(0.0)], crossed, 1)[None]
+
+
+@dataclass(frozen=True, eq=False)
+class Scaling:
+    """place, remanence: of the magnets as drawn;  steel: places of the factors of the flux in the steel, as drawn"""
+
+    place: int
+    remanence: float
+    steel: tuple[tuple[int, float], ...]
+
+    def factor(self, p: np.ndarray) -> float:
+        """By which the steel carries more flux than as drawn."""
+        return float(np.prod([1.0 + p[place] / drawn for place, drawn in self.steel]))
+
+    def magnets(self, p: np.ndarray) -> np.ndarray:
+        """Coordinates of the drawn steel between the magnets that make the same field but for the factor."""
+        moved = p.copy()
+        moved[self.place] = (self.remanence + p[self.place]) / self.factor(p) - self.remanence
+        moved[[place for place, _ in self.steel]] = 0.0
+        return moved
 
 
 @dataclass(frozen=True, eq=False)
 class Terms:
-    """parts: with their rows (terms, q, n)"""
+    """drawn: samples of the drawing (q, n);  parts: with their rows (terms, q, n);  steel: those of the steel"""
 
+    drawn: np.ndarray
+    scaling: Scaling
     parts: tuple[tuple[Part, np.ndarray], ...]
-    shape: tuple[int, ...]
+    steel: tuple[tuple[Part, np.ndarray], ...]
 
     def __call__(self, p: np.ndarray) -> np.ndarray:
         """The change of the samples at coordinates p (q, n)."""
-        total: np.ndarray = np.zeros(self.shape)
-        for part, rows in self.parts:
+        factor = self.scaling.factor(p)
+        if factor == 1.0:
+            return self._sum(self.parts, p) + self._sum(self.steel, p)
+        scales = factor ** np.where(np.arange(len(self.drawn)) == 0, 2, 1)[:, None]  # the torque stands first
+        scaled = scales * (self.drawn + self._sum(self.parts, self.scaling.magnets(p))) - self.drawn
+        return scaled + self._sum(self.steel, p)
+
+    def _sum(self, parts: Sequence[tuple[Part, np.ndarray]], p: np.ndarray) -> np.ndarray:
+        total = np.zeros_like(self.drawn)
+        for part, rows in parts:
             weights = part.weights(p)
             if weights is not None:
                 total = total + np.tensordot(weights, rows, 1)
         return total
 
     def each(self, form: Callable[[np.ndarray], np.ndarray]) -> Terms:
-        """The terms with ``form`` of their rows (q, n), which must be linear."""
-        parts = tuple((part, np.array([form(row) for row in rows])) for part, rows in self.parts)
-        return Terms(parts, np.shape(form(np.zeros(self.shape))))
+        """The terms with ``form`` of their rows (q, n), which must be linear and leave the torque first."""
+        parts, steel = (
+            tuple((part, np.array([form(row) for row in rows])) for part, rows in those)
+            for those in (self.parts, self.steel)
+        )
+        return Terms(form(self.drawn), self.scaling, parts, steel)
+
+    def none(self) -> Terms:
+        """No change, whatever is changed."""
+        return Terms(np.zeros_like(self.drawn), self.scaling, (), ())
 
 
 def parts_of(nominal: MachineAsBuilt) -> tuple[Part, ...]:
-    """All parts, those that stand on others last."""
+    """All parts of a machine."""
     coordinates = all_coordinates(nominal)
     places = {c.name: k for k, c in enumerate(coordinates)}
     partners = tuple((c, places[c.name]) for c in toleranced(nominal))
@@ -203,61 +266,77 @@ def parts_of(nominal: MachineAsBuilt) -> tuple[Part, ...]:
     moving = {c.name for pair in shifts for c in pair}
     curves = [Curve(c, places[c.name], _others(c, partners)) for c in coordinates if c.name not in moving]
     polar = [Shift(x, y, (places[x.name], places[y.name]), partners, _count(x, nominal)) for x, y in shifts]
-    both = [Together(j, (places[j.first.name], places[j.second.name])) for j in joints(nominal)]
-    return (*curves, *polar, *both)
+    named = {curve.name: curve for curve in curves}
+    twice = [Twice(named[a.name], named[b.name]) for (a, _), (b, _) in combinations(partners, 2)]
+    return (*curves, *polar, *twice)
+
+
+def scaling_of(nominal: MachineAsBuilt) -> Scaling:
+    """Of the magnets and the steel of a machine."""
+    places = {c.path: (k, c.read(nominal)) for k, c in enumerate(all_coordinates(nominal))}
+    return Scaling(*places[REMANENCE], tuple(places[path] for path in STEEL))
 
 
 def _others(c: Coordinate, partners: tuple[tuple[Coordinate, int], ...]) -> tuple[tuple[Coordinate, int], ...]:
-    """Partners of a coordinate that was solved beside the drawing; two toleranced ones count each other once."""
-    if not c.sizes:
-        return ()
-    names = [partner.name for partner, _ in partners]
-    return partners[names.index(c.name) + 1 :] if c.name in names else partners
+    """The partners of a coordinate that was solved beside the drawing."""
+    return tuple(pair for pair in partners if pair[0] != c) if c.sizes else ()
 
 
 def _count(x: Coordinate, nominal: MachineAsBuilt) -> int:
     return nominal.machine.poles if x.breaks == ROTOR else nominal.machine.slots
 
 
-def terms_of(nominal: MachineAsBuilt, changes: Changes) -> Terms:
-    """Without current; rows (terms, 1 + coils, orders)."""
-    return _built(parts_of(nominal), changes, {})
+def terms_of(nominal: MachineAsBuilt, drawn: np.ndarray, changes: Changes) -> Terms:
+    """Without current; drawn (1 + coils, orders), rows (terms, 1 + coils, orders)."""
+    return _built(nominal, drawn, changes, lambda part: part.rows(changes))
 
 
-def loaded_terms_of(nominal: MachineAsBuilt, changes: Changes, without: Terms, at: Changes) -> Terms:
-    """With current; rows (terms, 1 + coils, states). What was not solved with current goes as without it beyond its
-    first derivative.
+def loaded_terms_of(nominal: MachineAsBuilt, drawn: np.ndarray, changes: Changes, without: Terms, at: Changes) -> Terms:
+    """With current; drawn (1 + coils, states), rows (terms, 1 + coils, states). What was not solved with current goes
+    as without it beyond its first derivative.
 
     without: the terms without current at the angles of the states;  at: the slopes without current there
     """
-    borrowed = {}
-    for part, rows in without.parts:
-        slopes = [(line, changes.slopes[c] - at.slopes[c]) for c, line in part.lines().items() if c in changes.slopes]
-        borrowed[id(part)] = rows + sum(np.multiply.outer(line, slope) for line, slope in slopes)
-    return _built([part for part, _ in without.parts], changes, borrowed)
+    idle = {part.name: rows for part, rows in without.parts}
+
+    def rows_of(part: Part) -> np.ndarray:
+        found = part.rows(changes)
+        if found is not None:
+            return found
+        lines = {c: line for c, line in part.lines().items() if c in changes.slopes}
+        return idle[part.name] + sum(np.multiply.outer(v, changes.slopes[c] - at.slopes[c]) for c, v in lines.items())
+
+    return _built(nominal, drawn, changes, rows_of)
 
 
-def _built(parts: Sequence[Part], changes: Changes, instead: Mapping[int, np.ndarray]) -> Terms:
-    built: list[tuple[Part, np.ndarray]] = []
-    for part in parts:
-        rows = part.rows(changes)
-        rows = instead[id(part)] if rows is None else rows
-        if isinstance(part, Together):
-            so_far = Terms(tuple(built), rows.shape[1:])
-            rows = rows - so_far(_place_of(part, parts))
-        built.append((part, rows))
-    return Terms(tuple(built), built[0][1].shape[1:])
+def _built(
+    nominal: MachineAsBuilt, drawn: np.ndarray, changes: Changes, rows_of: Callable[[Part], np.ndarray]
+) -> Terms:
+    parts, scaling = parts_of(nominal), scaling_of(nominal)
+    places = [place for place, _ in scaling.steel]
+    steel = [part for part in parts if isinstance(part, Curve) and part.place in places]
+    plain = tuple((part, rows_of(part)) for part in parts if part not in steel)
+    alone = Terms(drawn, scaling, plain, ())
+    rest = tuple((part, part.rows(_beyond(part, alone, changes, len(all_coordinates(nominal))))) for part in steel)
+    return replace(alone, steel=rest)
 
 
-def _place_of(part: Together, parts: Sequence[Part]) -> np.ndarray:
-    """Coordinates of the node of a joint change."""
-    p = np.zeros(1 + max(place for other in parts for place in _places(other)))
-    p[list(part.places)] = part.joint.first_size, part.joint.second_size
-    return p
+def _beyond(curve: Curve, alone: Terms, changes: Changes, count: int) -> Changes:
+    """The changes along a coordinate of the steel less what other magnets explain of them."""
 
+    def slope(p: np.ndarray, c: Coordinate, place: int) -> np.ndarray:
+        step = c.step * np.eye(count)[place]
+        return (alone(p + step) - alone(p - step)) / (2 * c.step)
 
-def _places(part: Part) -> tuple[int, ...]:
-    return (part.place,) if isinstance(part, Curve) else part.places
+    nodes = {}
+    for size in curve.c.sizes:
+        p, name = size * np.eye(count)[curve.place], Node(((curve.c, size),)).name
+        less = {"change": alone(p), f"along {curve.c.name}": slope(p, curve.c, curve.place)}
+        for c, place in curve.partners:
+            less[f"along {c.name}"] = slope(p, c, place) - changes.slopes[c.name]
+        nodes[name] = {key: rows - less[key] for key, rows in changes.nodes[name].items()}
+    here = changes.slopes[curve.c.name] - slope(np.zeros(count), curve.c, curve.place)
+    return Changes({**changes.slopes, curve.c.name: here}, nodes)
 
 
 def _crossed(node: Mapping[str, np.ndarray], changes: Changes, partner: Coordinate) -> np.ndarray | float:
@@ -288,11 +367,26 @@ def hermite(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
     return values, slopes
 
 
-def _lagrange(nodes: np.ndarray, x: float) -> np.ndarray:
-    """Weights of the values at the nodes of the polynomial through them at x (k,)."""
-    others = ~np.eye(len(nodes), dtype=bool)
-    factors = (x - nodes[None]) / np.where(others, nodes[:, None] - nodes[None], 1.0)
-    return np.where(others, factors, 1.0).prod(1)
+def through(nodes: np.ndarray, x: float) -> np.ndarray:
+    """Weights of the values at the nodes (k,) of a piecewise cubic at x, its slopes those of the parabola through each
+    node and its neighbours."""
+    values, slopes = hermite(nodes, x)
+    return values + slopes @ parabola_slopes(nodes)
+
+
+@lru_cache(maxsize=256)
+def _parabola_slopes(nodes: tuple[float, ...]) -> np.ndarray:
+    k, found = len(nodes), np.zeros((len(nodes), len(nodes)))
+    for i in range(k):
+        first = min(max(i - 1, 0), max(k - 3, 0))
+        near = np.arange(first, min(first + 3, k))
+        found[i, near] = _lagrange_slopes(np.array(nodes)[near])[i - first]
+    return found
+
+
+def parabola_slopes(nodes: np.ndarray) -> np.ndarray:
+    """Slopes at all nodes as a matrix of the values (k, k): of the parabola through a node and its neighbours."""
+    return _parabola_slopes(tuple(nodes.tolist()))
 
 
 def _lagrange_slopes(nodes: np.ndarray) -> np.ndarray:
