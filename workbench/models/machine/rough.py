@@ -22,7 +22,8 @@ from geometry.half_cell import MeshDensity
 from geometry.winding import WindingLayout
 from workbench.models.base import BaseModel
 from workbench.models.machine.field import LoadedState, MachineField
-from workbench.models.machine.surrogate import _projection, coefficients, evaluated, slope
+from workbench.models.machine.spectra import coefficients, evaluated, slope
+from workbench.models.machine.surrogate import _projection
 
 ROUGH = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)  # cogging of 12/10 to a tenth, flux to 1e-3
 AMPERE_TURNS = (200.0, 600.0, 1200.0, 2400.0)  # of a coil, that saturation is taken at
