@@ -9,4 +9,5 @@ LIKELY = 0.5  # probability from which "something remains" is said, and share of
 FALSE_ALARMS = 0.02  # wanted share of empty campaigns in which something is said to be missing
 PLAIN = 10.0  # nats that something is expected to gain, from which it would be seen plainly (odds of 20 000 to 1)
 LARGEST_GROUP = 4  # names that may stand for one effect; with more the data tell nothing
+SPARE = 5.0  # readings beside tolerances and one size, below which some effect of the library suits any residual
 DISAGREE = 1e-3  # probability of sealed rows by chance, below which the model does not hold there

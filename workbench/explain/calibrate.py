@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 
 from effects.parameter import parameters_of
-from workbench.believed import FALSE_ALARMS, LIKELY, PLAIN, SURE
+from workbench.believed import FALSE_ALARMS, LIKELY, PLAIN, SPARE, SURE
 from workbench.explain.explore import Beliefs, Names, Posterior, explored, posterior
 from workbench.explain.verdict import Thresholds
 from workbench.findings import DetectionLimit
@@ -130,8 +130,17 @@ def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]
     quiet = min(1.0 - SURE, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
     sure = max(SURE, -_lowest([-p for p in wrong], FALSE_NAMES))
+    if spare_readings(simulator.bench) < SPARE:
+        return Thresholds(sure, quiet, False), dict.fromkeys(POWER_SIZES, 0.0)
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}
     return Thresholds(sure, quiet, power[max(power)] >= LIKELY), power
+
+
+def spare_readings(bench: Bench) -> float:
+    """Readings to fit beyond what tolerances and instruments take, and the one that the size of an effect takes."""
+    jacobian = bench.centre.jacobian
+    taken = np.trace(np.linalg.solve(np.eye(jacobian.shape[1]) + jacobian.T @ jacobian, jacobian.T @ jacobian))
+    return bench.fit.stack.size - float(taken) - 1.0
 
 
 def _lowest(values: list[float], share: float) -> float:

@@ -46,7 +46,7 @@ def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Ver
     if p.nothing >= thresholds.quiet:
         kind = NOTHING_MISSING if can_tell else CANNOT_TELL
         return Verdict(kind, (), plainly_nothing if can_tell else p.nothing, {})
-    if p.remains >= LIKELY:
+    if p.remains >= LIKELY and can_tell:
         return Verdict(NONE_OF_THESE, (), p.remains, {})
     return Verdict(CANNOT_TELL, (), something, {})
 
