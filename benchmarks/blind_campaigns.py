@@ -15,17 +15,18 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import cache
 from pathlib import Path
 
 from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
 from benchmarks.virtual_benches.hiding import hide
-from pipeline.pools import Processes, TaskWorkers
+from pipeline.checkpoint import Checkpoint
+from pipeline.pools import PooledWorkers, Processes
 
 TUNING_START, SCORED_START = 10000, 0  # first seeds
 LUMPED = {"damper": DAMPER, "dq": DQ}
+BENCHES = ("damper", "dq")
 SHARES = {"null": 0.25, "single": 0.30, "pair": 0.08, "several": 0.12, "outside": 0.17, "mistake": 0.08}
 ANSWERS, HASHES = "answers.json", "hashes.json"
 
@@ -54,3 +55,65 @@ def wanted(bench: str, count: int, scored: bool, groups: Iterable[str] = GROUPS)
     whole = sum(SHARES[group] for group in groups)
     counts = {group: max(round(count * SHARES[group] / whole), 1) for group in groups}
     return [Wanted(bench, group, n, scored) for group in groups for n in range(counts[group])]
+
+
+def write_campaign(task: Mapping[str, object]) -> dict:
+    """One campaign into its folder; the answer as plain values. task: fields of ``Wanted`` and ``folder``"""
+    folder = Path(str(task["folder"]))
+    asked = Wanted(**{key: task[key] for key in ("bench", "group", "number", "scored")})
+    made, answer = _made(asked)
+    replace(made, id=asked.name, holdout="").write(folder / asked.bench / asked.name)
+    return asdict(answer)
+
+
+def _made(asked: Wanted) -> tuple[Bench, Answer]:
+    catalogue = LUMPED[asked.bench]
+    kinds = [name for name in catalogue.outside if (name in catalogue.tuning_kinds) != asked.scored]
+    return hide(catalogue, asked.group, asked.seed, kinds=kinds)
+
+
+def write_campaigns(folder: Path, asked: Iterable[Wanted], jobs: int | None = None) -> None:
+    """All campaigns with their answers and hashes; campaigns that are there are kept."""
+    asked = list(asked)
+    tasks = {f"{one.bench} {one.name}": {**asdict(one), "folder": str(folder)} for one in asked}
+    folder.mkdir(parents=True, exist_ok=True)
+    workers = PooledWorkers("blind campaigns", Processes(jobs), lambda what: Checkpoint(folder / "making.jsonl", "1"))
+    made = workers.map("campaigns", write_campaign, tasks)
+    for bench in {one.bench for one in asked}:
+        answers = {one.name: made[f"{bench} {one.name}"] for one in asked if one.bench == bench}
+        (folder / bench / ANSWERS).write_text(json.dumps(answers, indent=1, sort_keys=True), encoding="utf-8")
+    (folder / HASHES).write_text(json.dumps(hashes(folder), indent=1), encoding="utf-8")
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of every campaign (its files in order of their names) and of the answers of every bench."""
+    found = {}
+    for toml in sorted(folder.glob("*/*/campaign.toml")):
+        files = sorted(toml.parent.iterdir())
+        content = b"".join(file.name.encode() + b"\0" + file.read_bytes() for file in files)
+        found[str(toml.parent.relative_to(folder))] = hashlib.sha256(content).hexdigest()
+    for answers in sorted(folder.glob(f"*/{ANSWERS}")):
+        found[str(answers.relative_to(folder))] = hashlib.sha256(answers.read_bytes()).hexdigest()
+    return found
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--tune", type=int, metavar="N", help="so many campaigns of a bench for tuning")
+    parser.add_argument("--score", type=int, metavar="N", help="so many campaigns of a bench for the score")
+    parser.add_argument("--bench", action="append", choices=sorted(LUMPED), help="only this bench")
+    parser.add_argument("--group", action="append", choices=GROUPS, help="only this group")
+    parser.add_argument("--jobs", type=int, help="processes; as many as there are cores where it is not given")
+    chosen = parser.parse_args(arguments)
+    if (chosen.tune is None) == (chosen.score is None):
+        parser.error("say either --tune N or --score N")
+    count, scored = (chosen.tune or chosen.score), chosen.score is not None
+    benches = chosen.bench or sorted(LUMPED)
+    asked = [one for bench in benches for one in wanted(bench, count, scored, chosen.group or GROUPS)]
+    write_campaigns(chosen.folder, asked, chosen.jobs)
+    print(f"{len(asked)} campaigns in {chosen.folder}")
+
+
+if __name__ == "__main__":
+    main()

@@ -234,9 +234,7 @@ class _Scene:
         truth, chi2 = _sized(self.catalogue.outside[name], self.judge.state, _log_uniform(OUTSIDE, rng), strange)
         return truth, Answer(self.catalogue.name, "outside", seed, outside=name, visibility={name: chi2})
 
-    def inside(
-        self, group: str, seed: int, wanted: tuple[str, ...], rng: np.random.Generator
-    ) -> tuple[Any, Answer]:
+    def inside(self, group: str, seed: int, wanted: tuple[str, ...], rng: np.random.Generator) -> tuple[Any, Answer]:
         """Effects of the library; several are drawn again until each of them can be seen beside the others."""
         count = {"null": 0, "single": 1, "pair": 2, "several": int(rng.choice(SEVERAL)), "mistake": 0}[group]
         drawn = []
