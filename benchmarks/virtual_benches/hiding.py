@@ -146,7 +146,7 @@ class _Judge:
         drifts = self.catalogue.drifts(state)
         for responses, u in zip(tables, self.declared):
             parts += [_drifted(responses[name], drifts.get(name, 0.0)) / u[name] * weight for name in responses]
-        return np.concatenate([_white(part, self.noise.correlation) for part in parts])
+        return np.concatenate([white(part, self.noise.correlation) for part in parts])
 
     @property
     def weight(self) -> float:
@@ -165,7 +165,7 @@ class _Judge:
             shapes = scan_shapes(u) / u[:, None] * self.noise.remount / self.noise.scale
             for shape in shapes.T:
                 column = np.zeros(n)
-                column[row : row + len(u)] = _white(shape, self.noise.correlation)
+                column[row : row + len(u)] = white(shape, self.noise.correlation)
                 columns.append(column)
             row += len(u)
         return np.stack(columns, axis=1)
@@ -231,7 +231,7 @@ class _Scene:
             columns = (np.hstack([self.sensitivities, s]) for s in free)
             return min(self.judge.visibility(changed, each, self.base) for each in columns)
 
-        truth, chi2 = _sized(self.catalogue.outside[name], self.judge.state, _log_uniform(OUTSIDE, rng), strange)
+        truth, chi2 = _sized(self.catalogue.outside[name], self.judge.state, log_uniform(OUTSIDE, rng), strange)
         return truth, Answer(self.catalogue.name, "outside", seed, outside=name, visibility={name: chi2})
 
     def inside(self, group: str, seed: int, wanted: tuple[str, ...], rng: np.random.Generator) -> tuple[Any, Answer]:
@@ -275,7 +275,7 @@ class _Scene:
         def small(changed: Any) -> float:
             return self.judge.visibility(changed, self.sensitivities, with_it)
 
-        left_out, chi2 = _sized(self.catalogue.outside[name], truth, _log_uniform(SMALL, rng), small)
+        left_out, chi2 = _sized(self.catalogue.outside[name], truth, log_uniform(SMALL, rng), small)
         return left_out if chi2 < 2 * SMALL[1] else truth
 
 
@@ -310,7 +310,7 @@ def _sized(hidden: Hidden, state, chi2: float, seen) -> tuple[Any, float]:
     return min(tried)[2:]
 
 
-def _log_uniform(between: tuple[float, float], rng: np.random.Generator) -> float:
+def log_uniform(between: tuple[float, float], rng: np.random.Generator) -> float:
     return float(np.exp(rng.uniform(*np.log(between))))
 
 
@@ -336,7 +336,7 @@ def measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Be
     return Bench(name, setup.device, setup.tolerance, setup.systematic, tuple(series))
 
 
-def _white(scan: np.ndarray, correlation: float) -> np.ndarray:
+def white(scan: np.ndarray, correlation: float) -> np.ndarray:
     """One scan whose neighbours have noise of that correlation, as independent rows of the same noise."""
     return np.append(scan[:1], (scan[1:] - correlation * scan[:-1]) / np.sqrt(1 - correlation**2))
 

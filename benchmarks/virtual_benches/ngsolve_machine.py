@@ -1,6 +1,6 @@
-"""A machine solved by NGSolve on Netgen's own mesh: ``python ngsolve_machine.py FOLDER``, in an environment of its own.
+"""A machine solved by NGSolve on Netgen's own mesh: ``python ngsolve_machine.py X.json``, in an environment of its own.
 
-Reads FOLDER/*.json, one machine as built each, and writes FOLDER/*.npz beside it; what is there already is left alone.
+Reads one machine as built and writes X.npz beside it.
 Nothing of this file is shared with the field model of the project: the outline is drawn here, the whole machine is
 meshed by Netgen, the rotor turns by whole edges of the circle in the middle of the gap, torque is the work of the
 stress tensor while a weight turns the rotor, and Newton's tangent is NGSolve's.
@@ -22,9 +22,22 @@ import netgen.meshing
 import ngsolve
 import numpy as np
 from netgen.geom2d import SplineGeometry
-from ngsolve import H1, BilinearForm, BSpline, GridFunction, InnerProduct, Integrate, LinearForm, Mesh, Norm, atan2
+from ngsolve import (
+    H1,
+    BilinearForm,
+    BSpline,
+    GridFunction,
+    InnerProduct,
+    Integrate,
+    LinearForm,
+    Mesh,
+    Norm,
+    atan2,
+    grad,
+    x,
+    y,
+)
 from ngsolve import dx as over
-from ngsolve import grad, x, y
 
 MU_0 = 4e-7 * pi
 ORDER = 3
@@ -392,20 +405,11 @@ def solved(m: dict) -> dict[str, np.ndarray]:
     return {"no_load": np.array(idle).T, "loaded": loaded.T, "cpu": np.array(time.process_time() - began)}
 
 
-def main(folder: Path) -> None:
+def main(path: Path) -> None:
     ngsolve.SetNumThreads(1)
-    for path in sorted(folder.glob("*.json")):
-        target = path.with_suffix(".npz")
-        if target.exists():
-            continue
-        m = json.loads(path.read_text())
-        try:
-            found = solved(m)
-        except (ValueError, netgen.libngpy._meshing.NgException) as error:
-            print(f"{path.name}: {error}", flush=True)
-            continue
-        np.savez_compressed(target, **found)
-        print(f"{path.name}: {float(found['cpu']):.1f} s", flush=True)
+    found = solved(json.loads(path.read_text(encoding="utf-8")))
+    np.savez_compressed(path.with_suffix(".npz"), **found)
+    print(f"{path.stem}: {float(found['cpu']):.1f} s of CPU", flush=True)
 
 
 if __name__ == "__main__":
