@@ -13,22 +13,30 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import shutil
+import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from benchmarks.foreign import left_by_library
 from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
-from benchmarks.virtual_benches.hiding import hide
+from benchmarks.virtual_benches.hiding import bare, hide
+from benchmarks.virtual_benches.mistakes import MISTAKES, Mistake, mistaken
+from benchmarks.virtual_benches.ngsolve_bench import hide as hide_in_field
+from effects.library import library
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import PooledWorkers, Processes
+from pipeline.pools import Pool, PooledWorkers, Processes
+from workbench.data.campaign import read_campaign
 
 TUNING_START, SCORED_START = 10000, 0  # first seeds
 LUMPED = {"damper": DAMPER, "dq": DQ}
-BENCHES = ("damper", "dq")
+BENCHES = ("damper", "dq", "machine")
+STRIDE = 7  # between the mistakes of neighbouring numbers, so that few campaigns see many kinds of them
 SHARES = {"null": 0.25, "single": 0.30, "pair": 0.08, "several": 0.12, "outside": 0.17, "mistake": 0.08}
-ANSWERS, HASHES = "answers.json", "hashes.json"
+ANSWERS, HASHES, MADE = "answers.json", "hashes.json", "made.jsonl"
 
 
 @dataclass(frozen=True)
@@ -59,30 +67,77 @@ def wanted(bench: str, count: int, scored: bool, groups: Iterable[str] = GROUPS)
 
 def write_campaign(task: Mapping[str, object]) -> dict:
     """One campaign into its folder; the answer as plain values. task: fields of ``Wanted`` and ``folder``"""
-    folder = Path(str(task["folder"]))
     asked = Wanted(**{key: task[key] for key in ("bench", "group", "number", "scored")})
+    folder = Path(str(task["folder"])) / asked.bench / asked.name
     made, answer = _made(asked)
-    replace(made, id=asked.name, holdout="").write(folder / asked.bench / asked.name)
+    made = replace(made, id=asked.name, holdout="")
+    if folder.exists():
+        shutil.rmtree(folder)
+    if asked.group == "outside" and asked.bench in LUMPED:
+        answer = _beside_the_library(answer, asked)
+    if asked.group == "mistake":
+        answer = _with_mistake(made, answer, asked, folder)
+    else:
+        made.write(folder)
     return asdict(answer)
 
 
 def _made(asked: Wanted) -> tuple[Bench, Answer]:
+    if asked.bench == "machine":
+        return hide_in_field(asked.group, asked.seed, "score" if asked.scored else "tune")
+    return hide(LUMPED[asked.bench], asked.group, asked.seed, kinds=_kinds(asked))
+
+
+def _kinds(asked: Wanted) -> list[str]:
     catalogue = LUMPED[asked.bench]
-    kinds = [name for name in catalogue.outside if (name in catalogue.tuning_kinds) != asked.scored]
-    return hide(catalogue, asked.group, asked.seed, kinds=kinds)
+    return [name for name in catalogue.outside if (name in catalogue.tuning_kinds) != asked.scored]
 
 
-def write_campaigns(folder: Path, asked: Iterable[Wanted], jobs: int | None = None) -> None:
+def _beside_the_library(answer: Answer, asked: Wanted) -> Answer:
+    """With the visibility that the truth keeps beside the best effect of the library as it is installed."""
+    with tempfile.TemporaryDirectory() as name:
+        benches = bare(LUMPED[asked.bench], "outside", asked.seed, kinds=_kinds(asked))
+        without, changed = (read_campaign(b.write(Path(name) / f"{k}")) for k, b in enumerate(benches))
+        left = left_by_library(without, changed, library(), answer.about)
+    detail = f"{answer.outside}, {left.chi2:.0f} left by {left.best}"
+    return replace(
+        answer, visibility={answer.outside: min(left.chi2, answer.visibility[answer.outside])}, detail=detail
+    )
+
+
+def _with_mistake(made: Bench, answer: Answer, asked: Wanted, folder: Path) -> Answer:
+    """A right campaign with one mistake of a laboratory in its files; the mistakes take turns."""
+    of_bench = [mistake for mistake in MISTAKES[asked.bench] if _can_be_made(mistake, made)]
+    mistake = of_bench[asked.number * STRIDE % len(of_bench)]
+    with tempfile.TemporaryDirectory() as name:
+        mistaken(mistake, made.write(Path(name) / "right"), folder)
+    return replace(answer, mistake=mistake.names, detail=mistake.words)
+
+
+def _can_be_made(mistake: Mistake, made: Bench) -> bool:
+    """Mistakes with the angles of one machine's slots and poles are for that machine."""
+    return made.device.get("slots", 12) == 12 or not any(
+        word in mistake.words for word in ("slot", "pole", "electrical")
+    )
+
+
+def write_campaigns(folder: Path, asked: Iterable[Wanted], pool: Pool) -> None:
     """All campaigns with their answers and hashes; campaigns that are there are kept."""
     asked = list(asked)
     tasks = {f"{one.bench} {one.name}": {**asdict(one), "folder": str(folder)} for one in asked}
     folder.mkdir(parents=True, exist_ok=True)
-    workers = PooledWorkers("blind campaigns", Processes(jobs), lambda what: Checkpoint(folder / "making.jsonl", "1"))
+    workers = PooledWorkers("blind campaigns", pool, lambda what: Checkpoint(folder / MADE, fingerprint()))
     made = workers.map("campaigns", write_campaign, tasks)
     for bench in {one.bench for one in asked}:
         answers = {one.name: made[f"{bench} {one.name}"] for one in asked if one.bench == bench}
         (folder / bench / ANSWERS).write_text(json.dumps(answers, indent=1, sort_keys=True), encoding="utf-8")
     (folder / HASHES).write_text(json.dumps(hashes(folder), indent=1), encoding="utf-8")
+
+
+def fingerprint() -> str:
+    """SHA-256 of everything that makes a campaign."""
+    files = sorted(path for path in Path(__file__).parent.rglob("*") if path.suffix in (".py", ".npz"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
 def hashes(folder: Path) -> dict[str, str]:
@@ -102,16 +157,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--tune", type=int, metavar="N", help="so many campaigns of a bench for tuning")
     parser.add_argument("--score", type=int, metavar="N", help="so many campaigns of a bench for the score")
-    parser.add_argument("--bench", action="append", choices=sorted(LUMPED), help="only this bench")
+    parser.add_argument("--bench", action="append", choices=BENCHES, help="only this bench")
     parser.add_argument("--group", action="append", choices=GROUPS, help="only this group")
     parser.add_argument("--jobs", type=int, help="processes; as many as there are cores where it is not given")
     chosen = parser.parse_args(arguments)
     if (chosen.tune is None) == (chosen.score is None):
         parser.error("say either --tune N or --score N")
     count, scored = (chosen.tune or chosen.score), chosen.score is not None
-    benches = chosen.bench or sorted(LUMPED)
+    benches = chosen.bench or BENCHES
     asked = [one for bench in benches for one in wanted(bench, count, scored, chosen.group or GROUPS)]
-    write_campaigns(chosen.folder, asked, chosen.jobs)
+    write_campaigns(chosen.folder, asked, Processes(chosen.jobs))
     print(f"{len(asked)} campaigns in {chosen.folder}")
 
 

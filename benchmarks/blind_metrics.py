@@ -1,4 +1,4 @@
-"""What blind cases say about the diagnosis: shares with exact bounds, calibration of every printed probability, coverage.
+"""What blind cases say about the diagnosis: shares with exact bounds, calibration of all that is printed, coverage.
 
 A case is a dictionary as ``blind_score.case_of`` returns it: the answer of a campaign beside what its diagnosis.json
 says. Bounds: Clopper and Pearson (1934), one-sided 95 %. A verdict prints names as sets: the members of a group are one
@@ -128,7 +128,7 @@ def right(case: Mapping) -> bool:
 
 
 def convention_named(case: Mapping) -> bool:
-    return case["verdict"] == "convention" and case["mistake"] in case["names"]
+    return case["verdict"] == "convention" and bool(set(case["mistake"]) & set(case["names"]))
 
 
 # ---- the score -------------------------------------------------------------------------------------------------------
@@ -255,7 +255,7 @@ def least_error(stated: np.ndarray, rng: np.random.Generator, draws: int = 200) 
 
 
 def bins_of(stated: np.ndarray) -> list[np.ndarray]:
-    """Row numbers of bins of stated probability, tenths; a bin with fewer than ``FEWEST`` is joined to its neighbour."""
+    """Row numbers of bins of stated probability, tenths; one with fewer than ``FEWEST`` is joined to its neighbour."""
     tenth = np.clip(np.digitize(stated, BINS) - 1, 0, len(BINS) - 2)
     found_bins: list[np.ndarray] = []
     for number in np.unique(tenth):

@@ -33,7 +33,7 @@ from benchmarks.blind_figure import confusion_figure, reliability_figure
 from benchmarks.blind_metrics import Metric, by_kind, least_error, score, statements
 from benchmarks.this_machine import machine_name
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import Interrupted, PooledWorkers, Processes
+from pipeline.pools import Interrupted, Pool, PooledWorkers, Processes
 
 PROJECT = Path(__file__).resolve().parent.parent
 RESULTS = PROJECT / "results" / "reference" / "blind_score"
@@ -124,7 +124,7 @@ def _interval(parameters: Mapping[str, Mapping]) -> tuple[float, float]:
 # ---- many ------------------------------------------------------------------------------------------------------------
 
 
-def cases_of(folder: Path, code: Code, checkpoint: Path, jobs: int | None, most: int | None = None) -> list[dict]:
+def cases_of(folder: Path, code: Code, checkpoint: Path, pool: Pool, most: int | None = None) -> list[dict]:
     """All campaigns of a folder diagnosed and laid beside their answers. most: of every bench and group"""
     answers = {
         path.parent.name: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob(f"*/{ANSWERS}"))
@@ -135,7 +135,7 @@ def cases_of(folder: Path, code: Code, checkpoint: Path, jobs: int | None, most:
         for key in chosen
     }
     inputs = hashlib.sha256((code.fingerprint() + json.dumps(hashes(folder))).encode()).hexdigest()
-    workers = PooledWorkers("blind score", Processes(jobs), lambda what: Checkpoint(checkpoint, inputs))
+    workers = PooledWorkers("blind score", pool, lambda what: Checkpoint(checkpoint, inputs))
     said = workers.map("diagnoses", diagnosed, tasks)
     return [case_of(*key.split("/"), answer, said[key]) for key, answer in chosen.items()]
 
@@ -184,7 +184,7 @@ def line_of(case: Mapping) -> str:
         hidden = " and ".join(
             filter(None, (hidden, f"{case['outside']} (chi2 {case['visibility'][case['outside']]:.0f})"))
         )
-    hidden = " and ".join(filter(None, (hidden, case["detail"] or case["mistake"]))) or "nothing"
+    hidden = " and ".join(filter(None, (hidden, case["detail"]))) or "nothing"
     said = f"{case['verdict']} {', '.join(case['names'])}".strip()
     sure = "" if case["probability"] is None else f" ({case['probability']:.2f})"
     remains = "" if case["p_remains"] is None else f", remains {case['p_remains']:.2f}"
@@ -224,8 +224,8 @@ def _summary(cases: Sequence[Mapping], sets: Mapping[str, Sequence[Metric]], rec
     kinds = "\n".join(f"| {kind} | {hits} of {n} |" for kind, (hits, n) in by_kind(cases).items())
     return (
         "# Blind score of the diagnosis\n\n"
-        f"{record['cases']} campaigns; diagnosed in {record['wall_s'] / 60:.0f} min on {record['machine']['processor']}. "
-        "Brackets are one-sided 95 % bounds (Clopper and Pearson). A hidden effect counts as visible when it adds "
+        f"{record['cases']} campaigns in {record['wall_s'] / 60:.0f} min on {record['machine']['processor']}. Brackets "
+        "are one-sided 95 % bounds (Clopper and Pearson). A hidden effect counts as visible when it adds "
         "chi2 >= 20 beyond tolerances, instruments, scatter of mounting and the other hidden effects; a truth outside "
         "the library when it keeps as much beside the best effect of the bench. Groups, pairs and partial verdicts "
         "count as naming; winding temperature and contact resistance are one law and count as one. All cases are in "
@@ -277,7 +277,7 @@ def _run(chosen: argparse.Namespace, code: Code) -> None:
     start = perf_counter()
     folder = _campaigns(chosen)
     name = hashlib.sha256(f"{code.folder.resolve()} {code.holdout} {folder.resolve()}".encode()).hexdigest()[:12]
-    cases = cases_of(folder, code, WORK / f"diagnoses-{name}.jsonl", chosen.jobs, chosen.most)
+    cases = cases_of(folder, code, WORK / f"diagnoses-{name}.jsonl", Processes(chosen.jobs), chosen.most)
     benches, groups = chosen.bench or BENCHES, chosen.group or GROUPS
     cases = [case for case in cases if case["bench"] in benches and case["group"] in groups]
     for case in cases if chosen.tune or chosen.folders else ():
@@ -295,7 +295,7 @@ def _campaigns(chosen: argparse.Namespace) -> Path:
     scored, folder = not chosen.tune, WORK / (f"tuning-{chosen.tune}" if chosen.tune else "campaigns")
     counts = {bench: chosen.tune or chosen.campaigns or SCORED[bench] for bench in chosen.bench or BENCHES}
     asked = [one for bench, n in counts.items() for one in wanted(bench, n, scored, chosen.group or GROUPS)]
-    write_campaigns(folder, asked, chosen.jobs)
+    write_campaigns(folder, asked, Processes(chosen.jobs))
     return folder
 
 

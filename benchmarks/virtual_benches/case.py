@@ -24,7 +24,7 @@ class Answer:
     outside: words for a truth that no effect of the library describes
     visibility: chi2 that each hidden effect adds beyond tolerances, instruments and the other hidden effects, by name
     ambient: names among ``effects`` that every bench of this kind has, whatever else it hides
-    mistake: what the laboratory wrote down wrongly, as the diagnosis should name it;  detail: which one, in words
+    mistake: names by which the diagnosis may call what the laboratory wrote down wrongly;  detail: that, in words
     about: how the bench was made: "declared" (true over declared u), "remount" (scatter of a scan in u), ...
     """
 
@@ -35,7 +35,7 @@ class Answer:
     outside: str = ""
     visibility: Mapping[str, float] = field(default_factory=dict)
     ambient: tuple[str, ...] = ()
-    mistake: str = ""
+    mistake: tuple[str, ...] = ()
     detail: str = ""
     about: Mapping[str, float] = field(default_factory=dict)
 

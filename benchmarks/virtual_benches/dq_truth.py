@@ -51,7 +51,7 @@ class TrueMachine:
     grease: float = 0.0  # Nm asinh(speed / 20 rad/s), a shear-thinning lubricant
     relief: float = 0.0  # Nm s/rad beyond 130 rad/s, a seal that lifts
     soft_knee: float = 0.0  # V of the switches, reached with exp(-|i| / 6 A)
-    range_step: float = 0.0  # share by which the torque amplifier reads more above 2 Nm
+    range_step: float = 0.0  # share by which the torque amplifier reads more above 5 Nm
     shunt_bend: float = 0.0  # share by which the current is larger than read at RATED, with its square
     bridges: float = 0.0  # Vs/A of the d axis lost to |i_q|, in proportion
     shielding: float = 0.0  # share of psi_m that eddy currents in the magnets keep out at 1000 rad/s electrical
@@ -129,7 +129,7 @@ def _shaft(m: TrueMachine, torque, speed):
 
 
 def _cell(m: TrueMachine, torque):
-    torque = torque * (1.0 + m.range_step * 0.5 * (1.0 + np.tanh((np.abs(torque) - 2.0) / 0.05)))
+    torque = torque * (1.0 + m.range_step * 0.5 * (1.0 + np.tanh((np.abs(torque) - 5.0) / 0.1)))
     return torque * np.abs(torque) / (np.abs(torque) + m.torque_dead_band + 1e-30)
 
 

@@ -16,6 +16,7 @@ from benchmarks.virtual_benches.case import GROUPS, VISIBLE, Answer, Bench, Seri
 from benchmarks.virtual_benches.instruments import Noise, readings, room_temperature, scan_shapes, with_gaps
 
 FREE = 1e4  # prior size of a free effect, in units of one standard deviation of all data
+PLAUSIBLE = 0.3  # share of a column of readings by which a truth outside the library may change it
 SMALL = (0.3, 3.0)  # chi2 of the one small effect that is left out of every model
 SIZINGS = 30  # sizes that are tried until a chi2 is met
 STEPS = 4  # of Gauss and Newton
@@ -159,7 +160,7 @@ class _Judge:
         return np.hstack([own, self.remounting(len(base))]) if self.noise.remount else own
 
     def remounting(self, n: int) -> np.ndarray:
-        """What the mean offset and slope of the fitted scans does to ``stacked``, one standard deviation (n, columns)."""
+        """What the mean offset and slope of the fitted scans do to ``stacked``, one standard deviation (n, columns)."""
         columns, row = [], 0
         for u in (values for table in self.declared for values in table.values()):
             shapes = scan_shapes(u) / u[:, None] * self.noise.remount / self.noise.scale
@@ -191,6 +192,34 @@ def hide(
     wanted: names of what to hide instead of drawing it, for a story or a test
     kinds: names of ``outside`` to draw from, all where empty
     """
+    case = _drawn(catalogue, group, seed, wanted, kinds)
+    small = case.scene.with_a_small_one(case.truth, case.answer.outside, case.rng)
+    noise = case.scene.judge.noise
+    bench = measured(catalogue, case.scene.judge.setup, small, noise, f"{catalogue.name}-{group}-{seed}", case.rng)
+    return bench, case.answer
+
+
+def bare(
+    catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...] = (), kinds: Sequence[str] = ()
+) -> tuple[Bench, Bench]:
+    """The same bench as ``hide`` makes, without and with what is hidden, one repeat free of random error."""
+    case = _drawn(catalogue, group, seed, wanted, kinds)
+    judge = case.scene.judge
+    once, still = replace(judge.setup, repeats=1), Noise.still()
+    name = f"{catalogue.name}-{group}-{seed}"
+    without, changed = (measured(catalogue, once, state, still, name, case.rng) for state in (judge.state, case.truth))
+    return without, changed
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    scene: _Scene
+    truth: Any
+    answer: Answer
+    rng: np.random.Generator
+
+
+def _drawn(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...], kinds: Sequence[str]) -> _Drawn:
     rng = np.random.default_rng([seed, GROUPS.index(group), sum(catalogue.name.encode())])
     setup, noise = catalogue.setup(rng), Noise.drawn(rng)
     state = setup.state
@@ -202,10 +231,9 @@ def hide(
     base = judge.stacked(state)
     scene = _Scene(judge, base, judge.sensitivities(base), tuple(kinds or catalogue.outside))
     truth, answer = scene.outside(seed, wanted, rng) if group == "outside" else scene.inside(group, seed, wanted, rng)
-    truth = scene.with_a_small_one(truth, answer.outside, rng)
-    about = {"declared": noise.scale, "remount": noise.remount, "correlation": noise.correlation}
-    bench = measured(catalogue, setup, truth, noise, f"{catalogue.name}-{group}-{seed}", rng)
-    return bench, replace(answer, about=about)
+    fitted = float(max(setup.repeats - 1, 1))
+    about = {"declared": noise.scale, "remount": noise.remount, "correlation": noise.correlation, "fitted": fitted}
+    return _Drawn(scene, truth, replace(answer, about=about), rng)
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +251,6 @@ class _Scene:
 
     def outside(self, seed: int, wanted: tuple[str, ...], rng: np.random.Generator) -> tuple[Any, Answer]:
         """A truth that no effect describes, as large as the best single effect leaves of it what is drawn."""
-        name = wanted[0] if wanted else str(rng.choice(self.kinds))
         free = [FREE * s / np.linalg.norm(s, axis=0) for s in self.judge.signatures(self.base)]
 
         def strange(changed: Any) -> float:
@@ -231,8 +258,20 @@ class _Scene:
             columns = (np.hstack([self.sensitivities, s]) for s in free)
             return min(self.judge.visibility(changed, each, self.base) for each in columns)
 
-        truth, chi2 = _sized(self.catalogue.outside[name], self.judge.state, log_uniform(OUTSIDE, rng), strange)
+        for name in wanted or [str(kind) for kind in rng.permutation(self.kinds)]:
+            truth, chi2 = _sized(self.catalogue.outside[name], self.judge.state, log_uniform(OUTSIDE, rng), strange)
+            if wanted or self._is_plausible(truth):
+                break
         return truth, Answer(self.catalogue.name, "outside", seed, outside=name, visibility={name: chi2})
+
+    def _is_plausible(self, truth: Any) -> bool:
+        """Whether no column of readings changes by more than ``PLAUSIBLE`` of what such columns read, rms."""
+        before, after = (self.catalogue.simulate(self.judge.setup, state) for state in (self.judge.state, truth))
+        size: dict[str, float] = {}
+        for name, values in (item for table in before for item in table.items()):
+            size[name] = max(size.get(name, 0.0), _rms(values))
+        pairs = [(name, t[name] - b[name]) for b, t in zip(before, after) for name in b]
+        return all(_rms(change) <= PLAUSIBLE * size[name] for name, change in pairs)
 
     def inside(self, group: str, seed: int, wanted: tuple[str, ...], rng: np.random.Generator) -> tuple[Any, Answer]:
         """Effects of the library; several are drawn again until each of them can be seen beside the others."""
@@ -277,6 +316,10 @@ class _Scene:
 
         left_out, chi2 = _sized(self.catalogue.outside[name], truth, log_uniform(SMALL, rng), small)
         return left_out if chi2 < 2 * SMALL[1] else truth
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def _chosen(catalogue: Catalogue, count: int, rng: np.random.Generator) -> list[str]:

@@ -46,6 +46,11 @@ class Noise:
         """Exactly what a likelihood assumes: white, of the declared size."""
         return cls(1.0, 0.0, 0.0, 0.0)
 
+    @classmethod
+    def still(cls) -> Noise:
+        """None at all."""
+        return cls(0.0, 0.0, 0.0, 0.0)
+
     @property
     def is_ideal(self) -> bool:
         return self == Noise.ideal()
@@ -59,8 +64,8 @@ def readings(
     truth: with the instrument's own gain and offset;  declared: its random uncertainty (n,)
     drifts: whether the first scan of this column drifts
     """
-    if noise.is_ideal:
-        return truth + declared * rng.standard_normal(len(truth))
+    if noise.is_ideal or not noise.scale:
+        return truth + noise.scale * declared * rng.standard_normal(len(truth))
     error = np.concatenate([_correlated(int(n), noise, rng) for n in np.bincount(repeat)])
     if drifts:
         first = repeat == 0

@@ -164,21 +164,33 @@ def drawn(which: str) -> list[Solved]:
         for k in range(OUTSIDE_OF_EACH[which]):
             found.append(_made(which, names[(n + k) % 2], f"outside-{n}-{k}", (), (kind,), [seed, 3, n, k]))
     for k in range(PAIRS[which]):
-        rng = np.random.default_rng([seed, 4, k])
-        two = tuple(str(name) for name in rng.choice(list(EFFECTS), 2, replace=False))
-        found.append(_made(which, names[k % 2], f"pair-{k}", two, (), [seed, 5, k]))
+        found += _pair(which, names[k % 2], k, [seed, 4, k])
     return found
 
 
-def _made(which: str, drawing: str, name: str, effects: tuple, outside: tuple, seed: list[int]) -> Solved:
+def _pair(which: str, drawing: str, number: int, seed: list[int]) -> list[Solved]:
+    """A machine with two effects, and the same machine with either of them."""
+    rng = np.random.default_rng(seed)
+    two = tuple(str(name) for name in rng.choice(list(EFFECTS), 2, replace=False))
+    whole = [*seed[:1], 5, number]
+    both = _made(which, drawing, f"pair-{number}", two, (), whole)
+    return [both, *(_made(which, drawing, f"pair-{number}-{k}", two, (), whole, only=two[k]) for k in range(2))]
+
+
+def _made(
+    which: str, drawing: str, name: str, effects: tuple, outside: tuple, seed: list[int], only: str = ""
+) -> Solved:
+    """only: the one effect of those drawn that gets into the machine, all where empty"""
     rng = np.random.default_rng(seed)
     built, z = with_tolerances(DRAWINGS[drawing], rng)
     sizes: dict[str, float] = {}
     for kind in (*effects, *outside):
         hidden = {**EFFECTS, **OUTSIDE}[kind]
-        sizes[kind] = hidden.size(rng)
-        built = built + hidden.change(sizes[kind], DRAWINGS[drawing], rng)
-    in_it, strange = ({k: sizes[k] for k in kinds} for kinds in (effects, outside))
+        size = hidden.size(rng)
+        change = hidden.change(size, DRAWINGS[drawing], rng)
+        if only in ("", kind):
+            sizes[kind], built = size, built + change
+    in_it, strange = ({k: sizes[k] for k in kinds if k in sizes} for kinds in (effects, outside))
     return Solved(f"{which}-{drawing}-{name}", drawing, built, in_it, strange, z)
 
 

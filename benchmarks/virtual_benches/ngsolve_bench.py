@@ -8,7 +8,7 @@ what the instruments do to it is added here. Every such bench has dry friction i
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -19,7 +19,16 @@ from benchmarks.virtual_benches.case import GROUPS, Answer, Bench, Series
 from benchmarks.virtual_benches.hiding import FREE, OUTSIDE, SEVERAL, SMALL, Layout, Setup, log_uniform, measured, white
 from benchmarks.virtual_benches.instruments import Noise, scan_shapes
 from benchmarks.virtual_benches.machine_hidden import SENSITIVITIES, SYSTEMATIC, TOLERANCE, Solved
-from benchmarks.virtual_benches.truths import DEGREE, DRAWINGS, Drawing, Truth, coil_turns, truth_of
+from benchmarks.virtual_benches.truths import (
+    DEGREE,
+    DRAWINGS,
+    Drawing,
+    Truth,
+    coil_turns,
+    revolution,
+    spectrum_of,
+    truth_of,
+)
 
 SOLVED = Path(__file__).parent / "solved"
 RPM = np.pi / 30
@@ -285,7 +294,7 @@ def hide(group: str, seed: int, which: str) -> tuple[Bench, Answer]:
     if strange:
         reading, seen[strange] = case.sized(strange, log_uniform(OUTSIDE, rng))
     elif outside:
-        seen[outside] = eye.chi2(case.in_the_field(), eye.readable)
+        seen[outside] = case.strange()
     reading = _Case(eye, machine, reading).with_a_small_one(which, outside, rng)
     bench = _written(eye, machine, reading, f"machine-{group}-{seed}", rng)
     about = {"declared": noise.scale, "remount": noise.remount, "correlation": noise.correlation}
@@ -353,18 +362,36 @@ class _Case:
         return self.read(wound) - self.eye.plain(wound) - moved
 
     def seen(self, name: str, effects: Mapping[str, float]) -> float:
-        """chi2 of one effect beyond everything declared and beyond the others at any size; two effects of one field
-        share what the field does in equal parts, each as large as the whole leaves."""
-        others = [n for n in effects if n != name and (n in EFFECTS or n == "bearing_friction")]
-        free = [self._alone(other) for other in others]
-        free += [self.in_the_field()] if self.machine.effects and name not in self.machine.effects else []
+        """chi2 of one effect beyond everything declared and beyond the others at any size."""
+        free = [self._alone(other) for other in effects if other != name]
         columns = np.stack([FREE * c / max(np.linalg.norm(c), 1e-9) for c in free], axis=1) if free else None
         return self.eye.chi2(self._alone(name), columns)
 
     def _alone(self, name: str) -> np.ndarray:
-        if name in self.machine.effects:
+        """What one effect does, beside the others."""
+        if name not in self.machine.effects:
+            return self.read() - self.read(replace(self.reading, **{name: 0.0}))
+        if len(self.machine.effects) == 1:
             return self.in_the_field()
-        return self.read() - self.read(replace(self.reading, **{name: 0.0}))
+        other = next(m for m in self._halves() if name not in m.effects)
+        return self.read() - _Case(self.eye, other, self.reading).read()
+
+    def _halves(self) -> list[Solved]:
+        """The same machine with either of its two effects."""
+        return [m for m in machines(self.machine.name.split("-")[0]) if m.name.startswith(f"{self.machine.name}-")]
+
+    def strange(self) -> float:
+        """chi2 that the best effect of the library leaves of a strange law of the field: those of the instruments
+        together, and each effect of the field wherever it may sit."""
+        r = self.in_the_field()
+        kept = [self.eye.chi2(r, self.eye.readable)]
+        for column in imitations(self.eye):
+            free = FREE * column / np.linalg.norm(column)
+            rows = column != 0.0  # of the tables that are known of it
+            kept.append(
+                self.eye.chi2(np.where(rows, r, 0.0), np.hstack([self.eye.readable * rows[:, None], free[:, None]]))
+            )
+        return min(kept)
 
     def sized(self, words: str, chi2: float) -> tuple[Reading, float]:
         """The reading with a strange law of that visibility beside every effect of the instruments."""
@@ -382,6 +409,42 @@ class _Case:
         laws = [words for words in STRANGE if (words in TUNING_STRANGE) == (which == "tune") and words != outside]
         changed, got = self.sized(str(rng.choice(laws)), log_uniform(SMALL, rng))
         return changed if got < 2 * SMALL[1] else self.reading
+
+
+def imitations(eye: Eye) -> Iterator[np.ndarray]:
+    """What every solved effect of the field does to back-EMF and cogging, at every magnet or slot where it may sit
+    (n,); zero in the other tables."""
+    drawn = next(m for m in machines("sense") if m.name == f"sense-{eye.drawing.name}-drawing")
+    there = readings_of(eye.drawing, drawn, truth(drawn.name), Reading())
+    for which in ("tune", "score"):
+        for machine in machines(which):
+            if machine.drawing == eye.drawing.name and len(machine.effects) == 1:
+                for spectrum in elsewhere(machine):
+                    moved = replace(truth(drawn.name), spectrum=spectrum)
+                    idle = readings_of(eye.drawing, machine, moved, Reading())[:2]
+                    yield eye.stacked([*idle, *there[2:]]) - eye.stacked(there)
+
+
+def elsewhere(machine: Solved, folder: Path = SOLVED) -> Iterator[np.ndarray]:
+    """Spectra of a machine with what it hides at every other magnet or slot: a rotor k poles on is the same rotor
+    turned, with the opposite sign where k is odd; a stator k slots on is the same, its coils counted from there."""
+    drawing, built = DRAWINGS[machine.drawing], machine.built
+    with np.load(folder / f"{machine.name}.npz") as arrays:
+        whole = revolution(drawing, built, arrays["no_load"])
+    pole, slot = drawing.edges // drawing.poles, drawing.edges // drawing.slots
+    if not built.rotor_is_regular:
+        signs = lambda k: np.append(1.0, np.full(drawing.slots, (-1.0) ** k))[:, None]  # noqa: E731
+        moved = [signs(k) * np.roll(whole, -k * pole, axis=1) for k in range(drawing.poles)]
+    elif not built.stator_is_regular:
+        moved = [np.roll(_coils_on(whole, k), k * slot, axis=1) for k in range(drawing.slots)]
+    else:
+        moved = [whole]
+    for samples in moved:
+        yield spectrum_of(drawing, built, samples)
+
+
+def _coils_on(whole: np.ndarray, slots: int) -> np.ndarray:
+    return np.vstack([whole[:1], np.roll(whole[1:], slots, axis=0)])
 
 
 class _Answers:

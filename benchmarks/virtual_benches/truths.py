@@ -319,7 +319,7 @@ DRAWINGS = {drawing.name: drawing for drawing in (TWELVE_TEN, NINE_EIGHT)}
 class Truth:
     """Torque and flux linkages of one machine, per metre.
 
-    spectrum: of torque and phase flux linkages over the reading of the angle (4, orders), order n for Re(c_n exp(i n angle))
+    spectrum: of torque and phase flux linkages over the reading of the angle (4, orders), n for Re(c_n exp(i n angle))
     torque: of the states with current (states,) [Nm/m];  linkage: of the phases (3, states) [Wb/m]
     """
 
@@ -364,12 +364,15 @@ def phases_of(drawing: Drawing, built: AsBuilt, samples: np.ndarray) -> np.ndarr
 
 
 def truth_of(drawing: Drawing, built: AsBuilt, arrays: Mapping[str, np.ndarray]) -> Truth:
-    """From the arrays of one .npz file."""
-    whole = phases_of(drawing, built, revolution(drawing, built, arrays["no_load"]))
-    spectrum = np.fft.rfft(whole, axis=1) / drawing.edges
+    """From the arrays of one .npz file; the samples without current begin where the angle reads zero."""
+    loaded = phases_of(drawing, built, arrays["loaded"])
+    spectrum = spectrum_of(drawing, built, revolution(drawing, built, arrays["no_load"]))
+    return Truth(spectrum, loaded[0], loaded[1:])
+
+
+def spectrum_of(drawing: Drawing, built: AsBuilt, samples: np.ndarray) -> np.ndarray:
+    """Of torque and phases (4, orders) from samples of the whole revolution (1 + coils, edges), skewed."""
+    spectrum = np.fft.rfft(phases_of(drawing, built, samples), axis=1) / drawing.edges
     spectrum[:, 1:] *= 2
     order = np.arange(spectrum.shape[1])
-    spectrum = spectrum * np.sinc(order * built.skew / (2 * pi))
-    # a reading of zero is the rotor at ``turned``: the samples begin there
-    loaded = phases_of(drawing, built, arrays["loaded"])
-    return Truth(spectrum[:, :-1], loaded[0], loaded[1:])
+    return (spectrum * np.sinc(order * built.skew / (2 * np.pi)))[:, :-1]
