@@ -25,6 +25,8 @@ COMMANDS = {
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
+    "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",
+                             "write the bench campaign of a design, to be measured"),
     "compare": Command("pipeline.workbench_commands", "add_compare", "where does the model fail against a campaign?"),
     "diagnose": Command("pipeline.workbench_commands", "add_diagnose",
                         "which effect is missing, how sure, what to measure next?"),
@@ -32,11 +34,13 @@ COMMANDS = {
                    "add an effect to the model: accepted only if the held-out error falls"),
     "ledger": Command("pipeline.workbench_commands", "add_ledger",
                       "diagnose and add by itself until nothing more is named; the ledger"),
+    "validate": Command("pipeline.workbench_commands", "add_validate",
+                        "apply a model file to data that it was not learned from, without fitting the device again"),
     "effects": Command("pipeline.workbench_commands", "add_effects",
                        "what the library knows, one line each; a name shows its equation"),
     "new-effect": Command("pipeline.workbench_commands", "add_new_effect",
                           "a skeleton of one's own effect, from the residual of a campaign"),
-    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for a plain CSV file"),
+    "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for plain data files"),
 }  # fmt: skip
 
 

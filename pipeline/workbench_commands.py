@@ -1,4 +1,4 @@
-"""The commands of the workbench: compare, diagnose, add, ledger, effects, new-effect, import."""
+"""The commands of the workbench: compare, diagnose, add, ledger, validate, effects, new-effect, import."""
 
 from __future__ import annotations
 
@@ -11,26 +11,33 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from disk import write_atomically
 from effects.base import Effect
-from effects.library import Library, effects_of_file, library
+from effects.library import Library
 from effects.parameter import parameters_of
+from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import SEED, diagnose
-from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger.model_file import NAME, with_effects_of
+from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Validation
+from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
+from workbench.ledger.validate import validate
 from workbench.ledger.walk import add_effect, skeleton_for, walk
 from workbench.models.bases import nominal_model
 from workbench.models.model import Model
-from workbench.report import write_comparison_report, write_diagnosis_report, write_ledger_report
-from workbench.report.as_json import comparison_json, diagnosis_json
+from workbench.report import (
+    write_comparison_report,
+    write_diagnosis_report,
+    write_ledger_report,
+    write_validation_report,
+)
+from workbench.report.as_json import comparison_json, diagnosis_json, validation_json
 from workbench.report.sentences import conclusions, readings, verdict_sentence
-
-EXIT_WRONG_INPUT = 2
+from workbench.report.validation import validation_sentence, warnings
 
 Run = Callable[[argparse.Namespace], None]  # a command
 
@@ -56,10 +63,19 @@ def add_ledger(parser: argparse.ArgumentParser) -> None:
     _diagnose_parser(parser, _ledger)
 
 
+def add_validate(parser: argparse.ArgumentParser) -> None:
+    """Apply a model file to data that it was not learned from."""
+    parser.add_argument("model", help="model.toml that `airgap ledger` or `airgap add` wrote")
+    parser.add_argument("data", help="folder of a campaign of the same device; its [device] may be left out")
+    parser.add_argument("--out", metavar="DIR", help="where results go; default results/<id of the data>/")
+    add_own_effects(parser)
+    parser.set_defaults(run=_validate)
+
+
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """What the library knows; a name shows its equation."""
     parser.add_argument("name", nargs="?")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_effects)
 
 
@@ -70,8 +86,9 @@ def add_new_effect(parser: argparse.ArgumentParser) -> None:
 
 
 def add_import(parser: argparse.ArgumentParser) -> None:
-    """A ``campaign.toml`` for a plain CSV file."""
-    parser.add_argument("csv", help="CSV file, one column a quantity; it is only read")
+    """A ``campaign.toml`` for plain data files."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="CSV, text or Parquet files of one folder; only read")
+    parser.add_argument("--like", metavar="DIR", help="campaign of the same device: takes its device and instruments")
     parser.set_defaults(run=_import)
 
 
@@ -82,7 +99,7 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
         parser.add_argument("campaign", nargs="?", help="folder of a campaign whose residual gives the first guess")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<campaign id>/")
     parser.add_argument("--model", metavar="FILE", help="model file; default model.toml in the results, if it is there")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=run)
 
 
@@ -91,60 +108,25 @@ def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
 
 
-def _own_effects(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--effects-from",
-        action="append",
-        default=[],
-        metavar="FILE.py",
-        help="import effects of one's own: this runs the file; repeatable, a folder means its .py files",
-    )
-
-
-@contextmanager
-def exit_on_wrong_campaign() -> Iterator[None]:
-    """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
-    try:
-        yield
-    except WorkbenchError as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(EXIT_WRONG_INPUT) from None
-
-
-def _library(options: argparse.Namespace) -> Library:
-    for file in options.effects_from:
-        if not Path(file).exists():
-            raise WorkbenchError(f"--effects-from {file}: there is no such file.")
-        print(f"importing effects from {file}: this runs the file", file=sys.stderr, flush=True)
-        _must_hold_an_effect(file)
-    return library(options.effects_from)
-
-
-def _must_hold_an_effect(file: str) -> None:
-    """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    path = Path(file)
-    found: Library = {}
-    for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
-        try:
-            found |= effects_of_file(own)
-        except Exception as error:  # whatever the user's own file raises
-            raise WorkbenchError(f"{own}: cannot be imported: {type(error).__name__}: {error}.") from None
-    if not found:
-        raise WorkbenchError(
-            f"{file}: holds no effect; one is a frozen dataclass derived from effects.base, with a title and a "
-            "parameter."
-        )
-
-
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
-    campaign, effects = read_campaign(options.campaign), _library(options)
+    campaign, effects = read_campaign(options.campaign), own_library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
-        model = with_effects_of(saved, model, effects)
+        learned = read_model(saved, effects)
+        model = with_effects(learned, model, saved)
+        if learned.source is not None and learned.source.campaign != campaign.id:
+            print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)
     out.mkdir(parents=True, exist_ok=True)
     return campaign, effects, model, out
+
+
+def _from_elsewhere(source: str, here: str) -> str:
+    return (
+        f"learned from {source}; its effects are the start, the inputs are fitted to {here} anew. "
+        "`airgap validate` applies it as it is."
+    )
 
 
 def _compare(options: argparse.Namespace) -> None:
@@ -188,9 +170,22 @@ def _ledger(options: argparse.Namespace) -> None:
         _print_diagnosis(diagnosis, out)
 
 
+def _validate(options: argparse.Namespace) -> None:
+    with exit_on_wrong_campaign():
+        effects = own_library(options)
+        learned, campaign = read_model(options.model, effects), read_campaign(options.data)
+        with _progress() as progress:
+            validation = validate(learned, campaign, effects, progress)
+        out = Path(options.out) if options.out else Path("results") / campaign.id
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "validation.json").write_text(validation_json(validation), encoding="utf-8")
+        write_validation_report(out / "validation.html", validation)
+        _print_validation(validation, out)
+
+
 def _effects(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        found = _library(options)
+        found = own_library(options)
         if options.name is None:
             width = max(len(name) for name in found)
             for name, cls in found.items():
@@ -229,7 +224,10 @@ def _new_effect(options: argparse.Namespace) -> None:
 
 def _import(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
+        like = None if options.like is None else Path(options.like)
+        target, lines = write_draft([Path(file) for file in options.files], like)
+        todo = f'fill in the "?" of line {", ".join(map(str, lines))}' if lines else "read it once"
+        print(f"wrote {target}: {todo}, then airgap compare {target.parent}")
 
 
 @contextmanager
@@ -240,17 +238,21 @@ def _progress() -> Iterator[Callable[[str], None]]:
 
 
 def _write_comparison(out: Path, comparison: Comparison) -> None:
-    (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
-    write_comparison_report(out / "comparison.html", comparison)
+    _write_text(out / "comparison.json", comparison_json(comparison))
+    write_atomically(out / "comparison.html", lambda part: write_comparison_report(part, comparison))
 
 
 def _write_diagnosis(out: Path, diagnosis: Diagnosis) -> None:
-    (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
-    write_diagnosis_report(out / "diagnosis.html", diagnosis)
+    _write_text(out / "diagnosis.json", diagnosis_json(diagnosis))
+    write_atomically(out / "diagnosis.html", lambda part: write_diagnosis_report(part, diagnosis))
 
 
 def _write_ledger(out: Path, ledger: Ledger) -> None:
-    write_ledger_report(out / "ledger.html", ledger)
+    write_atomically(out / "ledger.html", lambda part: write_ledger_report(part, ledger))
+
+
+def _write_text(path: Path, text: str) -> None:
+    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def _print_comparison(c: Comparison, out: Path) -> None:
@@ -296,6 +298,24 @@ def _print_ledger(ledger: Ledger) -> None:
             f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {s.log_evidence_gain:9.1f} {s.chi2_per_n:9.3f} {held:>9}"
             f"  {s.verdict}"
         )
+
+
+def _print_validation(v: Validation, out: Path) -> None:
+    print(
+        f"\n{'':10} {'channel':28} {'unit':>9} {'n':>6} {'rms error':>10} {'bias':>10} {'chi2/n':>8} {'in 90 %':>8}",
+        end="",
+    )
+    print(f" {'outside':>8} {'error there':>11}")
+    for words, channels in (("corrected", v.corrected), ("as drawn", v.base)):
+        for c in channels:
+            there = "-" if c.outside_rms_error is None else f"{c.outside_rms_error:.4g}"
+            print(
+                f"{words:10} {c.channel:28} {c.unit:>9} {c.n:6d} {c.rms_error:10.4g} {c.bias:10.3g} "
+                f"{c.chi2_per_n:8.2f} {c.share_in_90:8.0%} {c.outside_range:8.0%} {there:>11}"
+            )
+    for words in v.range_left + v.complaints:
+        print(f"! {words}")
+    print(validation_sentence(v), *warnings(v), f"results in {out}", sep="\n")
 
 
 def _print_step(step: LedgerStep) -> None:

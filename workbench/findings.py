@@ -236,7 +236,11 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Ranked:
-    """One effect that was tried. probability: that it, alone, is what is missing."""
+    """One effect that was tried. probability: that it is there, alone or with others.
+
+    log_evidence: ln p of the fitted rows gained by its best explanation over nothing [nats]
+    parameters: of that explanation;  at_bound: those that end on a bound of what is possible
+    """
 
     name: str
     title: str
@@ -247,6 +251,7 @@ class Ranked:
     chi2_per_n_after: float
     held_out_chi2_per_n_before: float | None
     held_out_chi2_per_n_after: float | None
+    at_bound: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,13 +268,17 @@ class SizePosterior:
 
 
 @dataclass(frozen=True)
-class Separation:
-    """How well the data tell two effects apart: expected log-Bayes factor [nats] at the fitted size, and what would."""
+class Sealed:
+    """Rows that no fit and no choice has seen, opened once. p_value: of their chi2 by chance under the final model
 
-    first: str
-    second: str
-    nats: float
-    separated_by: str = ""
+    tests: what they test, in words;  holds: whether the model holds there
+    """
+
+    n: int
+    chi2_per_n: float
+    p_value: float
+    tests: str
+    holds: bool
 
 
 @dataclass(frozen=True)
@@ -298,9 +307,15 @@ class NextMeasurement:
 class Diagnosis:
     """All that ``diagnose`` found.
 
-    verdict: nothing_missing, effect, group, pair, partial, none_of_these or cannot_tell;  probability: of the verdict
+    verdict: nothing_missing, effect, group, pair, several, partial, none_of_these, cannot_tell or convention
+    probability: that the sentence of the verdict is true: that the names are there (of a group: one of them), that
+        nothing is missing which these data would show plainly, that something is there that no effect is
+    p_nothing_missing: P(no effect and no unknown function);  p_none_of_these: P(an unknown function and no effect)
+    p_something_remains: P(an unknown function, with or without effects);  p_sets: of the leading explanations, by words
+    alternatives: of a name, what may stand for it;  sure: probability from which a name is printed on this bench
     abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
         {3.0: 0.4, 10.0: 1.0}
+    fix: of a convention, the text for campaign.toml;  checks: of the data alone, before any model
     before, after: the failing channel without and with the leading effect, the same rows
     """
 
@@ -309,26 +324,27 @@ class Diagnosis:
     verdict: str
     names: tuple[str, ...]
     probability: float
-    ranking: tuple[Ranked, ...]
-    p_nothing_missing: float
-    p_none_of_these: float
-    p_pairs: Mapping[str, float]
-    abstention_power: Mapping[float, float]
-    detection_limits: tuple[DetectionLimit, ...]
-    next_measurements: tuple[NextMeasurement, ...]
-    residual_signature: Mapping[str, object]
-    seed: int
-    wall_s: float
+    ranking: tuple[Ranked, ...] = ()
+    p_nothing_missing: float = 0.0
+    p_none_of_these: float = 0.0
+    p_something_remains: float = 0.0
+    p_sets: Mapping[str, float] = field(default_factory=dict)
+    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    sure: float = 0.95
+    abstention_power: Mapping[float, float] = field(default_factory=dict)
+    detection_limits: tuple[DetectionLimit, ...] = ()
+    next_measurements: tuple[NextMeasurement, ...] = ()
+    residual_signature: Mapping[str, object] = field(default_factory=dict)
+    sealed: Sealed | None = None
+    seed: int = 0
+    wall_s: float = 0.0
     before: ChannelFit | None = None
     after: ChannelFit | None = None
     posteriors: tuple[SizePosterior, ...] = ()
-    separations: tuple[Separation, ...] = ()
-    false_alarm_rate: float | None = None
     complaints: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    fix: str = ""
     provenance: Mapping[str, str] = field(default_factory=dict)
-    p_partial: Mapping[str, float] = field(default_factory=dict)
-    # of a pair: name -> names that may stand for it
-    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -336,7 +352,7 @@ class LedgerStep:
     """One row of the ledger. step 0 is the model before any effect; decision: "start", "accepted" or "refused".
 
     rms_error, noise_floor: per channel [unit of the channel];  rms_error_percent: of the rms of the readings
-    held_out_rms_error: of the rows that no fit has seen, channels without such rows left out [unit of the channel]
+    held_out_chi2_per_n: of conditions left out of the fit, region by region; None where there are no regions
     """
 
     step: int
@@ -353,7 +369,6 @@ class LedgerStep:
     verdict: str = ""
     reason: str = ""
     rms_error_percent: Mapping[str, float] = field(default_factory=dict)
-    held_out_rms_error: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -365,3 +380,71 @@ class Ledger:
     steps: tuple[LedgerStep, ...]
     goal: float = 1.2
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ValidatedChannel:
+    """How well one channel of new data was predicted, without anything of the device being fitted to them.
+
+    n: rows;  rms_error, bias: reading minus prediction [unit], of the rows with a prediction
+    chi2_per_n: squared residual over the noise of the readings, 1 for a model without error
+    share_in_90: share of all rows inside the predicted 90 % band;  outside_range: share of rows at conditions beyond
+    those that the model was learned at;  no_answer: rows where the model has no steady state, outside every band
+    outside_*: of the rows beyond the learned conditions, None where there are none
+    """
+
+    channel: str
+    unit: str
+    n: int
+    rms_error: float
+    bias: float
+    chi2_per_n: float
+    share_in_90: float
+    outside_range: float
+    no_answer: int = 0
+    outside_rms_error: float | None = None
+    outside_chi2_per_n: float | None = None
+    outside_share_in_90: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedChannel:
+    """Readings of a channel and what two models predict for them [unit] (n,); NaN where one has no steady state.
+
+    *_half: half width of the predicted 90 % band;  outside: rows beyond the learned conditions
+    """
+
+    channel: str
+    unit: str
+    axis: Axis
+    x: np.ndarray
+    series: tuple[str, ...]
+    measured: np.ndarray
+    corrected: np.ndarray
+    corrected_half: np.ndarray
+    base: np.ndarray
+    base_half: np.ndarray
+    outside: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """A model file applied to a campaign that it was not learned from.
+
+    campaign: of the new data;  learned_from: campaign of the model file
+    corrected, base: with what the file knows, and the device as drawn
+    calibrations: of the new instruments, found with the corrected model;  range_left: one sentence for each condition
+    complaints: what limits the conclusions
+    """
+
+    campaign: str
+    model: str
+    learned_from: str
+    effects: tuple[str, ...]
+    corrected: tuple[ValidatedChannel, ...]
+    base: tuple[ValidatedChannel, ...]
+    predictions: tuple[PredictedChannel, ...]
+    calibrations: tuple[Pull, ...]
+    range_left: tuple[str, ...]
+    complaints: tuple[str, ...]
+    provenance: Mapping[str, str]

@@ -11,6 +11,7 @@ import numpy as np
 from effects.base import DesignEffect, InstrumentEffect, ResponseEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal, Normal
+from workbench.models.base import BaseModel
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Spring:
     stiffness: float  # N/m
 
 
-class SpringModel:
+class SpringModel(BaseModel):
     name = "spring"
 
     def accepts(self, device):

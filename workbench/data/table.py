@@ -8,6 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
+from workbench.errors import WorkbenchError
+
+OPEN_CIRCUIT = 1e6  # ohm; a shunt of this size is an open circuit
+
 
 @dataclass(frozen=True, eq=False)
 class Response:
@@ -15,6 +19,7 @@ class Response:
 
     values, random: reading and its declared random standard uncertainty, SI (n,)
     unit: as in the file, for people; scale: file unit -> SI factor
+    bandwidth: frequency above which the recorder lets nothing pass [Hz], None where it is not known
     """
 
     name: str
@@ -22,6 +27,19 @@ class Response:
     random: np.ndarray
     unit: str
     scale: float = 1.0
+    bandwidth: float | None = None
+
+
+class Conditions(dict[str, np.ndarray]):
+    """Conditions of a table by name; one that a model asks for and the table has not is one sentence."""
+
+    def __init__(self, columns: Mapping[str, np.ndarray], table: str):
+        super().__init__(columns)
+        self.table = table
+
+    def __missing__(self, name: str) -> np.ndarray:
+        known = ", ".join(self) or "none"
+        raise WorkbenchError(f"{self.table}: the model needs the condition {name!r}, the table has {known}; add it.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +52,7 @@ class Table:
     responses: measured columns by name without unit ("v_a", "torque", "force", "re", "im")
     scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
     held_out: rows that no fit may see (n,) bool
+    bandwidth: frequency above which the recorder of the table lets nothing pass [Hz], None where it is not known
     """
 
     kind: str
@@ -44,6 +63,7 @@ class Table:
     repeat: np.ndarray
     held_out: np.ndarray
     condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
+    bandwidth: float | None = None
 
     @property
     def rows(self) -> int:
@@ -88,6 +108,9 @@ class Campaign:
 
     device: the ``[device]`` table as read, keys with units;  repeats: declared number of repeats
     file_hashes: SHA-256 of every data file;  complaints: what had to be left out or limits the conclusions
+    holdout: the rule of ``[campaign]``: "by region", "last repeat of every table", "column:NAME" or "none"; with "by
+    region" no row is marked here
+    conventions: the section ``[conventions]`` as read
     """
 
     id: str
@@ -99,3 +122,5 @@ class Campaign:
     repeats: int
     file_hashes: Mapping[str, str]
     complaints: tuple[str, ...] = ()
+    holdout: str = "by region"
+    conventions: Mapping[str, object] = field(default_factory=dict)

@@ -11,7 +11,8 @@ from workbench.compare.comparison import comparison_of
 from workbench.data.table import Campaign
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger.model_file import NAME, model_text
+from workbench.ledger.learned import learned_from
+from workbench.ledger.model_file import NAME, write_model
 from workbench.ledger.skeleton import skeleton
 from workbench.ledger.step import ACCEPTED, append, read_ledger, start_step, try_effect
 from workbench.likelihood.bench import bench_of
@@ -59,7 +60,7 @@ def add_effect(
     step = replace(trial.step, verdict=said)
     append(path, step, campaign, trial.model)
     if step.decision == ACCEPTED:
-        (out / NAME).write_text(model_text(trial.model), encoding="utf-8")
+        write_model(out / NAME, learned_from(trial.after))
     bench = trial.after if step.decision == ACCEPTED else trial.before
     comparison = comparison_of(bench, library, progress)
     return Added(trial.model, step, read_ledger(path, campaign.id, model.base.name), comparison, diagnosis)
@@ -88,7 +89,7 @@ def walk(
     """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
 
     Of several names the one with the most evidence by itself is tried first.
-    out: folder of ``ledger.csv`` and ``model.toml``
+    out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the fitted inputs also where nothing was added
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
     for _ in range(MOST_STEPS):
@@ -100,10 +101,12 @@ def walk(
         else:
             break
     path = out / LEDGER
+    if not path.exists() or not (out / NAME).exists():
+        bench = bench_of(model, campaign, library)
     if not path.exists():
-        append(
-            path, replace(start_step(bench_of(model, campaign, library)), verdict=diagnosis.verdict), campaign, model
-        )
+        append(path, replace(start_step(bench), verdict=diagnosis.verdict), campaign, model)
+    if not (out / NAME).exists():
+        write_model(out / NAME, learned_from(bench))
     return read_ledger(path, campaign.id, model.base.name), diagnosis
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from effects.base import Effect
 from workbench.data.campaign import columns_of_systematics
@@ -14,8 +15,7 @@ from workbench.data.stack import Stack, rows_of, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised
-from workbench.likelihood.linear import Nuisances
-from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, whitener
+from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, places_of, whitener
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.predictor import DirectPredictor
 from workbench.models.model import Model
@@ -51,15 +51,30 @@ class Bench:
         return linearised(self.fit, self.fit.start) if _far(self.fit, self.null) else self.null
 
     @cached_property
-    def nuisances(self) -> Nuisances:
-        """Of the rows to fit, at the centre."""
-        return Nuisances(self.centre.jacobian)
-
-    @cached_property
     def residual(self) -> np.ndarray:
         """Whitened residual of the rows to fit, carried back to x = 0 by the derivatives: N(0, 1 + J J^T) when all
         is well."""
         return extrapolated(self.centre)
+
+
+SAME_PLACE = 0.02  # distance over the range of the conditions, within which a sealed row repeats a fitted one
+
+
+def sealed_words(bench: Bench) -> str:
+    """What the sealed rows test, for people: prediction where conditions were never fitted, else repeatability."""
+    apart = [_apart(table) for table in bench.stack.tables if table.held_out.any()]
+    new = float(np.mean(np.concatenate(apart) > SAME_PLACE)) if apart else 0.0
+    if new > 0.5:
+        return "conditions that were never fitted: they test prediction"
+    return "conditions that were fitted in other repeats: they test repeatability, not prediction"
+
+
+def _apart(table: Table) -> np.ndarray:
+    """Distance of every sealed row from the nearest fitted one, of the range of the conditions (sealed,)."""
+    places = places_of(table)
+    if table.held_out.all():
+        return np.full(table.rows, np.inf)
+    return cKDTree(places[~table.held_out]).query(places[table.held_out])[0]
 
 
 def extrapolated(fit: Fit) -> np.ndarray:
@@ -79,7 +94,7 @@ def bench_of(
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = replace(predictor.stack, u=_with_conditions(predictor))
     noise = measured_noise(stack, predictor.predict(predictor.start))
-    white = _with_numerical(whitener(stack, noise), stack, predictor.model)
+    white = whitener(stack, noise)
     chosen = [~table.held_out for table in tables]
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
@@ -154,15 +169,6 @@ def _with_conditions(predictor: DirectPredictor) -> np.ndarray:
 
 def _moved(table: Table, name: str, step: float) -> Table:
     return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
-
-
-def _with_numerical(white: Whitener, stack: Stack, model: Model) -> Whitener:
-    """The whitener with the base model's own numerical uncertainty, where it states one."""
-    sigma = white.sigma.copy()
-    for channel in stack.channels:
-        for shape in model.base.numerical(model.design, stack.tables[channel.table]):
-            sigma[channel.rows] = np.hypot(sigma[channel.rows], shape.get(channel.response, 0.0))
-    return replace(white, sigma=sigma)
 
 
 def _thinning(tables: Sequence[Table], used: Sequence[Table]) -> tuple[str, ...]:

@@ -25,7 +25,17 @@ from workbench.report.sentences import (
     verdict_sentence,
 )  # fmt: skip
 from workbench.report.waterfall import waterfall
-from workbench.report.words import amount, bounds, chi2_text, interval, percent, plain, probability_text, signed
+from workbench.report.words import (
+    amount,
+    bounds,
+    chi2_text,
+    interval,
+    percent,
+    plain,
+    probability_text,
+    sentence,
+    signed,
+)
 
 _NOTHING_MORE: Mapping[str, str] = MappingProxyType({})
 _FEW_MAPS = 6  # regime maps of one picture
@@ -161,15 +171,8 @@ def _scoreboard(c: Comparison) -> Table:
 
 def _limits(checks: tuple[str, ...], complaints: tuple[str, ...]) -> tuple[Section, ...]:
     """What was noticed on the instruments and what limits the conclusions; no section where there is nothing."""
-    found = [Remark(check) for check in checks] + [_sentence(complaint) for complaint in complaints]
+    found = [Remark(check) for check in checks] + [sentence(complaint) for complaint in complaints]
     return (Section("What limits the conclusions", tuple(found)),) if found else ()
-
-
-def _sentence(words: str) -> str:
-    """With a capital, unless the first word is a name, and one full stop."""
-    first = words.split(" ")[0]
-    start = words[0] if "." in first or "_" in first else words[0].upper()
-    return f"{start}{words[1:].rstrip('.')}."
 
 
 # ---- diagnosis ------------------------------------------------------------------------------------------------------

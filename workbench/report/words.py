@@ -107,3 +107,10 @@ def listed(names, last: str = "and") -> str:
     """``a, b and c``."""
     names = list(names)
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}" if names else ""
+
+
+def sentence(words: str) -> str:
+    """With a capital, unless the first word is a name, and one full stop."""
+    first = words.split(" ")[0]
+    start = words[0] if "." in first or "_" in first else words[0].upper()
+    return f"{start}{words[1:].rstrip('.')}."

@@ -8,6 +8,7 @@ from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from materials.magnet import Magnet
+from units import DEGREE
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.surrogate import Surrogate
@@ -15,7 +16,8 @@ from workbench.models.machine.surrogate import Surrogate
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
 PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
-STATES = (LoadedState(0.1, (40.0, -20.0, -20.0)), LoadedState(0.1, (0.0, 0.0, 0.0)))
+LOADED = LoadedState(0.1, (40.0, -20.0, -20.0))
+STATES = (LOADED, LoadedState(0.1, (0.0, 0.0, 0.0)), LoadedState(9 * DEGREE, (0.0, 0.0, 0.0)))  # those of inductances
 
 
 def drawn() -> MachineAsBuilt:

@@ -67,6 +67,8 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
         Coordinate(("magnet", "remanence"), 1e-4, 0.06),
         Coordinate(("magnet", "recoil_permeability"), 1e-4, 0.06),
         Coordinate(("machine", "airgap"), 1e-7, 0.06 * MILLIMETRE),
+        Coordinate(("magnet_grinding",), 1e-7, 0.06 * MILLIMETRE),
+        Coordinate(("bore_grinding",), 1e-7, 0.06 * MILLIMETRE),
         Coordinate(("machine", "slot_opening"), 1e-7, 0.3 * MILLIMETRE),
         Coordinate(("field_scale",), 1e-4, 0.5),
         Coordinate(("saturation_scale",), 1e-4, -0.05),
