@@ -135,8 +135,11 @@ def write_campaigns(folder: Path, asked: Iterable[Wanted], pool: Pool) -> None:
 
 
 def fingerprint() -> str:
-    """SHA-256 of everything that makes a campaign."""
-    files = sorted(path for path in Path(__file__).parent.rglob("*") if path.suffix in (".py", ".npz"))
+    """SHA-256 of everything that makes a campaign, and of the library that says what is outside of it."""
+    here = Path(__file__).parent
+    folders = (here / "virtual_benches", here.parent / "effects")
+    files = sorted(path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".npz"))
+    files += [Path(__file__), here / "foreign.py"]
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 

@@ -57,8 +57,8 @@ def is_named(name: str, names: Iterable[str]) -> bool:
     return bool(alike & set(names))
 
 
-def printed(case: Mapping) -> list[frozenset[str]]:
-    """The sets of effects that the verdict prints; of each one is said to be there."""
+def stated_sets(case: Mapping) -> list[frozenset[str]]:
+    """The sets that the probability of the verdict is about."""
     if case["verdict"] not in NAMING or not case["names"]:
         return []
     if case["verdict"] == "group":
@@ -66,9 +66,22 @@ def printed(case: Mapping) -> list[frozenset[str]]:
     return [frozenset((name, *case["alternatives"].get(name, ()))) for name in case["names"]]
 
 
+def printed(case: Mapping) -> list[frozenset[str]]:
+    """All sets of effects that the verdict prints, those said apart too; of each one is said to be there."""
+    if case["verdict"] not in NAMING:
+        return []
+    apart = (frozenset((n, *others)) for n, others in case["alternatives"].items() if n not in case["names"])
+    return [*stated_sets(case), *apart]
+
+
 def all_true(case: Mapping) -> bool:
     """Whether every set that is printed holds something that was hidden, and no two sets the same one."""
-    return _matched([[n for n in case["effects"] if is_named(n, names)] for names in printed(case)])
+    return are_true(case, printed(case))
+
+
+def are_true(case: Mapping, sets: Sequence[frozenset[str]]) -> bool:
+    """The same of some sets."""
+    return _matched([[n for n in case["effects"] if is_named(n, names)] for names in sets])
 
 
 def _matched(choices: Sequence[Sequence[str]], taken: frozenset[str] = frozenset()) -> bool:
@@ -201,30 +214,29 @@ def statements(case: Mapping) -> list[tuple[str, float, bool]]:
     """(what kind, stated probability, whether it is so) of every probability that a diagnosis prints.
 
     verdict: that the verdict is right, see ``_said_truly``;  effect: that it is there, alone or with others
-    nothing: that nothing that could be seen is hidden;  remains, none: that a visible truth outside the library is
+    nothing: that there is no effect and nothing outside, of whatever size;  none of these: something outside the
+    library and no effect;  remains: something outside it, with or without effects
     """
     outside = bool(case["outside"]) and is_seen(case, case["outside"])
     told = [("verdict", case["probability"], _said_truly(case))] if case["verdict"] != "error" else []
     told += [("effect", p, name in case["effects"]) for name, p in case["ranking"].items()]
-    told.append(("nothing", case["p_nothing_missing"], nothing_to_see(case)))
-    told.append(("none of these", case["p_none_of_these"], outside and not asked_for(case)))
+    told.append(("nothing", case["p_nothing_missing"], not case["effects"] and not case["outside"]))
+    told.append(("none of these", case["p_none_of_these"], outside and not case["effects"]))
     told.append(("remains", case["p_remains"], outside))
     return [(kind, float(p), so) for kind, p, so in told if p is not None]
 
 
 def _said_truly(case: Mapping) -> bool:
-    """What the verdict alone claims: its names are there; nothing visible is; something outside the library is."""
+    """What the verdict alone claims: its names are there; nothing visible is missing; a law outside is there."""
     if case["verdict"] == "convention":
         return convention_named(case)
     if case["verdict"] == "nothing_missing":
         return nothing_to_see(case)
     if case["verdict"] == "none_of_these":
         return bool(case["outside"]) and is_seen(case, case["outside"])
-    if case["verdict"] == "partial":
-        return all_true(case) and (bool(case["outside"]) or not all_found(case))
     if case["verdict"] == "cannot_tell":
         return not nothing_to_see(case)
-    return all_true(case)
+    return are_true(case, stated_sets(case))
 
 
 def _calibrations(cases: Sequence[Mapping]) -> list[Metric]:
