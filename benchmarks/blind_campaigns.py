@@ -19,8 +19,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from benchmarks.foreign import left_by_library
-from benchmarks.virtual_benches.case import GROUPS, Answer, Bench
+from benchmarks.foreign import Left, left_by_library
+from benchmarks.virtual_benches.case import GROUPS, VISIBLE, Answer, Bench
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
 from benchmarks.virtual_benches.hiding import bare, hide
@@ -34,6 +34,7 @@ from workbench.data.campaign import read_campaign
 TUNING_START, SCORED_START = 10000, 0  # first seeds
 LUMPED = {"damper": DAMPER, "dq": DQ}
 BENCHES = ("damper", "dq", "machine")
+FEWEST_KINDS = 2  # of truths outside the library to choose from: the one that is hidden and a small one beside it
 STRIDE = 7  # between the mistakes of neighbouring numbers, so that few campaigns see many kinds of them
 SHARES = {"null": 0.25, "single": 0.30, "pair": 0.08, "several": 0.12, "outside": 0.17, "mistake": 0.08}
 ANSWERS, HASHES, MADE = "answers.json", "hashes.json", "made.jsonl"
@@ -69,12 +70,10 @@ def write_campaign(task: Mapping[str, object]) -> dict:
     """One campaign into its folder; the answer as plain values. task: fields of ``Wanted`` and ``folder``"""
     asked = Wanted(**{key: task[key] for key in ("bench", "group", "number", "scored")})
     folder = Path(str(task["folder"])) / asked.bench / asked.name
-    made, answer = _made(asked)
+    made, answer = _foreign(asked) if asked.group == "outside" and asked.bench in LUMPED else _made(asked)
     made = replace(made, id=asked.name, holdout="")
     if folder.exists():
         shutil.rmtree(folder)
-    if asked.group == "outside" and asked.bench in LUMPED:
-        answer = _beside_the_library(answer, asked)
     if asked.group == "mistake":
         answer = _with_mistake(made, answer, asked, folder)
     else:
@@ -93,16 +92,26 @@ def _kinds(asked: Wanted) -> list[str]:
     return [name for name in catalogue.outside if (name in catalogue.tuning_kinds) != asked.scored]
 
 
-def _beside_the_library(answer: Answer, asked: Wanted) -> Answer:
-    """With the visibility that the truth keeps beside the best effect of the library as it is installed."""
+def _foreign(asked: Wanted) -> tuple[Bench, Answer]:
+    """With a truth that no effect of the installed library describes; of a kind that one does, another is taken."""
+    kinds = _kinds(asked)
+    while True:
+        made, answer = hide(LUMPED[asked.bench], asked.group, asked.seed, kinds=kinds)
+        left = _left(answer, asked, kinds)
+        if left.chi2 >= VISIBLE or len(kinds) == FEWEST_KINDS:
+            break
+        kinds.remove(answer.outside)
+    seen = min(left.chi2, answer.visibility[answer.outside])
+    detail = f"the nearest effect of the library is {left.best}"
+    return made, replace(answer, visibility={answer.outside: seen}, detail=detail)
+
+
+def _left(answer: Answer, asked: Wanted, kinds: list[str]) -> Left:
+    """What the best effect of the library leaves of a truth."""
     with tempfile.TemporaryDirectory() as name:
-        benches = bare(LUMPED[asked.bench], "outside", asked.seed, kinds=_kinds(asked))
+        benches = bare(LUMPED[asked.bench], asked.group, asked.seed, kinds=kinds)
         without, changed = (read_campaign(b.write(Path(name) / f"{k}")) for k, b in enumerate(benches))
-        left = left_by_library(without, changed, library(), answer.about)
-    detail = f"{answer.outside}, {left.chi2:.0f} left by {left.best}"
-    return replace(
-        answer, visibility={answer.outside: min(left.chi2, answer.visibility[answer.outside])}, detail=detail
-    )
+        return left_by_library(without, changed, library(), answer.about)
 
 
 def _with_mistake(made: Bench, answer: Answer, asked: Wanted, folder: Path) -> Answer:

@@ -184,7 +184,7 @@ def line_of(case: Mapping) -> str:
         hidden = " and ".join(
             filter(None, (hidden, f"{case['outside']} (chi2 {case['visibility'][case['outside']]:.0f})"))
         )
-    hidden = " and ".join(filter(None, (hidden, case["detail"]))) or "nothing"
+    hidden = " and ".join(filter(None, (hidden, case["detail"] if case["mistake"] else ""))) or "nothing"
     said = f"{case['verdict']} {', '.join(case['names'])}".strip()
     sure = "" if case["probability"] is None else f" ({case['probability']:.2f})"
     remains = "" if case["p_remains"] is None else f", remains {case['p_remains']:.2f}"

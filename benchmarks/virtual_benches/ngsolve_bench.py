@@ -153,7 +153,7 @@ def readings_of(drawing: Drawing, machine: Solved, found: Truth, reading: Readin
     kept, locked = 1 - reading.end_leakage, len(drawing.locked_angles) * len(drawing.locked_currents)
     emf, cogging = (layout.conditions for layout in layouts(drawing)[:2])
     alone = evaluated(found.spectrum[:1], np.array(drawing.locked_angles * len(drawing.locked_currents)) * DEGREE)[0]
-    torque = kept * (found.torque[:locked] - alone) + kept**2 * alone
+    torque = kept * found.torque[:locked] + kept**2 * alone
     changes = found.linkage[:, locked:-1] - found.linkage[:, -1:]
     volts = _voltages(found, reading, emf["angle_mech_deg"] * DEGREE, emf["direction"], kept * length)
     idle = _cogging(found, reading, cogging["angle_mech_deg"] * DEGREE, cogging["direction"], kept**2 * length)

@@ -320,7 +320,7 @@ class Truth:
     """Torque and flux linkages of one machine, per metre.
 
     spectrum: of torque and phase flux linkages over the reading of the angle (4, orders), n for Re(c_n exp(i n angle))
-    torque: of the states with current (states,) [Nm/m];  linkage: of the phases (3, states) [Wb/m]
+    torque: what the currents of the states add (states,) [Nm/m];  linkage: of the phases (3, states) [Wb/m]
     """
 
     spectrum: np.ndarray
