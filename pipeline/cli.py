@@ -31,7 +31,7 @@ COMMANDS = {
     "diagnose": Command("pipeline.workbench_commands", "add_diagnose",
                         "which effect is missing, how sure, what to measure next?"),
     "add": Command("pipeline.workbench_commands", "add_add",
-                   "add an effect to the model: accepted only if the held-out error falls"),
+                   "add an effect to the model: accepted if the data speak for it and predict no worse"),
     "ledger": Command("pipeline.workbench_commands", "add_ledger",
                       "diagnose and add by itself until nothing more is named; the ledger"),
     "validate": Command("pipeline.workbench_commands", "add_validate",

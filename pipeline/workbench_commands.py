@@ -21,8 +21,9 @@ from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
 from workbench.explain.diagnosis import SEED, diagnose
-from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Validation
+from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Ranked, Validation
 from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
 from workbench.ledger.validate import validate
@@ -36,8 +37,18 @@ from workbench.report import (
     write_validation_report,
 )
 from workbench.report.as_json import comparison_json, diagnosis_json, validation_json
-from workbench.report.sentences import conclusions, readings, verdict_sentence
+from workbench.report.sentences import (
+    NO_GAIN,
+    bound_sentences,
+    conclusions,
+    left_out_sentence,
+    meaning,
+    readings,
+    sealed_sentence,
+    verdict_sentence,
+)
 from workbench.report.validation import validation_sentence, warnings
+from workbench.report.words import factor_text, odds_text
 
 Run = Callable[[argparse.Namespace], None]  # a command
 
@@ -53,7 +64,7 @@ def add_diagnose(parser: argparse.ArgumentParser) -> None:
 
 
 def add_add(parser: argparse.ArgumentParser) -> None:
-    """Add an effect to the model: accepted only if the held-out error falls."""
+    """Add an effect to the model: accepted only if the data speak for it and prediction does not get worse."""
     parser.add_argument("effect", help="name of an effect, see `airgap effects`")
     _diagnose_parser(parser, _add)
 
@@ -106,6 +117,11 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
 def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
+    parser.add_argument(
+        "--accept-conventions",
+        action="store_true",
+        help="go on with what the columns of the files look like, where campaign.toml does not say it",
+    )
 
 
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
@@ -129,6 +145,17 @@ def _from_elsewhere(source: str, here: str) -> str:
     )
 
 
+def _settled(options: argparse.Namespace, campaign: Campaign, effects: Library, model: Model) -> Campaign:
+    """The campaign with the conventions that were found in it, where the user accepts them."""
+    if not options.accept_conventions:
+        return campaign
+    with _progress() as progress:
+        conventions = settle(model, campaign, effects, progress)
+    if not conventions.are_right:
+        print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
+    return conventions.campaign
+
+
 def _compare(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
@@ -141,6 +168,7 @@ def _compare(options: argparse.Namespace) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -150,6 +178,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -162,6 +191,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -256,48 +286,67 @@ def _write_text(path: Path, text: str) -> None:
 
 
 def _print_comparison(c: Comparison, out: Path) -> None:
-    print(
-        f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'held out':>8}"
-    )
+    print(f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'sealed':>8}")
     for s in c.scoreboard:
-        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.2f}"
+        sealed = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.2f}"
         print(
             f"{s.channel:28} {s.unit:>9} {s.n:8d} {s.rms_error:10.4g} {s.rms_error_percent:6.2f} {s.noise_floor:9.3g} "
-            f"{s.chi2_per_n:8.2f} {held:>8}"
+            f"{s.chi2_per_n:8.2f} {sealed:>8}"
         )
     for reading in readings(c):
-        print(f"{'!' if reading.alarming else ' '} {reading.view}: {reading.sentence}")
+        print(f"{'!' if reading.alarming else ' '} {reading.title}: {reading.sentence}")
     for words in c.checks + c.complaints:
         print(f"! {words}")
     print(f"results in {out}")
 
 
 def _print_diagnosis(d: Diagnosis, out: Path) -> None:
-    print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
+    print("", *(f"! {check}" for check in d.checks), sep="\n")
+    if d.verdict != "convention":
+        _print_found(d)
+    print(verdict_sentence(d), meaning(d), *bound_sentences(d), *conclusions(d), sep="\n")
+    if d.fix:
+        print("", d.fix, "", sep="\n")
+    print(f"results in {out}")
+
+
+def _print_found(d: Diagnosis) -> None:
+    """What was tried, the other probabilities, the sealed rows and what to measure next."""
+    print(f"{'effect':28} {'is there':>8} {'best with it':>12} {'left out':>16}  size [90 % interval]")
     for r in d.ranking[:8]:
-        held = (
-            "-"
-            if r.held_out_chi2_per_n_after is None
-            else (f"{r.held_out_chi2_per_n_before:.2f} -> {r.held_out_chi2_per_n_after:.2f}")
-        )
         sizes = ", ".join(
-            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}" for n, e in r.parameters.items()
+            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}{' on a bound' * (n in r.at_bound)}"
+            for n, e in r.parameters.items()
         )
-        print(f"{r.name:28} {r.probability:6.3f} {r.log_evidence:8.1f} {held:>16}  {sizes}")
-    print(f"nothing missing {d.p_nothing_missing:.3f}, none of these {d.p_none_of_these:.3f}")
-    for option in d.next_measurements[:3]:
-        print(f"next: {option.words} ({option.gain_nats:.1f} nats)")
-    print("", verdict_sentence(d), *conclusions(d), f"results in {out}", sep="\n")
+        print(f"{r.name:28} {r.probability:8.3f} {odds_text(r.log_evidence):>12} {_left_out(r):>16}  {sizes}")
+    print(
+        f"nothing missing {d.p_nothing_missing:.3f}, something unknown {d.p_something_remains:.3f}, "
+        f"none of these (unknown, no effect) {d.p_none_of_these:.3f}"
+    )
+    print("Is there: probability, alone or with others. Best with it: evidence of the best explanation that holds it.")
+    print(left_out_sentence(d), f"Rows that no fit has seen: {sealed_sentence(d)}", sep="\n")
+    for option in (m for m in d.next_measurements[:3] if m.gain_nats >= NO_GAIN):
+        print(f"next: {option.words} (expected {factor_text(option.gain_nats)} in the odds)")
+    print()
+
+
+def _left_out(r: Ranked) -> str:
+    before, after = r.held_out_chi2_per_n_before, r.held_out_chi2_per_n_after
+    return "-" if before is None or after is None or not r.parameters else f"{before:.2f} -> {after:.2f}"
 
 
 def _print_ledger(ledger: Ledger) -> None:
-    print(f"\n{'step':>4} {'effect':28} {'decision':9} {'ln Z gain':>9} {'chi2/n':>9} {'held out':>9}  then")
+    print(f"\n{'step':>4} {'effect':28} {'decision':9} {'evidence':>12} {'chi2/n':>9} {'left out':>9}  then")
     for s in ledger.steps:
-        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
+        left_out = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
+        evidence = "-" if s.decision == "start" else odds_text(s.log_evidence_gain)
         print(
-            f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {s.log_evidence_gain:9.1f} {s.chi2_per_n:9.3f} {held:>9}"
+            f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {evidence:>12} {s.chi2_per_n:9.3f} {left_out:>9}"
             f"  {s.verdict}"
         )
+    for s in ledger.steps:
+        if s.reason:
+            print(f"step {s.step}, {s.effect}, was {s.decision}: {s.reason}")
 
 
 def _print_validation(v: Validation, out: Path) -> None:
@@ -319,5 +368,4 @@ def _print_validation(v: Validation, out: Path) -> None:
 
 
 def _print_step(step: LedgerStep) -> None:
-    held = "" if step.held_out_chi2_per_n is None else f", held-out chi2/n {step.held_out_chi2_per_n:.3f}"
-    print(f"{step.effect}: {step.decision}; {step.reason}{held}")
+    print(f"{step.effect}: {step.decision}; {step.reason}")

@@ -23,7 +23,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class ChannelScore:
-    """V0: one channel. Errors [unit]; rms_error_percent of the channel's rms reading.
+    """One channel. Errors [unit]; rms_error_percent of the channel's rms reading.
 
     excess_share: share of this channel in the sum of chi2 - n over all channels that exceed it
     noise_floor: rms error that noise alone leaves [unit];  u_val: rms of sqrt(u_D^2 + u_num^2) [unit]
@@ -47,7 +47,7 @@ class ChannelScore:
 
 @dataclass(frozen=True)
 class Pull:
-    """V1: how far the fit moved one declared uncertainty.
+    """How far the fit moved one declared uncertainty.
 
     pull: shift / sigma;  sigma: as declared, relative or [unit];  what: "tolerance", "instrument" or "effect"
     """
@@ -81,7 +81,7 @@ class ChannelFit:
 
 @dataclass(frozen=True, eq=False)
 class RegimeMap:
-    """V2: mean residual in u of the cells of a grid; NaN where no reading lies.
+    """Mean residual in u of the cells of a grid; NaN where no reading lies.
 
     x_edges (nx + 1,), y_edges (ny + 1,): cells; y is None for one condition only, and then ny is 1
     mean, p_value, count: (ny, nx); p_value by permutation of the residuals
@@ -99,7 +99,7 @@ class RegimeMap:
 
 @dataclass(frozen=True, eq=False)
 class OrderSpectrum:
-    """V3: residual amplitude of every order per revolution [unit], (k,).
+    """Residual amplitude of every order per revolution [unit], (k,).
 
     floor: amplitude that noise alone stays below in 99 of 100 spectra
     classes: family of each order, from ORDER_CLASSES
@@ -124,7 +124,7 @@ ORDER_CLASSES = ("native", "rotor", "stator", "emf", "other_emf", "encoder", "cu
 
 @dataclass(frozen=True)
 class Scaling:
-    """V4: residual ~ quantity ** exponent, with its 90 % interval.
+    """Residual ~ quantity ** exponent, with its 90 % interval.
 
     meaning: the law that the exponent speaks for, empty where the interval allows several;  n: levels of the quantity
     """
@@ -140,7 +140,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Parity:
-    """V5: rms of the odd and the even part of the residual in u under a reversal, and what noise alone would give."""
+    """Rms of the odd and the even part of the residual in u under a reversal, and what noise alone would give."""
 
     channel: str
     reversal: str
@@ -151,7 +151,7 @@ class Parity:
 
 @dataclass(frozen=True, eq=False)
 class Sequence:
-    """V6: residual in u in the order of acquisition, (n,).
+    """Residual in u in the order of acquisition, (n,).
 
     axis: Axis("sample"), time or a temperature;  scan: number of each row's scan
     trend: residual in u from the first to the last by a straight line;  p_value: by permutation
@@ -176,7 +176,7 @@ class Dependence:
 
 @dataclass(frozen=True, eq=False)
 class Whiteness:
-    """V7: autocorrelation of the residual within scans at lags 1, 2, ... (k,) after whitening, its 99 % band."""
+    """Autocorrelation of the residual within scans at lags 1, 2, ... (k,) after whitening, its 99 % band."""
 
     channel: str
     autocorrelation: np.ndarray
@@ -186,7 +186,7 @@ class Whiteness:
 
 @dataclass(frozen=True)
 class SignatureMatch:
-    """V8: cosine between the residual and what an effect would leave, both freed of what tolerances can explain."""
+    """Cosine between the residual and what an effect would leave, both freed of what tolerances can explain."""
 
     name: str
     title: str
@@ -315,7 +315,8 @@ class Diagnosis:
     alternatives: of a name, what may stand for it;  sure: probability from which a name is printed on this bench
     abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
         {3.0: 0.4, 10.0: 1.0}
-    fix: of a convention, the text for campaign.toml;  checks: of the data alone, before any model
+    fix: of a convention, the text for campaign.toml;  conventions: what the columns look like, a sentence each
+    checks: of the data alone, before any model
     before, after: the failing channel without and with the leading effect, the same rows
     """
 
@@ -344,6 +345,7 @@ class Diagnosis:
     complaints: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
     fix: str = ""
+    conventions: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -372,13 +374,41 @@ class LedgerStep:
 
 
 @dataclass(frozen=True)
+class FinalParameter:
+    """A number of the final model. owner: its effect, ``input`` or ``instrument``; the latter are shifts from the
+    drawing and from a right reading, in % or in their unit"""
+
+    owner: str
+    name: str
+    estimate: Estimate
+
+
+@dataclass(frozen=True)
+class LearnedAt:
+    """Where a response of a kind of measurement was fitted.
+
+    channel: ``back_emf.voltage``;  conditions: name -> low and high of the fitted rows, unit
+    """
+
+    channel: str
+    rows: int
+    chi2_per_n: float
+    conditions: Mapping[str, tuple[float, float, str]]
+
+
+@dataclass(frozen=True)
 class Ledger:
-    """The steps in their order; goal: held-out chi2/n at which the walk ends."""
+    """The steps in their order; goal: chi2/n at which the walk ends.
+
+    parameters: of the final model;  ranges: where it was learned
+    """
 
     campaign: str
     model: str
     steps: tuple[LedgerStep, ...]
     goal: float = 1.2
+    parameters: tuple[FinalParameter, ...] = ()
+    ranges: tuple[LearnedAt, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
 
 

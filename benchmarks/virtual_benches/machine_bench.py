@@ -17,7 +17,8 @@ from effects.machine_design import MachineAsBuilt
 from units import DEGREE, RPM
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.model import MachineBench as Model
-from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
+from workbench.models.machine.spectra import averaged, evaluated, slope
+from workbench.models.machine.surrogate import Surrogate
 
 DEVICE: dict[str, object] = {
     "slots": 12,

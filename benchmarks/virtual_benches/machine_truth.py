@@ -18,7 +18,8 @@ from materials.library import read_curve, steel_file
 from materials.reluctivity import SplineReluctivity
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState, MachineField
-from workbench.models.machine.surrogate import Surrogate, averaged, coefficients, evaluated, slope
+from workbench.models.machine.spectra import averaged, coefficients, evaluated, slope
+from workbench.models.machine.surrogate import Surrogate
 
 MESH = MeshDensity(gap_edges=480, gap_layers=3, across_iron=3.0)
 PLAN = MeshPlan(

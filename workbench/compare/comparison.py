@@ -14,7 +14,7 @@ from workbench.data.column_units import unit_inside
 from workbench.data.stack import rows_of, stacked
 from workbench.data.table import Campaign
 from workbench.findings import ChannelScore, Comparison, Pull, SignatureMatch
-from workbench.likelihood.bench import Bench, bench_of
+from workbench.likelihood.bench import Bench, bench_of, sealed_tables
 from workbench.likelihood.noise import measured_noise, whitener
 from workbench.likelihood.nuisance import DeclaredError, InstrumentError, TolerancedInput
 from workbench.likelihood.signatures import candidates, nearest, signatures_of
@@ -76,7 +76,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
 
 def scoreboard(bench: Bench) -> tuple[ChannelScore, ...]:
     """V0: one score a channel over all rows of the campaign, fitted or not; the model is asked block by block."""
-    stack = stacked(bench.campaign.tables)
+    stack = stacked(sealed_tables(bench.campaign).tables)
     predictor = bench.fit.predictor.on(stack)
     nominal, fitted = (_in_blocks(predictor, x) for x in (predictor.start, bench.null.x))
     if stack.size == bench.stack.size:

@@ -18,6 +18,7 @@ import numpy as np
 
 from workbench.data.column_units import difference, factor, split_unit, to_inside
 from workbench.data.columns import BOOKKEEPING, Column, columns_of
+from workbench.data.conventions import with_conventions
 from workbench.data.expression import evaluate
 from workbench.data.kinds import kind_of
 from workbench.data.raw_table import Layout, RawTable, read_raw
@@ -61,11 +62,7 @@ def read_campaign(folder: str | Path) -> Campaign:
     tables = tuple(table for number, entry in enumerate(content.table, 1) for table in reader.tables(number, entry))
     _refuse_twins(tables)
     repeats = _repeats(content.campaign.repeats, tables, reader.complaints)
-    if content.campaign.holdout != BY_REGION and not any(table.held_out.any() for table in tables):
-        reader.complaints.append(
-            "no row is held out: an accepted effect cannot be checked on data that no fit has seen"
-        )
-    return Campaign(
+    campaign = Campaign(
         id=_id(content.campaign.id, folder),
         folder=str(folder),
         device=content.device,
@@ -78,6 +75,7 @@ def read_campaign(folder: str | Path) -> Campaign:
         holdout=content.campaign.holdout,
         conventions=content.conventions,
     )
+    return with_conventions(campaign)
 
 
 def columns_of_systematics(folder: str | Path) -> dict[str, tuple[tuple[str, str], ...]]:
@@ -270,6 +268,7 @@ class _WholeTable:
             held_out[rows],
             {c.name: self._random(c, rows) for c in self.of_role("condition") if c.random is not None},
             self.entry.bandwidth_Hz,
+            {c.name: c.unit for c in self.of_role("condition", "group")},
         )
 
     def _inside(self, column: Column) -> np.ndarray:

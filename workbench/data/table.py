@@ -48,7 +48,7 @@ class Table:
 
     kind: measurement kind, for example "back_emf"
     conditions: columns that the model is asked at, by SI-less name ("angle_mech", "i_a", "velocity"), SI (n,)
-    condition_random: their declared random uncertainties, SI (n,), where any
+    condition_random: their declared random uncertainties, SI (n,), where any;  condition_units: as in the file
     responses: measured columns by name without unit ("v_a", "torque", "force", "re", "im")
     scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
     held_out: rows that no fit may see (n,) bool
@@ -64,6 +64,7 @@ class Table:
     held_out: np.ndarray
     condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
     bandwidth: float | None = None
+    condition_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -123,4 +124,4 @@ class Campaign:
     file_hashes: Mapping[str, str]
     complaints: tuple[str, ...] = ()
     holdout: str = "by region"
-    conventions: Mapping[str, object] = field(default_factory=dict)
+    conventions: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

@@ -127,7 +127,7 @@ class Simulator:
 def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]:
     """What is said from which probability on, and the share of unknown functions of a size that would be noticed."""
     empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
-    quiet = min(LIKELY, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
+    quiet = min(1.0 - SURE, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
     sure = max(SURE, -_lowest([-p for p in wrong], FALSE_NAMES))
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}

@@ -17,6 +17,8 @@ from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
 from workbench.explain.calibrate import Simulator, detection_limits, plainly_nothing, thresholds_of
+from workbench.explain.conventions import diagnosis_of as of_conventions
+from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior
 from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of, sealed_rows
 from workbench.explain.recommend import next_measurements
@@ -50,6 +52,9 @@ def diagnose(
         WorkbenchError: the campaign cannot be used, see ``likelihood.bench``.
     """
     start = perf_counter()
+    conventions = settle(model, campaign, library, progress)
+    if not conventions.are_right:
+        return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")
     bench = bench_of(model, campaign, library)
     search = searched(bench, library, progress)

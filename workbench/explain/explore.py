@@ -3,10 +3,10 @@ beside each of the sets that lead, up to four at once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import log, log1p
+from math import fsum, log, log1p
 
 import numpy as np
 from scipy.special import logsumexp
@@ -37,7 +37,7 @@ class Beliefs:
 
     def log_prior(self, names: frozenset[str]) -> float:
         """ln odds of a set of effects over nothing."""
-        return sum(self.log_odds[name] for name in names)
+        return fsum(self.log_odds[name] for name in names)  # the same in whatever order a set has
 
     def may_join(self, name: str, names: frozenset[str]) -> bool:
         return name not in names and not any(frozenset((name, other)) in self.excluded for other in names)
@@ -185,7 +185,7 @@ class Posterior:
     @property
     def remains(self) -> float:
         """P(something is there that no effect of the library is), with or without effects."""
-        return sum(self.beside.values())
+        return _share(self.beside.values())
 
     @property
     def none_of_these(self) -> float:
@@ -202,7 +202,7 @@ class Posterior:
 
     def of(self, name: str) -> float:
         """P(the effect is there)."""
-        return self._each.get(name, 0.0)
+        return min(self._each.get(name, 0.0), 1.0)
 
     @cached_property
     def _each(self) -> dict[str, float]:
@@ -214,21 +214,26 @@ class Posterior:
 
     def any_of(self, names: frozenset[str]) -> float:
         """P(at least one of the effects is there)."""
-        return sum(p for have, p in self.sets.items() if have & names)
+        return _share(p for have, p in self.sets.items() if have & names)
 
     def all_of(self, groups: tuple[frozenset[str], ...]) -> float:
         """P(at least one effect of every group is there)."""
-        return sum(p for have, p in self.sets.items() if all(have & group for group in groups))
+        return _share(p for have, p in self.sets.items() if all(have & group for group in groups))
 
     @property
     def leading(self) -> frozenset[str]:
         """The most probable set of effects."""
-        return max(self.sets, key=lambda names: (self.sets[names], -len(names)), default=frozenset())
+        return max(self.sets, key=lambda names: (self.sets[names], -len(names), sorted(names)), default=frozenset())
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """All effects, most probable first."""
         return tuple(sorted(sorted(self._each), key=lambda name: -self.of(name)))
+
+
+def _share(shares: Iterable[float]) -> float:
+    """Their sum, which rounding must not carry beyond one."""
+    return min(sum(shares), 1.0)
 
 
 def posterior(

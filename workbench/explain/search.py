@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
+from math import log
 
 import numpy as np
 
@@ -130,6 +131,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     shapes = shapes_of(bench.fit.stack, bench.fit.white)
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
     _best_first(search, progress)
+    less_one(search, progress)
     _exactly(search, progress)
     _beside_unknown(search, progress)
     return search
@@ -163,6 +165,36 @@ def _best_first(search: Search, progress: Progress) -> None:
         progress("fitting " + promise.label)
         if _fit(search, promise) and len(promise.every) < MOST:
             _expand(search, search.fitted[promise.every], heap)
+
+
+def less_one(search: Search, progress: Progress) -> None:
+    """What leads is weighed against itself without each of its effects, fitted from where it ended: a promise beside
+    a null whose tolerances were pulled far may have hidden them. Until such a leader is found."""
+    tried: set[Set] = set()
+    while (leader := search.ranked[0]) not in tried:
+        tried.add(leader)
+        for names in (leader - {name} for name in sorted(leader)):
+            if names not in search.fitted:
+                progress("fitting " + _label(names))
+                _fit_part(search, search.fitted[leader], names)
+
+
+def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
+    """Fits some of the effects of a fit, from where it ended; only the forms that it has count."""
+    parts, place = [], 0
+    for effect in whole.fit.effects:
+        count = len(parameters_of(effect))
+        parts.append((effect, whole.fit.z[place : place + count]))
+        place += count
+    kept = [(effect, z) for effect, z in parts if effect.name() in names]
+    try:
+        found = fitted_from(search.bench, [e for e, _ in kept], whole.fit.x, np.concatenate([z for _, z in kept]))
+    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
+        search.failed[_label(names)] = str(error)
+        return
+    search.fitted[names] = found
+    search.forms[names] = -sum(log(len(search.signatures.found[name])) for name in sorted(names))
+    search.guessed.pop(names, None)
 
 
 def _label(names: Set) -> str:
@@ -201,14 +233,17 @@ def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None
 
 
 def student_gain(hypothesis: Hypothesis, gain: float) -> float:
-    """A Gaussian gain of ln p in the likelihood of the fits, taken from the channels that fit worst [nats]."""
-    problem = hypothesis.problem
+    """A Gaussian gain of ln p in the likelihood of the fits [nats]: what pulled tolerances cost comes back as it is,
+    the rest is taken from the channels that fit worst."""
+    problem, x = hypothesis.problem, hypothesis.fit.x
     squares, sizes = problem.squares(hypothesis.fit.residual), problem.sizes
     excess = np.maximum(squares - sizes, 0.0)
-    if gain <= 0 or excess.sum() == 0:
+    pulls = 0.5 * float(x @ x)
+    left = gain - pulls
+    if left <= 0 or excess.sum() == 0:
         return gain
-    fall = np.minimum(2 * gain * excess / excess.sum(), excess)
-    return min(gain, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
+    fall = np.minimum(2 * left * excess / excess.sum(), excess)
+    return pulls + min(left, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
 
 
 def _exactly(search: Search, progress: Progress) -> None:

@@ -55,7 +55,7 @@ def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:
     """For every effect of the leading set the smallest group of names, itself first, one of which is there for sure;
     effects for which there is no such group are left out."""
     found: list[frozenset[str]] = []
-    for name in sorted(p.leading, key=lambda n: -p.of(n)):
+    for name in sorted(p.leading, key=lambda n: (-p.of(n), n)):
         group = _group_of(p, name, sure, frozenset().union(*found, p.leading - {name}))
         if group is not None:
             found.append(group)
@@ -77,7 +77,7 @@ def _group_of(p: Posterior, name: str, sure: float, taken: frozenset[str]) -> fr
 
 def _of_groups(p: Posterior, groups: tuple[frozenset[str], ...]) -> Verdict:
     """Only names that are sure by themselves are printed beside others; what one of several names is, is said apart."""
-    ranked = [tuple(sorted(group, key=lambda n: -p.of(n))) for group in groups]
+    ranked = [tuple(sorted(group, key=lambda n: (-p.of(n), n))) for group in groups]
     alternatives = {names[0]: names[1:] for names in ranked if len(names) > 1}
     if len(groups) == 1 and (len(ranked[0]) > 1 or p.remains < LIKELY):
         return Verdict(EFFECT if len(ranked[0]) == 1 else GROUP, ranked[0], p.any_of(groups[0]), {})

@@ -35,7 +35,6 @@ from workbench.likelihood.predictor import STEP
 from workbench.models.model import Model
 
 ROUNDS = 6  # of finding the calibrations; gains and offsets act almost linearly, two or three are needed
-THROUGH_A_SCAN = 1 / 12  # mean square of a slope of one through a scan, from its middle
 SETTLED = 0.01  # standard deviations by which a calibration still moves
 
 
@@ -254,7 +253,7 @@ class _Around:
     @cached_property
     def noise_variance(self) -> np.ndarray:
         """Of a reading: its own, and what its scan as a whole may be off by (n,)."""
-        of_scans = [c.offset**2 + c.slope**2 * THROUGH_A_SCAN for c in self.noise.channels]
+        of_scans = [2 * c.scans**2 for c in self.noise.channels]  # an offset and a slope, each of rms 1
         return self.white.sigma**2 * (1 + np.repeat(of_scans, [c.size for c in self.part.channels]))
 
     @cached_property

@@ -15,8 +15,10 @@ from math import log, log1p
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import chi2
 
 from effects.base import Effect
+from workbench.believed import SURE
 from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
@@ -108,9 +110,14 @@ def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[
         words += "; these conditions have no regions, so that prediction beyond them was not tested"
     if odds <= 0:
         return REFUSED, words
-    if old.blocks and max(new.chi2_per_n, 1.0) > max(old.chi2_per_n, 1.0):
+    if old.blocks and new.chi2_per_n > max(old.chi2_per_n, noise_alone(new.n)):
         return REFUSED, f"{words}: it rises"
     return ACCEPTED, words
+
+
+def noise_alone(rows: int) -> float:
+    """chi2/n of so many rows that noise alone stays below with probability ``SURE``."""
+    return float(chi2.ppf(SURE, rows)) / rows
 
 
 def _nats(odds: float) -> str:

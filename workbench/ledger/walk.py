@@ -11,8 +11,9 @@ from workbench.compare.comparison import comparison_of
 from workbench.data.table import Campaign
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger.learned import learned_from
-from workbench.ledger.model_file import NAME, write_model
+from workbench.ledger.final import final_parameters, learned_at
+from workbench.ledger.learned import Learned, learned_from
+from workbench.ledger.model_file import NAME, read_model, write_model
 from workbench.ledger.skeleton import skeleton
 from workbench.ledger.step import ACCEPTED, append, read_ledger, start_step, try_effect
 from workbench.likelihood.bench import bench_of
@@ -59,11 +60,19 @@ def add_effect(
     said = ": ".join([diagnosis.verdict, *([", ".join(diagnosis.names)] if diagnosis.names else [])])
     step = replace(trial.step, verdict=said)
     append(path, step, campaign, trial.model)
-    if step.decision == ACCEPTED:
-        write_model(out / NAME, learned_from(trial.after))
     bench = trial.after if step.decision == ACCEPTED else trial.before
+    learned = learned_from(bench)
+    if step.decision == ACCEPTED:
+        write_model(out / NAME, learned)
     comparison = comparison_of(bench, library, progress)
-    return Added(trial.model, step, read_ledger(path, campaign.id, model.base.name), comparison, diagnosis)
+    whole = told(read_ledger(path, campaign.id, model.base.name), learned)
+    return Added(trial.model, step, whole, comparison, diagnosis)
+
+
+def told(ledger: Ledger, learned: Learned) -> Ledger:
+    """With the numbers of the final model and where it was learned."""
+    ranges = learned.source.ranges if learned.source is not None else ()
+    return replace(ledger, parameters=final_parameters(learned), ranges=learned_at(ranges))
 
 
 def skeleton_for(path: Path, campaign: Campaign | None, library, model: Model | None) -> str:
@@ -107,7 +116,7 @@ def walk(
         append(path, replace(start_step(bench), verdict=diagnosis.verdict), campaign, model)
     if not (out / NAME).exists():
         write_model(out / NAME, learned_from(bench))
-    return read_ledger(path, campaign.id, model.base.name), diagnosis
+    return told(read_ledger(path, campaign.id, model.base.name), read_model(out / NAME, library)), diagnosis
 
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -51,12 +51,12 @@ class Model:
             conditions = without_order(effect.on_state({**conditions, **order}, kind, design))
         conditions = self._given(table, conditions)
         response = self.base.respond(design, kind, conditions)
-        _require_answers(table, response)
+        _require_answers(table, response | _between_lines(response, table))
         for effect in self._of(ResponseEffect):
             response = dict(effect.on_response(response, {**conditions, **order}, kind, design))
         for effect in self._of(InstrumentEffect):
             response = dict(effect.on_reading(response, {**conditions, **order}, kind))
-        return response
+        return response | _between_lines(response, table)
 
     def _given(self, table: Table, conditions: Mapping[str, np.ndarray]) -> Conditions:
         """Conditions that say which of them is missing."""
@@ -88,3 +88,15 @@ def _require_answers(table: Table, response: Mapping[str, np.ndarray]) -> None:
             f"{table.file}: the model does not answer {missing[0]!r} in a table of kind {table.kind}; it answers "
             f"{', '.join(response)}."
         )
+
+
+def _between_lines(response: dict[str, np.ndarray], table: Table) -> dict[str, np.ndarray]:
+    """Voltages between two phases, v_ab = v_a - v_b, where a table has them and the model answers for the phases."""
+    pairs = {name: (f"v_{name[2]}", f"v_{name[3]}") for name in table.responses if _is_between_lines(name)}
+    return {
+        n: response[p] - response[m] for n, (p, m) in pairs.items() if n not in response and {p, m} <= set(response)
+    }
+
+
+def _is_between_lines(name: str) -> bool:
+    return len(name) == 4 and name.startswith("v_") and set(name[2:]) < set("abc")

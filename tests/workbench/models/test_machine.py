@@ -64,7 +64,7 @@ def test_voltage_is_the_slope_of_the_flux_linkage_and_turns_with_the_speed():
 
 
 def evaluated_linkage(angle):
-    from workbench.models.machine.surrogate import evaluated
+    from workbench.models.machine.spectra import evaluated
 
     return 41e-3 * evaluated(surrogate().spectrum(drawn())[1:2], angle)[0]
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
 from workbench.errors import WorkbenchError
-from workbench.models.machine.surrogate import averaged, coefficients, evaluated, slope
+from workbench.models.machine.spectra import averaged, coefficients, evaluated, slope
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 101)
 

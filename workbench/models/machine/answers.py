@@ -13,7 +13,8 @@ from scipy.ndimage import median_filter
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
 from materials.conductor import COPPER
-from workbench.models.machine.surrogate import Surrogate, averaged, evaluated, slope
+from workbench.models.machine.spectra import averaged, evaluated, slope
+from workbench.models.machine.surrogate import Surrogate
 
 LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
 _PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
@@ -98,19 +99,10 @@ class Answers:
         """Torque [Nm]: cogging, and what magnets and currents make together, which goes with the magnets' flux."""
         both = self.design.length * self._with_current(angle, currents)[:, 0]
         alone = self.design.length * evaluated(self.spectrum[:1], self._on_the_rotor(angle))[0]
-        return self.kept * (both - alone) + self.kept**2 * alone + self._shifted(angle)
+        return self.kept * (both - alone) + self.kept**2 * alone
 
     def _with_current(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         return self.surrogate.with_current(self.in_field, self._on_the_rotor(angle), currents)
-
-    def _shifted(self, angle: np.ndarray) -> np.ndarray:
-        """Torque of an eccentricity beyond its first derivative [Nm], as without current."""
-        d = self.in_field
-        if not (any(d.stator_shift) or any(d.rotor_shift)):
-            return np.zeros_like(angle)
-        centred = replace(d, stator_shift=(0.0, 0.0), rotor_shift=(0.0, 0.0))
-        apart = self.surrogate.spectrum(d)[:1] - self.surrogate.spectrum(centred)[:1]
-        return d.length * evaluated(self._along_the_length(apart), self._on_the_rotor(angle))[0]
 
     def flux_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """Flux linkages of the phases against those without current [Wb] (n, 3); the end winding adds L_end i."""

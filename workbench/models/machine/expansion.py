@@ -1,196 +1,209 @@
 """How the samples of a machine change with everything that may be different in it, from few field solutions.
 
-At every state one factorised tangent serves all coordinates (``magnetostatics.sensitivity``); curvatures come from the
-field at a finite change. Without current the derivatives are taken in one window of the cogging period: what magnet or
-slot m does is what magnet or slot 0 does, seen from another place.
+At every state one factorised tangent serves all coordinates (``magnetostatics.sensitivity``). At nodes, designs some
+way off, the field is solved again, with its derivatives there. Without current they are taken in one window of the
+cogging period: what magnet or slot m does is what magnet or slot 0 does, seen from another place, and a shift of the
+stator towards slot m is one towards slot 0 seen from there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from effects.machine_design import MachineAsBuilt
-from magnetostatics.model import OperatingState
+from magnetostatics.model import FieldSolution
 from magnetostatics.sensitivity import sensitivities
 from workbench.models.machine.coordinates import (
-    ARC,
     BOTH,
-    LESS_ARC,
     MAGNET,
     ROTOR,
     SHIFTS,
     SLOT,
     STATOR,
+    TOLERANCED,
     CoilVariation,
     Coordinate,
     CoordinateVariation,
+    all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import LoadedState, MachineField, complete, idle, read_whole, solve_in_turn
+from workbench.models.machine.field import LoadedState, MachineField, complete, idle, read, solve_in_turn
 
-_BATCH = 12  # coordinates whose changed field models are kept in memory at a time
-
-Tick = Callable[[], None]
+BATCH = 12  # coordinates whose changed field models are kept in memory at a time
+NO_LOAD_FAMILIES = ((BOTH, MAGNET, SLOT), (STATOR,), (ROTOR,))
+LEAST_DIRECTIONS = 5  # of a shift, to know how its square goes with the direction
 
 
 @dataclass(frozen=True)
-class Secant:
-    """A finite change of a design, for a curvature."""
+class Node:
+    """A design some way off the drawing: value and slopes are wanted there.
 
-    name: str
-    changes: tuple[tuple[Coordinate, float], ...]
+    moves: coordinates and by how much;  along: coordinates of the slopes
+    """
+
+    moves: tuple[tuple[Coordinate, float], ...]
+    along: tuple[Coordinate, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return " ".join(f"{c.name} {change:+.6g}" for c, change in self.moves)
 
     def design(self, nominal: MachineAsBuilt) -> MachineAsBuilt:
-        for coordinate, change in self.changes:
+        for coordinate, change in self.moves:
             nominal = coordinate.changed(nominal, change)
         return nominal
 
 
-def regular_secants(nominal: MachineAsBuilt) -> tuple[Secant, ...]:
-    """One for each coordinate that leaves the machine symmetric."""
-    smooth = tuple(Secant(c.name, ((c, c.size),)) for c in smooth_coordinates(nominal) if c.size and c.breaks == BOTH)
-    touching = nominal.machine.magnet_arc_fraction >= 1
-    return smooth + (tuple(Secant(arc_name(change), ((ARC, change),)) for change in LESS_ARC) if touching else ())
+def toleranced(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
+    """The coordinates of ``TOLERANCED``."""
+    return tuple(c for c in smooth_coordinates(nominal) if c.path in TOLERANCED)
 
 
-def shift_secants() -> tuple[Secant, ...]:
-    """Stator and rotor moved along x, along y, and between."""
-    return tuple(
-        Secant(name, changes)
-        for x, y in SHIFTS
-        for name, changes in (
-            (x.name, ((x, x.size),)),
-            (y.name, ((y, y.size),)),
-            (mixed_name(x), ((x, x.size / np.sqrt(2)), (y, y.size / np.sqrt(2)))),
-        )
-    )
+def regular_nodes(nominal: MachineAsBuilt) -> tuple[Node, ...]:
+    """Those of the coordinates that leave the machine symmetric."""
+    return tuple(node for c in all_coordinates(nominal) if c.breaks == BOTH for node in _nodes_of(c, nominal))
 
 
-def mixed_name(x: Coordinate) -> str:
-    """Name of the mixed derivative of a shift, from its first component."""
-    return f"{x.path[0]}[0,1]"
+def irregular_nodes(nominal: MachineAsBuilt) -> tuple[Node, ...]:
+    """Of the first magnet, the first slot, and shifts along x; where that leaves few directions, one between too."""
+    smooth = smooth_coordinates(nominal)
+    first = tuple(node for c in smooth if c.breaks != BOTH and c.index == 0 for node in _nodes_of(c, nominal))
+    between = [
+        Node(((x, size * np.cos(turn)), (y, size * np.sin(turn))), (x, y, *toleranced(nominal)))
+        for (x, y), directions in ((shift_of(path, nominal), count) for path, count in _directions(nominal))
+        if directions < LEAST_DIRECTIONS
+        for turn in (np.pi / directions,)
+        for size in x.sizes
+    ]
+    return first + tuple(between)
 
 
-def arc_name(change: float) -> str:
-    """Name of a secant of the arc of touching magnets."""
-    return f"{ARC.name} {change:+g}"
+def shift_of(path: tuple[str, ...], nominal: MachineAsBuilt) -> tuple[Coordinate, Coordinate]:
+    """The two components of a shift."""
+    x, y = (c for c in smooth_coordinates(nominal) if c.path == path)
+    return x, y
 
 
-@dataclass(frozen=True)
-class Changes:
-    """base: samples;  linear: derivatives by coordinate, per its unit;  secant: change of the samples by secant"""
+def _directions(nominal: MachineAsBuilt) -> list[tuple[tuple[str, ...], int]]:
+    """Of every shift, how many directions follow from one."""
+    counts = {STATOR: nominal.machine.slots, ROTOR: nominal.machine.poles}
+    return [(path, counts[breaks]) for path, breaks in SHIFTS]
 
-    base: np.ndarray
-    linear: Mapping[str, np.ndarray]
-    secant: Mapping[str, np.ndarray]
+
+def _nodes_of(c: Coordinate, nominal: MachineAsBuilt) -> list[Node]:
+    """Designs with another arc than touching magnets have meshes of their own, and no slope along the arc."""
+    own = (c,) if c in smooth_coordinates(nominal) else ()
+    along = own + tuple(other for other in toleranced(nominal) if other != c)
+    return [Node(((c, size),), along) for size in c.sizes]
 
 
 # ---- with current ----------------------------------------------------------------------------------------------------
 
 
-def loaded_changes(fields: MachineField, states: Sequence[LoadedState], tick: Tick) -> Changes:
-    """Base, derivatives and secants at loaded states, each (states, 1 + coils). Shifts have derivatives only.
-
-    Besides the coordinates: ``coil[k]``, per ampere-turn in coil k.
-    """
-    nominal = fields.nominal
-    points = [fields.point(nominal, state, whole=True) for state in states]
-    base, linear = derivatives(fields, points, smooth_coordinates(nominal), tick, coils=True)
-    symmetric = fields.loaded(nominal, states)
-    secant = {}
-    for s in regular_secants(nominal):
-        secant[s.name] = fields.loaded(s.design(nominal), states) - symmetric
-        tick()
-    return Changes(base, linear, secant)
+def loaded_slopes(
+    fields: MachineField, states: Sequence[LoadedState], coordinates: Sequence[Coordinate]
+) -> dict[str, np.ndarray]:
+    """Derivatives by some coordinates at loaded states of the drawing (states, 1 + coils) each."""
+    variations = {c.name: CoordinateVariation(fields, c, fields.nominal, True) for c in coordinates}
+    return _slopes(_whole(fields, states), variations)
 
 
-def derivatives(
-    fields: MachineField, points: Sequence[OperatingState], coordinates: Sequence[Coordinate], tick: Tick, coils=False
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Samples of the whole nominal machine at some states and their derivatives by coordinate."""
-    solutions = solve_in_turn(fields.model(fields.nominal, whole=True), points)
-    base, linear = np.array([read_whole(solution) for solution in solutions]), {}
-    batches = [{c.name: CoordinateVariation(fields, c) for c in batch} for batch in _batches(coordinates, _BATCH)]
-    if coils:
-        batches.append({f"coil[{k}]": CoilVariation(k) for k in range(base.shape[1] - 1)})
-    for variations in batches:
-        rows = [sensitivities(solution, variations, read_whole) for solution in solutions]
-        linear |= {name: np.array([row[name] for row in rows]) for name in variations}
-        for variation in variations.values():
-            variation.forget()
-        tick()
-    return base, linear
+def coil_slopes(fields: MachineField, states: Sequence[LoadedState]) -> dict[str, np.ndarray]:
+    """Derivatives by the ampere-turns of every coil, ``coil[k]`` (states, 1 + coils) each."""
+    return _slopes(
+        _whole(fields, states), {f"coil[{k}]": CoilVariation(k) for k in range(fields.nominal.machine.slots)}
+    )
 
 
-def _batches(items: Sequence, size: int) -> Iterator[Sequence]:
-    return (items[k : k + size] for k in range(0, len(items), size))
+def _whole(fields: MachineField, states: Sequence[LoadedState]) -> list[FieldSolution]:
+    return fields.nominal_solutions(tuple(states), whole=True)
+
+
+def loaded_node(fields: MachineField, states: Sequence[LoadedState], node: Node) -> dict[str, np.ndarray]:
+    """Change and slopes at a node with current; a regular one."""
+    design = node.design(fields.nominal)
+    solutions = fields.loaded_solutions(design, states)
+    found = {"change": np.array([read(s) for s in solutions]) - fields.loaded(fields.nominal, states)}
+    return found | _along(solutions, _variations(fields, node, design, whole=False))
+
+
+def _variations(fields: MachineField, node: Node, design: MachineAsBuilt, whole: bool) -> dict:
+    return {c.name: CoordinateVariation(fields, c, design, whole) for c in node.along}
+
+
+def _along(solutions: Sequence[FieldSolution], variations: Mapping) -> dict[str, np.ndarray]:
+    return {f"along {name}": rows for name, rows in _slopes(solutions, variations).items()}
+
+
+def _slopes(solutions: Sequence[FieldSolution], variations: Mapping) -> dict[str, np.ndarray]:
+    rows = [sensitivities(solution, variations, read) for solution in solutions] if variations else []
+    return {name: np.array([row[name] for row in rows]) for name in variations}
 
 
 # ---- a revolution without current ------------------------------------------------------------------------------------
 
 
-def no_load_changes(fields: MachineField, tick: Tick) -> Changes:
-    """Base, derivatives and secants over a revolution, each (edges, 1 + coils)."""
+def no_load_slopes(fields: MachineField, family: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Derivatives over a revolution by the coordinates that break a symmetry of this family (edges, 1 + coils) each."""
     nominal = fields.nominal
-    base, linear, secant = fields.no_load(nominal), {}, {}
-    for family in ((BOTH, MAGNET, SLOT), (STATOR,), (ROTOR,)):
-        linear |= _no_load_derivatives(fields, family, tick)
-    for s in regular_secants(nominal) + shift_secants():
-        secant[s.name] = fields.no_load(s.design(nominal)) - base
-        tick()
-    for family in _families(nominal):
-        first = family[0]
-        window = {first.name: fields.no_load(first.changed(nominal, first.size)) - base}
-        secant |= _over_revolution(fields, family, window)
-        tick()
-    return Changes(base, linear, secant)
+    own = [c for c in smooth_coordinates(nominal) if c.breaks in family]
+    steps = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
+    points = [idle(2 * np.pi * n / fields.edges) for n in range(fields.edges // steps)]
+    solutions, window = solve_in_turn(fields.model(nominal, whole=True), points), {}
+    for batch in (own[k : k + BATCH] for k in range(0, len(own), BATCH)):
+        window |= _slopes(solutions, {c.name: CoordinateVariation(fields, c, nominal, True) for c in batch})
+    found = {}
+    for group in _families(own):
+        known = {(n, m): row for m, c in enumerate(group) for n, row in enumerate(window[c.name])}
+        rows = complete(known, fields.edges, len(group), _moves(fields, group[0].breaks))
+        found |= {c.name: _revolution(rows, fields.edges, m) for m, c in enumerate(group)}
+    return found
 
 
-def _families(nominal: MachineAsBuilt) -> list[list[Coordinate]]:
-    """Coordinates that there is one of for every magnet or slot."""
-    groups: dict[tuple[str, ...], list[Coordinate]] = {}
-    for c in smooth_coordinates(nominal):
-        if c.breaks in (MAGNET, SLOT):
-            groups.setdefault(c.path, []).append(c)
+def _families(coordinates: Sequence[Coordinate]) -> list[list[Coordinate]]:
+    """Coordinates that there is one of for every magnet or slot together, all others alone."""
+    groups: dict[str, list[Coordinate]] = {}
+    for c in coordinates:
+        groups.setdefault(str(c.path) if c.breaks in (MAGNET, SLOT) else c.name, []).append(c)
     return list(groups.values())
 
 
-def _no_load_derivatives(fields: MachineField, family: tuple[str, ...], tick: Tick) -> dict[str, np.ndarray]:
-    """Of the coordinates that break a symmetry of this family, over a revolution (edges, 1 + coils)."""
-    machine = fields.nominal.machine
-    steps = {STATOR: fields.edges // machine.poles, ROTOR: fields.edges // machine.slots}.get(family[0], fields.window)
-    own = [c for c in smooth_coordinates(fields.nominal) if c.breaks in family]
-    _, window = derivatives(fields, [idle(2 * np.pi * n / fields.edges) for n in range(steps)], own, tick)
-    groups: dict[tuple[str, ...], list[Coordinate]] = {}
-    for c in own:
-        groups.setdefault(c.path if c.breaks in (MAGNET, SLOT) else (c.name,), []).append(c)
-    return {name: rows for group in groups.values() for name, rows in _over_revolution(fields, group, window).items()}
-
-
-def _over_revolution(fields: MachineField, group: list[Coordinate], window: Mapping[str, np.ndarray]) -> dict:
-    """Changes with one coordinate, or with that of every magnet or slot, from those in a window or of the first member.
-
-    A slot pitch on, magnet m does to coil k what it did to coil k - 1, and slot s what slot s - 1 did. A pole pitch on,
-    magnet m does what magnet m + 1 did, with the opposite sign, and slot s what slot s did.
-    """
+def _moves(fields: MachineField, breaks: str) -> tuple:
+    """A slot pitch on, magnet m does to coil k what it did to coil k - 1, and slot s what slot s - 1 did. A pole pitch
+    on, magnet m does what magnet m + 1 did, with the opposite sign, and slot s what slot s did."""
     slot, pole = fields.slot_pitch, fields.pole_pitch
-    moves = {
+    return {
         BOTH: ((slot, 0), (pole, 0)),
         MAGNET: ((slot, 0), (pole, -1)),
         SLOT: ((slot, 1), (pole, 0)),
         STATOR: ((pole, 0),),
         ROTOR: ((slot, 0),),
-    }[group[0].breaks]
-    known = {(n, m): row for m, c in enumerate(group) for n, row in enumerate(window.get(c.name, ()))}
-    known = complete(known, fields.edges, len(group), moves)
-    return {c.name: np.array([known[n, m] for n in range(fields.edges)]) for m, c in enumerate(group)}
+    }[breaks]
 
 
-def steps_of_work(states: int, nominal: MachineAsBuilt) -> int:
-    """How often ``tick`` is called for a whole build, for a progress bar."""
-    batches = -(-len(smooth_coordinates(nominal)) // _BATCH)
-    both = len(regular_secants(nominal))
-    return batches + 2 + both + len(shift_secants()) + len(_families(nominal)) + ((batches + 1 + both) if states else 0)
+def no_load_node(fields: MachineField, node: Node) -> dict[str, np.ndarray]:
+    """Change and slopes at a node over a revolution, (members, edges, 1 + coils): a member for every magnet or slot
+    that the same may happen to, or direction that the shift may have."""
+    design, nominal = node.design(fields.nominal), fields.nominal
+    window = fields.no_load_window(design)
+    found = {"change": fields.over_revolution(design, [read(s) for s in window]) - fields.no_load(nominal)}
+    whole = window[0].model.section.sectors == 1
+    slopes = _along(window, _variations(fields, node, design, whole))
+    found |= {name: fields.over_revolution(design, rows) for name, rows in slopes.items()}
+    return {name: _members(fields, node.moves[0][0].breaks, rows) for name, rows in found.items()}
+
+
+def _members(fields: MachineField, breaks: str, rows: np.ndarray) -> np.ndarray:
+    """The change by every member of a family from that by the first, over a revolution (members, edges, 1 + coils)."""
+    machine = fields.nominal.machine
+    like = {STATOR: SLOT, ROTOR: MAGNET}.get(breaks, breaks)  # a direction counts like the part that lies in it
+    members = {SLOT: machine.slots, MAGNET: machine.poles, BOTH: 1}[like]
+    known = complete({(n, 0): row for n, row in enumerate(rows)}, fields.edges, members, _moves(fields, like))
+    return np.array([_revolution(known, fields.edges, m) for m in range(members)])
+
+
+def _revolution(known: Mapping[tuple[int, int], np.ndarray], edges: int, member: int) -> np.ndarray:
+    return np.array([known[n, member] for n in range(edges)])

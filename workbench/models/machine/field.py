@@ -68,6 +68,7 @@ class MachineField:
     ):
         self.nominal, self.density, self.steel = nominal, density, steel
         self._meshes: dict[tuple, tuple[CrossSection, Morpher, FieldModel]] = {}
+        self._starts: dict[tuple, list[FieldSolution]] = {}  # of the nominal machine at the states asked last
 
     @property
     def layout(self) -> WindingLayout:
@@ -95,8 +96,7 @@ class MachineField:
 
     def _mesh(self, machine: Machine, whole: bool) -> tuple[CrossSection, Morpher, FieldModel]:
         base = self.nominal.machine
-        alike = (machine.magnet_arc_fraction < 1) == (base.magnet_arc_fraction < 1)
-        drawn = base if alike else replace(base, magnet_arc_fraction=machine.magnet_arc_fraction)
+        drawn = base if self._shares_mesh(machine) else replace(base, magnet_arc_fraction=machine.magnet_arc_fraction)
         key = drawn, whole
         if key not in self._meshes:
             section = mesh_cross_section(drawn, self.layout, self.density, whole)
@@ -105,28 +105,58 @@ class MachineField:
             self._meshes[key] = section, Morpher(section), first
         return self._meshes[key]
 
+    def _shares_mesh(self, machine: Machine) -> bool:
+        """Magnets touch in both machines or in none."""
+        return (machine.magnet_arc_fraction < 1) == (self.nominal.machine.magnet_arc_fraction < 1)
+
     def forget(self) -> None:
         """Give the memory of all meshes and factorisations back."""
         self._meshes.clear()
+        self._starts.clear()
 
     # ---- samples ------------------------------------------------------------------------------------------------
 
     def no_load(self, design: MachineAsBuilt) -> np.ndarray:
         """Samples without current at equal angles over a revolution from angle zero on (edges, 1 + coils)."""
-        steps, symmetries = self._no_load_window(design)
-        whole = not is_symmetric(design)
-        model, sample = self.model(design, whole), read_whole if whole else read_sector
-        window = solve_in_turn(model, [idle(2 * pi * n / self.edges) for n in range(steps)])
-        moves = [(symmetry, 0) for symmetry in symmetries]
-        known = complete({(n, 0): sample(s) for n, s in enumerate(window)}, self.edges, 1, moves)
+        return self.over_revolution(design, [read(s) for s in self.no_load_window(design)])
+
+    def no_load_window(self, design: MachineAsBuilt) -> list[FieldSolution]:
+        """Solutions without current over the angles that the symmetry of the design leaves."""
+        steps, _ = self._no_load_window(design)
+        model = self.model(design, not is_symmetric(design))
+        return solve_in_turn(model, [idle(2 * pi * n / self.edges) for n in range(steps)])
+
+    def over_revolution(self, design: MachineAsBuilt, window: Sequence[np.ndarray]) -> np.ndarray:
+        """Samples of a revolution (edges, 1 + coils) from those of the window, or their derivatives by something that
+        leaves the symmetry of the design."""
+        moves = [(symmetry, 0) for symmetry in self._no_load_window(design)[1]]
+        known = complete({(n, 0): row for n, row in enumerate(window)}, self.edges, 1, moves)
         return np.array([known[n, 0] for n in range(self.edges)])
 
     def loaded(self, design: MachineAsBuilt, states: Sequence[LoadedState]) -> np.ndarray:
         """Samples with current (states, 1 + coils)."""
+        return np.array([read(solution) for solution in self.loaded_solutions(design, states)])
+
+    def loaded_solutions(self, design: MachineAsBuilt, states: Sequence[LoadedState]) -> list[FieldSolution]:
+        """Solutions with current, each from that of the nominal machine at the state, which saves a third of the work.
+
+        Where magnets, slots and coils are alike a sector is solved.
+        """
         whole = not (is_symmetric(design) and len(set(design.turns)) == 1)
-        model, sample = self.model(design, whole), read_whole if whole else read_sector
-        points = [self.point(design, state, whole) for state in states]
-        return np.array([sample(solution) for solution in solve_in_turn(model, points)])
+        if design == self.nominal:
+            return self.nominal_solutions(tuple(states), whole)
+        model, points = self.model(design, whole), [self.point(design, state, whole) for state in states]
+        if not self._shares_mesh(design.machine):
+            return solve_in_turn(model, points)
+        starts = self.nominal_solutions(tuple(states), whole)
+        return [model.solve(point, start) for point, start in zip(points, starts)]
+
+    def nominal_solutions(self, states: tuple[LoadedState, ...], whole: bool) -> list[FieldSolution]:
+        """Solutions of the nominal machine at loaded states, kept."""
+        if (states, whole) not in self._starts:
+            points = [self.point(self.nominal, state, whole) for state in states]
+            self._starts[states, whole] = solve_in_turn(self.model(self.nominal, whole), points)
+        return self._starts[states, whole]
 
     def point(self, design: MachineAsBuilt, state: LoadedState, whole: bool) -> OperatingState:
         """A loaded state as the field model takes it."""
@@ -196,13 +226,8 @@ def idle(angle: float) -> PhaseCurrents:
     return PhaseCurrents(angle, (0.0, 0.0, 0.0))
 
 
-def read_whole(solution: FieldSolution) -> np.ndarray:
-    """The sample of a solution of the whole machine (1 + coils,)."""
-    return np.append(arkkio_torque(solution), solution.model.coil_loads @ solution.a)
-
-
-def read_sector(solution: FieldSolution) -> np.ndarray:
-    """The sample of a symmetric machine from its sector; a coil is in the sector with its tooth."""
+def read(solution: FieldSolution) -> np.ndarray:
+    """The sample of a solution (1 + coils,), of a symmetric machine from its sector, where a coil is with its tooth."""
     section = solution.model.section
     first = (solution.model.coil_loads @ solution.a)[: section.teeth]
     sectors = [section.sign**k * first for k in range(section.sectors)]

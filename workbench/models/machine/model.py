@@ -37,15 +37,19 @@ from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
 from workbench.models.device import names
-from workbench.models.machine.answers import Answers, at_magnet_temperatures
+from workbench.models.machine.answers import at_magnet_temperatures
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
-from workbench.models.machine.kinds import KINDS, PHASES, loaded_states
+from workbench.models.machine.field import MachineField
+from workbench.models.machine.kinds import KINDS, loaded_states
+from workbench.models.machine.numerical import shapes_of
 from workbench.models.machine.options import options
+from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate
 
 CACHE = Path("results") / "cache"
 _REMEMBERED = 24  # answers
+_ON_A_MESH = ("back_emf", "cogging", "locked_rotor", "flux_linkage", "inductance")  # kinds that a mesh has a say in
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +62,7 @@ class MachineBench(BaseModel):
 
     plan: MeshPlan = MeshPlan()
     cache: Path | None = CACHE
-    surrogate: Surrogate | None = None
+    surrogate: Surrogate | RoughSurrogate | None = None
     builder: SurrogateBuilder | None = None
     about_drawing: Surrogate | None = None
     name: str = field(default="machine", init=False)
@@ -111,6 +115,11 @@ class MachineBench(BaseModel):
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
         return self.recentred(design).respond(design, kind, conditions)
 
+    def anywhere(self, design: MachineAsBuilt) -> RoughMachine:
+        """The machine from a few fields of the drawing, at any angle and current; about a second."""
+        rough = RoughSurrogate(MachineField(design, ROUGH))
+        return RoughMachine(rough, replace(self, surrogate=rough))
+
     @property
     def is_expansion(self) -> bool:
         return True
@@ -124,28 +133,14 @@ class MachineBench(BaseModel):
         return options(campaign.tables)
 
     def numerical(self, design: MachineAsBuilt, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
-        """Standard uncertainty of the responses that the mesh leaves, SI."""
-        if self.surrogate is None or table.kind not in _NUMERICAL:
+        """What meshes and the recorder of the voltages leave open, see ``numerical.py``; of the machine as drawn."""
+        if self.about_drawing is None:
             return ()
-        sizes = self._scales.get(table.kind, {})
-        return ({name: np.full(table.rows, size) for name, size in sizes.items()},)
+        return shapes_of(self.about_drawing, _ON_A_MESH, table, _drawn_answers)
 
-    @cached_property
-    def _scales(self) -> dict[str, dict[str, float]]:
-        answers = Answers(self.surrogate, self.surrogate.nominal)
-        length, states = self.surrogate.nominal.length, self.surrogate.states
-        found = {"cogging": {"torque": _NUMERICAL["cogging"] * float(np.abs(answers.spectrum[0, 1:]).max()) * length}}
-        if states is not None:
-            torque = float(np.abs(states.base[:, 0]).max()) * length
-            linkage = (
-                self.surrogate.nominal.turns[0]
-                * float(np.abs(states.base[:, 1:]).max())
-                * length
-                * len(self.surrogate.layout.coils_of(0))
-            )
-            found["locked_rotor"] = {"torque": _NUMERICAL["locked_rotor"] * torque}
-            found["flux_linkage"] = {f"dpsi_{x}": _NUMERICAL["flux_linkage"] * linkage for x in PHASES}
-        return found
+
+def _drawn_answers(surrogate: Surrogate, table: Table) -> Mapping[str, np.ndarray]:
+    return at_magnet_temperatures(KINDS[table.kind], surrogate, surrogate.nominal, table.conditions)
 
 
 class _Asked:
@@ -160,10 +155,6 @@ class _Asked:
 
     def __hash__(self) -> int:
         return hash(self.content)
-
-
-# Of the largest value; 720 against 1440 edges on the sliding circle with twice the elements across a tooth.
-_NUMERICAL = {"cogging": 0.005, "locked_rotor": 2e-4, "flux_linkage": 1.5e-4}
 
 
 BASE = MachineBench()

@@ -1,17 +1,16 @@
 """A machine bench that answers in a millisecond: samples expanded in everything that may be different in the machine.
 
-    S(p) = S_0 + sum_j J_j p_j + sum_j C_j p_j^2 / 2 + mixed terms of the two components of an eccentricity
+    S(p) = S_0 + sum of the terms of ``terms.py`` at the coordinates p of ``coordinates.py``
 
-and a cubic term for the arc of touching magnets, a tenth less of which turns cogging round. The coordinates p are those
-of ``machine_coordinates``. Without current S are Fourier coefficients over the revolution; with current S belongs to
-one state, and is expanded in its rotor angle and currents as well. S_0 is of a fine mesh, the rest of coarser ones.
-About another design, with S_0 from field solutions there, the rest is the difference of the expansion between the two.
+Without current S are Fourier coefficients over the revolution; with current S belongs to one state, and is expanded in
+its rotor angle and currents as well. S_0 is of a fine mesh, the rest of coarser ones. About another design, with S_0
+from field solutions there, the rest is the difference of the expansion between the two.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -20,10 +19,10 @@ from effects.machine_design import MachineAsBuilt
 from geometry.winding import WindingLayout, star_of_slots
 from units import DEGREE
 from workbench.errors import WorkbenchError
-from workbench.models.machine.coordinates import ARC, LESS_ARC, SHIFTS, Coordinate, smooth_coordinates
-from workbench.models.machine.expansion import Changes, arc_name, mixed_name
+from workbench.models.machine.coordinates import Coordinate, all_coordinates
+from workbench.models.machine.field import LoadedState
+from workbench.models.machine.terms import Changes, Terms, loaded_terms_of, terms_of
 
-_TABLE = 4096  # angles of a revolution that are interpolated between by cubics; 68 to a period of order 60
 _REMEMBERED = 16  # designs
 _FARTHEST_ANGLE = 3 * DEGREE  # from a solved state that its expansion is used for
 _FARTHEST_CURRENT = 0.12  # relative
@@ -33,33 +32,63 @@ _FARTHEST_CURRENT = 0.12  # relative
 class LoadedSamples:
     """Samples of loaded states and how they change; s states, c coils.
 
-    states: angles and currents (s, 4);  base (s, 1 + c)
+    states: angles and currents (s, 4);  base: on the fine mesh, coarse: on that of the changes (s, 1 + c)
     angle, scale: first and second derivative by rotor angle [rad] and by a common factor of the currents (2, s, 1 + c)
     coils: per ampere-turn in every coil (s, c, 1 + c)
     """
 
     states: np.ndarray
     base: np.ndarray
+    coarse: np.ndarray
     angle: np.ndarray
     scale: np.ndarray
     coils: np.ndarray
 
+    @property
+    def list(self) -> tuple[LoadedState, ...]:
+        """The states as the field takes them."""
+        return tuple(LoadedState(angle, (a, b, c)) for angle, a, b, c in self.states.tolist())
+
 
 @dataclass(frozen=True, eq=False)
 class Surrogate:
-    """nominal: the machine as drawn;  no_load: Fourier coefficients of the fine base (1 + coils, orders)
-
-    idle, loaded: changes without and with current, of coarser meshes; idle as Fourier coefficients (1 + coils, orders)
+    """nominal: the machine as drawn
+    no_load, coarse: Fourier coefficients on the fine mesh and on that of the changes (1 + coils, orders)
+    idle, loaded: changes without and with current, of coarser meshes; idle of Fourier coefficients
     states: the loaded states, None where a campaign has none
     origin: the design that the base values belong to, None for the nominal one
     """
 
     nominal: MachineAsBuilt
     no_load: np.ndarray
-    idle: Changes
-    loaded: Changes | None
+    coarse: np.ndarray
+    idle: Terms
+    loaded: Terms | None
     states: LoadedSamples | None
     origin: MachineAsBuilt | None = None
+
+    def about(self, design: MachineAsBuilt, idle: np.ndarray, loaded: np.ndarray | None = None) -> Surrogate:
+        """The same about another design, from its samples on the meshes of the changes: coefficients without current
+        (1 + coils, orders), and with current (states, 1 + coils)."""
+        no_load, states = self.no_load.copy(), self.states
+        no_load[:, : idle.shape[1]] += idle - self.coarse
+        if states is not None:
+            states = replace(states, base=states.base + loaded - states.coarse)
+        return replace(self, origin=design, no_load=no_load, states=states)
+
+    @property
+    def on_coarse_mesh(self) -> Surrogate:
+        """The drawing on the meshes of the changes; orders that those cannot resolve as on the fine one."""
+        no_load = self.no_load.copy()
+        no_load[:, : self.coarse.shape[1]] = self.coarse
+        states = None if self.states is None else replace(self.states, base=self.states.coarse)
+        return replace(self, no_load=no_load, states=states)
+
+    def of_order(self, order: int, turn: complex) -> Surrogate:
+        """One order of the drawing over the revolution alone, times a complex number."""
+        only = np.zeros_like(self.no_load)
+        only[:, order] = turn * self.no_load[:, order]
+        return replace(self, no_load=only, idle=self.idle.none())
 
     @cached_property
     def layout(self) -> WindingLayout:
@@ -67,17 +96,17 @@ class Surrogate:
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:
-        arc = (ARC,) if self.nominal.machine.magnet_arc_fraction >= 1 else ()
-        return smooth_coordinates(self.nominal) + arc
+        return all_coordinates(self.nominal)
 
     @cached_property
     def _idle_terms(self) -> Terms:
-        return _terms(self.coordinates, self.idle, self._projection(self.nominal.turns), self.no_load.shape[1])
+        projection, length = self._projection(self.nominal.turns), self.no_load.shape[1]
+        return self.idle.each(lambda rows: _cut(projection @ rows, length))
 
     @cached_property
     def _loaded_terms(self) -> Terms:
-        swapped = Changes(*(_swap(part) for part in (self.loaded.base, self.loaded.linear, self.loaded.secant)))
-        return _terms(self.coordinates, swapped, self._projection(self.nominal.turns), len(self.states.base))
+        projection = self._projection(self.nominal.turns)
+        return self.loaded.each(lambda rows: projection @ rows)
 
     def position(self, design: MachineAsBuilt) -> np.ndarray:
         """Coordinates of a design, from the drawing on."""
@@ -126,18 +155,7 @@ class Surrogate:
         return lru_cache(maxsize=_REMEMBERED)(lambda design: self._added(terms, design) - at_origin)
 
     def _added(self, terms: Terms, design: MachineAsBuilt) -> np.ndarray:
-        p = self.position(design)
-        moved = np.flatnonzero(p)
-        value = sum(np.tensordot(p[moved] ** k, form[moved], 1) for k, form in enumerate(terms.powers, 1))
-        for (x, y), form in zip(self._shift_places, terms.mixed):
-            if p[x] and p[y]:
-                value = value + p[x] * p[y] * form
-        return value
-
-    @cached_property
-    def _shift_places(self) -> list[tuple[int, int]]:
-        names = [c.name for c in self.coordinates]
-        return [(names.index(x.name), names.index(y.name)) for x, y in SHIFTS]
+        return terms(self.position(design))
 
     # ---- with current --------------------------------------------------------------------------------------------
 
@@ -192,50 +210,48 @@ def _wrapped(angle: np.ndarray) -> np.ndarray:
     return np.mod(angle + np.pi, 2 * np.pi) - np.pi
 
 
-def _swap(part):
-    """States last, as the orders of a spectrum are."""
-    if isinstance(part, Mapping):
-        return {name: rows.T for name, rows in part.items()}
-    return part.T
+def surrogate_of(
+    nominal: MachineAsBuilt, found: Mapping[str, Mapping[str, np.ndarray]], states: tuple[LoadedState, ...]
+) -> Surrogate:
+    """From the results of all pieces of ``pieces.py`` by their names."""
+    drawn, changes = found["no load"], _changes(found, "no load ")
+    idle = terms_of(nominal, drawn["base"], changes)
+    if not states:
+        return Surrogate(nominal, drawn["fine"], drawn["base"], idle, None, None)
+    with_current = _states_last(_changes(found, "loaded "))
+    there = _at_angles(np.array([state.angle for state in states]), drawn["base"].shape[1])
+    slopes = Changes({name: there(row) for name, row in changes.slopes.items()}, {})
+    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, idle.each(there), slopes)
+    return Surrogate(nominal, drawn["fine"], drawn["base"], idle, loaded, _samples(found, states))
 
 
-@dataclass(frozen=True, eq=False)
-class Terms:
-    """powers: coefficients of the first, second and third power of every coordinate (3, j, 4, n)
-
-    mixed: second derivatives by the two components of both shifts (2, 4, n)
-    """
-
-    powers: np.ndarray
-    mixed: np.ndarray
+def _changes(found: Mapping, prefix: str) -> Changes:
+    """Slopes and nodes of the pieces with a prefix."""
+    pieces = {name.removeprefix(prefix): arrays for name, arrays in found.items() if name.startswith(prefix)}
+    all_rows = {name: rows for arrays in pieces.values() for name, rows in arrays.items()}
+    slopes = {name.removeprefix("slope "): rows for name, rows in all_rows.items() if name.startswith("slope ")}
+    return Changes(slopes, {name: arrays for name, arrays in pieces.items() if "change" in arrays})
 
 
-def _terms(coordinates: Sequence[Coordinate], changes: Changes, projection: np.ndarray, length: int) -> Terms:
-    powers = [[_cut(projection @ form, length) for form in _of_coordinate(c, changes)] for c in coordinates]
-    mixed = [_cut(projection @ _mixed(x, y, changes), length) for x, y in SHIFTS]
-    return Terms(np.array(powers).swapaxes(0, 1), np.array(mixed))
+def _states_last(changes: Changes) -> Changes:
+    """As without current: states where orders are, and an axis of members, of which a regular node has one."""
+    slopes = {name: rows.T for name, rows in changes.slopes.items()}
+    nodes = {name: {key: rows.T[None] for key, rows in node.items()} for name, node in changes.nodes.items()}
+    return Changes(slopes, nodes)
 
 
-def _of_coordinate(c: Coordinate, changes: Changes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coefficients of the first three powers."""
-    if c.name not in changes.linear:  # less arc of touching magnets: a cubic through three secants
-        inverse = np.linalg.inv(np.array(LESS_ARC)[:, None] ** np.arange(1, 4))
-        first, second, third = np.tensordot(inverse, [changes.secant[arc_name(change)] for change in LESS_ARC], 1)
-        return first, second, third
-    first = changes.linear[c.name]
-    none = np.zeros_like(first)
-    if c.name not in changes.secant:
-        return first, none, none
-    return first, (changes.secant[c.name] - first * c.size) / c.size**2, none
+def _samples(found: Mapping, states: tuple[LoadedState, ...]) -> LoadedSamples:
+    here, coils = found["loaded"], found["loaded coils"]
+    places = np.array([(state.angle, *state.currents) for state in states])
+    per_coil = np.stack([coils[f"slope coil[{k}]"] for k in range(len(coils))], axis=1)
+    angle, scale = here["angle"].swapaxes(0, 1), here["scale"].swapaxes(0, 1)
+    return LoadedSamples(places, found["loaded fine"]["fine"], here["base"], angle, scale, per_coil)
 
 
-def _mixed(x: Coordinate, y: Coordinate, changes: Changes) -> np.ndarray:
-    """d2/dxdy from the secant between the two directions."""
-    if mixed_name(x) not in changes.secant:
-        return np.zeros_like(changes.linear[x.name])
-    (first_x, square_x, _), (first_y, square_y, _) = _of_coordinate(x, changes), _of_coordinate(y, changes)
-    h = x.size / np.sqrt(2)
-    return (changes.secant[mixed_name(x)] - h * (first_x + first_y)) / h**2 - square_x - square_y
+def _at_angles(angles: np.ndarray, orders: int) -> Callable[[np.ndarray], np.ndarray]:
+    """From coefficients (rows, orders) to values at angles (rows, n)."""
+    turning = np.exp(1j * np.outer(np.arange(orders), angles))
+    return lambda spectrum: (spectrum @ turning).real
 
 
 def _cut(rows: np.ndarray, length: int) -> np.ndarray:
@@ -243,35 +259,3 @@ def _cut(rows: np.ndarray, length: int) -> np.ndarray:
     out = np.zeros((len(rows), length), dtype=rows.dtype)
     out[:, : min(length, rows.shape[1])] = rows[:, :length]
     return out
-
-
-# ---- functions over the revolution ----------------------------------------------------------------------------------
-
-
-def coefficients(samples: np.ndarray, most: int) -> np.ndarray:
-    """Coefficients (columns, orders) of samples over a revolution (n, columns): f = Re sum c_m exp(i m angle)."""
-    found = np.fft.rfft(samples, axis=0).T * 2 / len(samples)
-    found[:, 0] /= 2
-    return found[:, : min(most, (len(samples) - 1) // 2) + 1]
-
-
-def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Values (rows, n) at angles [rad] (n,) of functions over the revolution, by cubics between _TABLE angles."""
-    full = spectrum * (_TABLE / 2)
-    full[:, 0] *= 2
-    table = np.fft.irfft(full, _TABLE, axis=1)
-    place = np.mod(angle, 2 * np.pi) * _TABLE / (2 * np.pi)
-    first = np.floor(place).astype(int)
-    t = place - first
-    weights = (-t * (t - 1) * (t - 2) / 6, (t * t - 1) * (t - 2) / 2, -t * (t + 1) * (t - 2) / 2, t * (t * t - 1) / 6)
-    return sum(w * table[:, (first + k) % _TABLE] for k, w in zip((-1, 0, 1, 2), weights))
-
-
-def slope(spectrum: np.ndarray) -> np.ndarray:
-    """Coefficients of the derivative by angle."""
-    return spectrum * (1j * np.arange(spectrum.shape[1]))
-
-
-def averaged(spectrum: np.ndarray, width: float) -> np.ndarray:
-    """Coefficients of the mean over a window of angles, as a skew by ``width`` [rad] takes it: sinc(m width / 2)."""
-    return spectrum * np.sinc(np.arange(spectrum.shape[1]) * width / (2 * np.pi))

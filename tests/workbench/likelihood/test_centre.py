@@ -6,15 +6,18 @@ from numpy.testing import assert_allclose
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
-from workbench.explain.diagnosis import screen_of
-from workbench.explain.hypotheses import single
+from workbench.explain.explore import beliefs_of
+from workbench.explain.search import best_alone
 from workbench.likelihood.bench import PULLED, bench_of
 from workbench.likelihood.fit import linearised
+from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
 
 class ExpandedSpring(SpringModel):
     """A spring that answers by an expansion about some design, as a machine does."""
+
+    is_expansion = True
 
     def recentred(self, design):
         return self
@@ -58,7 +61,7 @@ def test_a_fit_from_the_drawing_ends_where_the_one_from_the_null_does(tmp_path):
     ends = []
     for k, base in enumerate((SpringModel(), ExpandedSpring())):
         found = bench(tmp_path / str(k), base, 900.0)
-        screen, _ = screen_of(found, (LIBRARY["soft_spring"](),), lambda words: None)
-        ends.append(single(found, screen.prepared[0])[0].fit)
+        signatures = signatures_of(found, (LIBRARY["soft_spring"](),))
+        ends.append(best_alone(found, signatures, beliefs_of(LIBRARY, signatures.names)).fit)
     assert ends[0].objective == pytest.approx(ends[1].objective, abs=0.05)
     assert_allclose(ends[0].z, ends[1].z, atol=0.05)

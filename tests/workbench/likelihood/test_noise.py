@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from tests.workbench.likelihood.tables import table
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
-from workbench.data.stack import thinned
+from workbench.data.stack import stacked, thinned
 from workbench.likelihood.bench import bench_of
-from workbench.likelihood.noise import LawError, Whitener, matched_rows
+from workbench.likelihood.noise import ChannelNoise, LawError, Noise, Whitener, matched_rows, measured_noise, whitener
 from workbench.models.model import Model
 
 
@@ -88,3 +89,81 @@ def test_thinning_does_not_keep_step_with_a_cycle(tmp_path):
     rows = np.searchsorted(table.conditions["displacement"][:5000], x[few.repeat == 0])
     assert len(np.unique(rows % 5)) == 5
     assert np.array_equal(x[few.repeat == 0], x[few.repeat == 1])  # repeats can still be compared
+
+
+# ---- scans, lost rows, logged temperatures ---------------------------------------------------------------------------
+
+
+def scans(offset=0.0, slope=0.0, rho=0.0, repeats=40, rows=60, seed=0):
+    """One channel of a model that answers zero; every repeat is a scan with an offset and a slope of its own."""
+    random = np.random.default_rng(seed)
+    error = random.standard_normal((repeats, rows))
+    for k in range(1, rows):
+        error[:, k] = rho * error[:, k - 1] + np.sqrt(1 - rho**2) * error[:, k]
+    error += offset * random.standard_normal((repeats, 1))
+    error += slope * random.standard_normal((repeats, 1)) * np.linspace(-0.5, 0.5, rows)
+    number = np.repeat(np.arange(repeats), rows)
+    place = np.tile(np.linspace(0, 1, rows), repeats)
+    return stacked([table({"force": 0.2 * error.ravel()}, 0.2, number, number, displacement=place)])
+
+
+def noise_of(stack):
+    return measured_noise(stack, np.zeros(stack.size))
+
+
+@pytest.mark.parametrize("offset, slope", [(2.0, 0.0), (0.0, 3.0), (1.0, 2.0)])
+def test_what_a_scan_as_a_whole_is_off_by_is_found(offset, slope):
+    found = noise_of(scans(offset, slope)).channels[0]
+    common = np.sqrt((offset**2 + slope**2 / 12) / 2)  # of shapes of rms 1, a slope of one through a scan has 1/12
+    assert found.scans == pytest.approx(common, rel=0.25)
+    assert found.scale == pytest.approx(1.0, rel=0.05) and abs(found.rho) < 0.05
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5])
+def test_neighbours_that_go_together_are_no_remounting(rho):
+    found = noise_of(scans(rho=rho)).channels[0]
+    assert found.rho == pytest.approx(rho, abs=0.06)
+    assert found.scans < 0.15
+
+
+def test_whitening_knows_that_scans_are_off_as_a_whole():
+    """Two scans, covariance by hand: independent noise, and an offset and a slope for each."""
+    stack = scans(repeats=2, rows=7)
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0, 0.8),), np.ones(14))
+    operator = whitener(stack, noise)(np.eye(14))
+    t = np.linspace(-0.5, 0.5, 7)
+    one = np.eye(7) + 0.8**2 * (1 + np.outer(t, t) / np.mean(t**2))
+    covariance = 0.3**2 * np.kron(np.eye(2), one)
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(14), atol=1e-10)
+
+
+def resistances(lost=(), seed=0):
+    """A damper at three shunts, one of them open, both ways; its temperature was logged, not set. Noise 1.8 N."""
+    random = np.random.default_rng(seed)
+    speed, shunt = (v.ravel() for v in np.meshgrid(np.linspace(-0.4, 0.4, 16), [0.3, 1.0, 1e6]))
+    repeat = np.repeat([0, 1, 2], len(speed))
+    speed, shunt = np.tile(speed, 3), np.tile(shunt, 3)
+    force = 3600 * speed / (1.2 + shunt) + 20 * speed
+    warm = 24 + 0.3 * random.standard_normal(len(speed))
+    keep = ~np.isin(np.arange(len(speed)), lost)
+    columns = {"velocity": speed[keep], "shunt": shunt[keep], "winding_T": warm[keep]}
+    read = (force + 1.8 * random.standard_normal(len(speed)))[keep]
+    return table({"force": read}, 1.8, repeat[keep], kind="damping_velocity", **columns), force[keep]
+
+
+@pytest.mark.parametrize("lost", [(), (5,), (5, 60, 61)])
+def test_a_lost_row_and_a_logged_temperature_do_not_inflate_the_noise(lost):
+    """Rows matched to the wrong station would show forces that differ by hundreds of newtons."""
+    one, _ = resistances(lost)
+    stack = stacked([one])
+    found = noise_of(stack).channels[0]  # of the readings themselves: no model levels the stations
+    assert 1.8 * found.scale == pytest.approx(1.8, rel=0.2)
+    assert found.pairs >= 2 * (48 - len(lost))
+
+
+def test_an_open_circuit_leaves_the_other_shunts_apart():
+    """1e6 ohm stands for open; 0.3 and 1 ohm stay two places, also where rows are lost."""
+    one, _ = resistances(lost=(48 + 7,))  # of the second repeat, at 0.3 ohm
+    stations = matched_rows(one)
+    shunts = one.conditions["shunt"][stations]
+    assert (shunts == shunts[:, :1]).all() and set(shunts[:, 0]) == {0.3, 1.0, 1e6}

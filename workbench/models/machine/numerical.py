@@ -1,0 +1,90 @@
+"""What may be wrong in the answers of a machine model before anything is wrong with the machine: shapes in the rows of
+a table, each with a standard normal weight of its own that all tables and repeats share.
+
+The mesh: the difference of the answers on two meshes of this very machine, times the share of it that the finer mesh
+still lacks. One shape a kind of measurement.
+
+The recorder: voltage orders near and above what it passes. How much of them it lets through and how late is unknown, so
+each comes with two shapes, in phase and a quarter period behind, as large as the model has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from workbench.data.table import Response, Table
+from workbench.models.machine.surrogate import Surrogate
+
+# Share of the difference between the two meshes that the finer one still lacks. 12 slots, 10 poles, fine meshes of 720
+# edges against coarse ones of 360 without current and 240 with it: 1440 edges differ from the fine ones by r = 0.37
+# (cogging), 0.27 (voltage), 0.12 (loaded torque), 0.35 (flux linkage) of what the coarse ones do. Going on like that,
+# r + r^2 + ... = r/(1 - r) = 0.58, 0.36, 0.14, 0.54 is still to come.
+LEFT = 0.5
+NEAR = 0.8  # of the highest order or frequency: filters against aliasing fall off from there
+LEAST = 2e-4  # of the largest order of the voltage: smaller ones cannot be told from none
+
+Responses = Mapping[str, np.ndarray]
+Ask = Callable[[Surrogate, Table], Responses]
+
+
+def shapes_of(surrogate: Surrogate, kinds: Sequence[str], table: Table, ask: Ask) -> tuple[Responses, ...]:
+    """All shapes in the rows of a table, SI, in the same places for every table; those that do not act in it are empty.
+
+    surrogate: about the drawing;  kinds: of all tables that a mesh has a say in;  ask: what a surrogate answers
+    """
+    return _mesh(surrogate, kinds, table, ask) + _recorder(surrogate, table, ask)
+
+
+def _mesh(surrogate: Surrogate, kinds: Sequence[str], table: Table, ask: Ask) -> tuple[Responses, ...]:
+    if table.kind not in kinds:
+        return tuple({} for _ in kinds)
+    fine, coarse = ask(surrogate, table), ask(surrogate.on_coarse_mesh, table)
+    left = {name: LEFT * (fine[name] - coarse[name]) for name in fine}
+    return tuple(left if kind == table.kind else {} for kind in kinds)
+
+
+# ---- the recorder ----------------------------------------------------------------------------------------------------
+
+
+def _recorder(surrogate: Surrogate, table: Table, ask: Ask) -> tuple[Responses, ...]:
+    orders = voltage_orders(surrogate)
+    if table.kind != "back_emf":
+        return ({},) * (2 * len(orders))
+    unknown = {order: [r.name for r in table.responses.values() if order > _reach(r, table)] for order in orders}
+    return tuple(
+        _shape(surrogate.of_order(order, turn), table, ask, unknown[order], behind)
+        for order in orders
+        for turn, behind in ((1.0, False), (1j, True))
+    )
+
+
+def voltage_orders(surrogate: Surrogate) -> tuple[int, ...]:
+    """Mechanical orders of the voltage of the machine as drawn beyond the fundamental, which every recorder passes."""
+    linkage = surrogate.spectrum(surrogate.nominal)[1:]
+    size = np.abs(linkage * np.arange(linkage.shape[1])).max(0)
+    return tuple(int(order) for order in np.flatnonzero(size > LEAST * size.max()) if order > size.argmax())
+
+
+def _shape(surrogate: Surrogate, table: Table, ask: Ask, names: Sequence[str], behind: bool) -> Responses:
+    """One order in the responses that it is unknown in; a quarter period behind turns with the sense of rotation."""
+    if not names:
+        return {}
+    found, sense = ask(surrogate, table), np.sign(table.conditions["speed"]) if behind else 1.0
+    return {name: found[name] * sense for name in names if name in found}
+
+
+def _reach(response: Response, table: Table) -> float:
+    """Highest order that surely passes: of the bandwidth where one is declared, else of the spacing of the angles."""
+    if response.bandwidth is not None:
+        return NEAR * response.bandwidth * 2 * np.pi / float(np.median(np.abs(table.conditions["speed"])))
+    apart = _spacing(table)
+    return NEAR * np.pi / apart if apart else np.inf
+
+
+def _spacing(table: Table) -> float:
+    """Usual distance of neighbouring angles of a scan [rad], zero where nothing is known of it."""
+    angle = np.asarray(table.conditions["angle_mech"])
+    apart = np.abs(np.mod(np.diff(angle) + np.pi, 2 * np.pi) - np.pi)[np.diff(table.scan) == 0]
+    return float(np.median(apart)) if len(apart) else 0.0

@@ -1,0 +1,37 @@
+"""Functions over a revolution, as Fourier coefficients by mechanical order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+ORDERS = 240  # that are kept
+_TABLE = 4096  # angles of a revolution that are interpolated between by cubics; 68 to a period of order 60
+
+
+def coefficients(samples: np.ndarray, most: int = ORDERS) -> np.ndarray:
+    """Coefficients (columns, orders) of samples over a revolution (n, columns): f = Re sum c_m exp(i m angle)."""
+    found = np.fft.rfft(samples, axis=0).T * 2 / len(samples)
+    found[:, 0] /= 2
+    return found[:, : min(most, (len(samples) - 1) // 2) + 1]
+
+
+def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Values (rows, n) at angles [rad] (n,) of functions over the revolution, by cubics between _TABLE angles."""
+    full = spectrum * (_TABLE / 2)
+    full[:, 0] *= 2
+    table = np.fft.irfft(full, _TABLE, axis=1)
+    place = np.mod(angle, 2 * np.pi) * _TABLE / (2 * np.pi)
+    first = np.floor(place).astype(int)
+    t = place - first
+    weights = (-t * (t - 1) * (t - 2) / 6, (t * t - 1) * (t - 2) / 2, -t * (t + 1) * (t - 2) / 2, t * (t * t - 1) / 6)
+    return sum(w * table[:, (first + k) % _TABLE] for k, w in zip((-1, 0, 1, 2), weights))
+
+
+def slope(spectrum: np.ndarray) -> np.ndarray:
+    """Coefficients of the derivative by angle."""
+    return spectrum * (1j * np.arange(spectrum.shape[1]))
+
+
+def averaged(spectrum: np.ndarray, width: float) -> np.ndarray:
+    """Coefficients of the mean over a window of angles, as a skew by ``width`` [rad] takes it: sinc(m width / 2)."""
+    return spectrum * np.sinc(np.arange(spectrum.shape[1]) * width / (2 * np.pi))
