@@ -41,7 +41,7 @@ def test_four_values_name_no_effect(four):
 
 
 def test_that_prediction_cannot_be_tested_is_said(four):
-    assert four.sealed is None and any("no row is held out" in words for words in four.complaints)
+    assert four.sealed is None and any("no row is sealed" in words for words in four.complaints)
 
 
 def test_three_shunted_values_ask_for_a_smaller_force_constant(three):

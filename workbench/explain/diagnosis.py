@@ -56,7 +56,7 @@ def diagnose(
     if not conventions.are_right:
         return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")
-    bench = bench_of(model, campaign, library)
+    bench = bench_of(model, campaign, library, progress=progress)
     search = searched(bench, library, progress)
     progress("simulating campaigns of this bench")
     simulator = Simulator(bench, search.signatures, search.beliefs, search.shapes, np.random.default_rng(seed))

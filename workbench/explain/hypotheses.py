@@ -206,11 +206,6 @@ def _without_unknown(problem: Problem, leading: Sequence[Seen]) -> tuple[Problem
 # ---- rows ------------------------------------------------------------------------------------------------------------
 
 
-def fitted_rows(bench: Bench, hypothesis: Hypothesis) -> Problem:
-    """The rows that were fitted, errors of laws left in, answered by the base model of the hypothesis."""
-    return replace(bench.fit, predictor=hypothesis.problem.predictor)
-
-
 def sealed_rows(bench: Bench, hypothesis: Hypothesis) -> Problem | None:
     """The rows that are sealed, answered by the base model of the hypothesis; None where none are."""
     if bench.held_out is None:
