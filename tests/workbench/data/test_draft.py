@@ -54,7 +54,8 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
     (table,) = campaign.tables
     assert table.kind == "damping_velocity" and table.rows == 41 and table.conditions["shunt"].max() == 1e6
     (score,) = compare(nominal_model(campaign), campaign, {}).scoreboard
-    assert score.chi2_per_n == pytest.approx(1.0, abs=1.0)  # the scatter of the neighbours is that of the sensor
+    # the scatter of neighbours says the size of the noise to within a quarter, 32 fitted readings its square to a half
+    assert 0.3 < score.chi2_per_n < 1.25**2 * 1.5
     assert path.read_bytes() == before
 
 
