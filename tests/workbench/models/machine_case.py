@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
@@ -15,6 +17,7 @@ from workbench.models.machine.surrogate import Surrogate
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
 PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
+_SOLVED = TemporaryDirectory(prefix="machine-case-")  # field solutions, gone with this process
 STATES = (LoadedState(0.1, (40.0, -20.0, -20.0)), LoadedState(0.1, (0.0, 0.0, 0.0)))
 
 
@@ -33,7 +36,7 @@ def field(density: MeshDensity = COARSE) -> MachineField:
 
 @cache
 def builder() -> SurrogateBuilder:
-    return SurrogateBuilder(drawn(), PLAN)
+    return SurrogateBuilder(drawn(), PLAN, Path(_SOLVED.name))
 
 
 @cache
