@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +10,11 @@ import numpy as np
 from benchmarks.blind_metrics import confusion, reliability
 from figures.style import new_figure, save_png, show_grid, styled
 
-BIN_EDGES = np.array([0.5, 0.7, 0.85, 0.95])
+KINDS = ("verdict", "effect", "nothing", "remains")
 
 
 @styled
-def confusion_figure(cases: Sequence[dict], title: str, path: Path) -> None:
+def confusion_figure(cases: Sequence[Mapping], title: str, path: Path) -> None:
     """Truth downwards, verdict sideways, share of the cases of a row as colour."""
     truths, verdicts, table = confusion(cases)
     figure = new_figure(height=0.22 * len(truths) + 3.0, width=0.24 * len(verdicts) + 4.0)
@@ -34,22 +34,19 @@ def confusion_figure(cases: Sequence[dict], title: str, path: Path) -> None:
 
 
 @styled
-def reliability_figure(blind: Sequence[dict], crime: Sequence[dict], path: Path) -> None:
-    """Share of right verdicts against the probability that was stated."""
+def reliability_figure(cases: Sequence[Mapping], path: Path) -> None:
+    """Share of the statements that are so against the probability that was stated, for every kind of statement."""
     figure = new_figure(height=5.0, width=6.5)
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1], color="0.6", linewidth=1)
-    for cases, label, marker, below in ((blind, "blind", "o", -11), (crime, "inverse crime", "s", 6)):
-        points = reliability(cases, BIN_EDGES)
+    for kind, marker in zip(KINDS, "osvd"):
+        points = reliability(cases, kind)
         if points:
             stated, hit, count = zip(*points)
-            axes.plot(stated, hit, marker=marker, label=label)
-            for x, y, n in zip(stated, hit, count):
-                axes.annotate(f"{n}", (x, y), textcoords="offset points", xytext=(0, below), fontsize=7, ha="center")
-    axes.set_xlabel("stated probability of the verdict")
-    axes.set_ylabel("share of right verdicts")
+            axes.plot(stated, hit, marker=marker, label=f"{kind}, n = {sum(count)}")
+    axes.set_xlabel("stated probability")
+    axes.set_ylabel("share that is so")
     axes.set_ylim(0, 1.06)
-    axes.set_title("Numbers are cases of a bin")
     axes.legend()
     show_grid(axes)
     save_png(figure, path)

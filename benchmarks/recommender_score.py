@@ -26,9 +26,9 @@ from effects.library import library
 from workbench.data.campaign import read_campaign
 from workbench.data.stack import rows_of
 from workbench.data.table import Campaign, Table
-from workbench.explain.diagnosis import Search, searched
+from workbench.explain.explore import Posterior
 from workbench.explain.recommend import gains_of
-from workbench.explain.verdict import Posterior, posterior
+from workbench.explain.search import Search, searched
 from workbench.likelihood.bench import bench_of
 from workbench.models.base import Option
 from workbench.models.bases import nominal_model
@@ -39,7 +39,7 @@ SURE = 0.9  # probability of the truth from which nothing more need be measured
 LIKELY = 0.02  # probability of the truth from which it is among what is weighed; with less there is nothing to separate
 NOTHING_YET = 0.5  # probability of "nothing is missing" above which there is no question yet
 VISIBLE = 50.0  # chi2 of the effect in the whole campaign; below it no measurement of it can tell
-SAME_LAW = ({"winding_temperature", "contact_resistance"},)  # one law, two names
+SAME_LAW = (frozenset({"winding_temperature", "contact_resistance"}),)  # one law, two names
 PARTS = {  # name of a part -> file, and the condition and its value where the part is not the whole table
     "damper": {
         "shunt 1 ohm": ("force_velocity.csv", {"shunt": 1.0}),
@@ -140,13 +140,12 @@ def tried(bench: str, seed: int) -> Tried | None:
 
 def _searched(campaign: Campaign) -> tuple[Search, Posterior]:
     search = searched(bench_of(nominal_model(campaign), campaign, library()), library())
-    return search, posterior(search.evidences)
+    return search, search.posterior
 
 
 def _probability(p: Posterior, truth: str) -> float:
-    """Of the truth, or of another name of the same law, alone."""
-    names = next((same for same in SAME_LAW if truth in same), {truth})
-    return sum(p.singles.get(name, 0.0) for name in names)
+    """Of the truth, or of another name of the same law."""
+    return p.any_of(next((same for same in SAME_LAW if truth in same), frozenset({truth})))
 
 
 def _rows(table: Table, bench: str, parts: Iterable[str]) -> np.ndarray:

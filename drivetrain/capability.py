@@ -2,7 +2,7 @@
 
 The output is a wheel behind a linkage or a shaft: an effort [N or Nm], a speed [m/s or rad/s] and an inertia [kg or
 kg m^2] behind a transmission ratio [m/rad or 1]. The machine is its flux map, so that saturation, current and voltage
-are in every number; gears and bearings are free of loss here.
+are in every number; gears and bearings are free of loss here, but for what a bench has shown.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from drivetrain.added_friction import NO_FRICTION, AddedFriction
 from electrical.dq import DriveLimits, mtpa_currents, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
@@ -34,6 +35,7 @@ class ActuatorDesign:
     nominal_density, overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
     transmission_ratio: tau_t [m/rad or 1]
     rotor_inertia_per_length [kg m]; gearbox_inertia: at the rotor shaft [kg m^2]
+    friction: losses on the way to the output that a bench has shown
 
     turns, strands, active_length, dc_voltage and transmission_ratio may be arrays (designs,): a batch of designs. Their
     product of turns and strands is the same in all, so that the ampere-turns are.
@@ -54,6 +56,7 @@ class ActuatorDesign:
     transmission_ratio: Values
     rotor_inertia_per_length: float
     gearbox_inertia: float
+    friction: AddedFriction = NO_FRICTION
 
     @property
     def resistance(self) -> Values:
@@ -81,10 +84,11 @@ class ActuatorDesign:
         """Largest effort [N or Nm] at an output speed [m/s or rad/s], magnitude, within current and voltage; 0 where
         none is left."""
         designs = np.broadcast_shapes(np.shape(self._volts_per_turn), np.shape(self.transmission_ratio))
-        return self.effort_over(np.full(designs, abs(speed)))
+        made = self.effort_over(np.full(designs, abs(speed)))
+        return self.friction.left(made, abs(speed), self.transmission_ratio)
 
     def effort_over(self, speed: np.ndarray) -> np.ndarray:
-        """The same effort [N or Nm], (n,), over speeds for one design; for a batch one speed a design.
+        """The same effort without friction [N or Nm], (n,), over speeds for one design; for a batch one speed a design.
 
         speed: of the output [m/s or rad/s], (n,)
         """
@@ -114,13 +118,14 @@ class ActuatorDesign:
     @property
     def effort_peak(self) -> Values:
         """Largest effort at rest [N or Nm]."""
-        return self.peak_torque / self.transmission_ratio
+        return self.friction.left(self.peak_torque / self.transmission_ratio, 0.0, self.transmission_ratio)
 
     @property
     def effort_continuous(self) -> Values:
         """Effort at the nominal current density [N or Nm]."""
         currents = mtpa_currents(self.per_turn, self._ampere_turns(self.nominal_density))
-        return float(self.per_turn.torque(*currents)) * self.active_length / self.transmission_ratio
+        made = float(self.per_turn.torque(*currents)) * self.active_length / self.transmission_ratio
+        return self.friction.left(made, 0.0, self.transmission_ratio)
 
     @property
     def low_speed_damping(self) -> Values:

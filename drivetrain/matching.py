@@ -455,7 +455,7 @@ def _mean_torque(case: FieldCase, model: FieldModel, density: float) -> float:
     solutions: list[FieldSolution] = []
     for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):
         solutions.append(model.solve(point, start=solutions[-1] if solutions else None))
-    return sum(maxwell_torque(solution) for solution in solutions) / len(solutions)
+    return case.kept * sum(maxwell_torque(solution) for solution in solutions) / len(solutions)
 
 
 def _as_cylinder(matcher: Matcher, reference: SizedSection) -> dict[str, NamedMatch | None]:

@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 
 from drivetrain.actuator_limits import ActuatorLimits
+from drivetrain.added_friction import NO_FRICTION, AddedFriction
 from drivetrain.asked import (
     ActiveLength,
     Check,
@@ -75,6 +76,7 @@ class OutcomeInputs:
     housing: what the casing adds; casing_mass: casing, bearings, shafts and lever [kg]; materials: of the drawn parts
     viscous_friction [Ns/m or Nms/rad], coulomb_friction [N or Nm] at the output
     load_inertia: what a drive moves [kg m^2], None where the load is not a mere inertia; stated: for the comparison
+    added_friction: losses beyond what the study states, as a bench has shown them
     """
 
     nominal_density: float
@@ -91,6 +93,7 @@ class OutcomeInputs:
     coulomb_friction: float
     load_inertia: float | None = None
     stated: StatedActuator | None = None
+    added_friction: AddedFriction = NO_FRICTION
 
 
 @dataclass(frozen=True)
@@ -190,6 +193,7 @@ def actuator_design(
         transmission_ratio=gears.transmission_ratio,
         rotor_inertia_per_length=masses.rotor_inertia / wound.active_length,
         gearbox_inertia=gears.train.inertia_at_fast_shaft,
+        friction=inputs.added_friction,
     )
 
 
@@ -245,11 +249,12 @@ def features_of(
 
 def limits_of(design: ActuatorDesign, inputs: OutcomeInputs) -> ActuatorLimits:
     """Effort over speed at the output up to the largest rotor speed, with inertia and friction."""
-    speed = np.linspace(0.0, inputs.rotor_speed_max * design.transmission_ratio, LIMIT_SPEEDS)
+    ratio, added = design.transmission_ratio, inputs.added_friction
+    speed = np.linspace(0.0, inputs.rotor_speed_max * ratio, LIMIT_SPEEDS)
     return ActuatorLimits(
         speed=speed,
         force=design.effort_over(speed),
         equivalent_mass=design.equivalent_mass,
-        coulomb_friction=inputs.coulomb_friction,
-        viscous_friction=inputs.viscous_friction,
+        coulomb_friction=inputs.coulomb_friction + added.coulomb(ratio),
+        viscous_friction=inputs.viscous_friction + added.viscous(ratio),
     )

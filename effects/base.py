@@ -1,6 +1,7 @@
 """The kinds of effect. An effect is one physical reason, with its own parameters, acting at one place:
 
     conditions as read --InstrumentEffect.on_condition--> true conditions
+    true conditions --StateEffect.on_state--> conditions and state of the device in each row
     design --DesignEffect.on_design--> design as built, as warm --model--> response
     response --ResponseEffect.on_response--> what the model leaves out --InstrumentEffect.on_reading--> reading
 
@@ -18,6 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from effects.parameter import parameters_of
+from effects.signature import Claim
 
 Columns = Mapping[str, np.ndarray]  # column name -> values in SI (n,)
 
@@ -29,7 +31,9 @@ class Effect:
     remedy: measurements that show it
     designs: types of design it can act on; empty means any
     contains: effects that are special cases of this one, never combined with it
-    model_error: declared relative error of the effect's own law
+    signature: what its vanishing size does to readings, to be verified on the model [claims]
+    model_error: declared relative error of the effect's own law; zero where the law defines the effect
+    model_error_source: what it was measured against, or rests on
     base_rate: how often a bench campaign of such a device has it, before anything is measured [1]
     base_rate_source: why it is believed to be that
     """
@@ -39,7 +43,9 @@ class Effect:
     remedy: ClassVar[tuple[str, ...]] = ()
     designs: ClassVar[tuple[type, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
+    signature: ClassVar[tuple[Claim, ...]] = ()
     model_error: ClassVar[float] = 0.0
+    model_error_source: ClassVar[str] = ""
     base_rate: ClassVar[float] = 0.02
     base_rate_source: ClassVar[str] = "one of about fifty things that a campaign may hide, none of them likelier"
 
@@ -76,13 +82,29 @@ class DesignEffect(Effect):
         raise NotImplementedError
 
 
+class StateEffect(Effect):
+    """What state the device is in, row by row, that nobody read: its own heating.
+
+    States are columns beside the conditions, each over its value in the design [1], and one where there is none:
+    "resistance_factor" of the winding, "viscous_factor" of a damper, "flux_factor" of the magnets of a dq machine.
+    """
+
+    def on_state(self, conditions: Columns, kind: str, design: Any) -> Columns:
+        """The conditions with states added or changed.
+
+        conditions: true ones, and "order", how far each row is through its scan in the order of acquisition, 0 to 1
+        """
+        raise NotImplementedError
+
+
 class ResponseEffect(Effect):
     """What the model leaves out, added to what it answers."""
 
     def on_response(self, response: Columns, conditions: Columns, kind: str, design: Any) -> Columns:
         """The changed response columns of one table.
 
-        response, conditions: columns of the table in SI;  kind: measurement kind of the table
+        response, conditions: columns of the table in SI, and "order" as in ``InstrumentEffect.on_reading``
+        kind: measurement kind of the table
         """
         raise NotImplementedError
 

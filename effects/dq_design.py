@@ -10,6 +10,7 @@ Motor signs, amplitude-invariant: currents, voltages and flux linkages are peak 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import sqrt
 from typing import Protocol
 
 import numpy as np
@@ -37,6 +38,7 @@ class DqMachine:
     reference_T: temperature at which psi_m and resistance hold [degC]
     copper_coefficient, remanence_coefficient: relative change of R and psi_m per kelvin of winding_T and magnet_T [1/K]
     iron_conductance: 1 / R_fe, in parallel with the induced voltage [1/ohm]
+    voltage_per_dc: largest peak phase voltage of its inverter over the voltage of the d.c. link [1]
     """
 
     pole_pairs: float
@@ -48,6 +50,7 @@ class DqMachine:
     copper_coefficient: float = 0.0
     remanence_coefficient: float = 0.0
     iron_conductance: float = 0.0
+    voltage_per_dc: float = 1.0 / sqrt(3.0)  # space vectors up to the circle that their hexagon holds
     fluxes: tuple[FluxLaw, ...] = field(default=())
     torques: tuple[TorqueLaw, ...] = field(default=())
 

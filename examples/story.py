@@ -80,7 +80,7 @@ def show(told: Told, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     print(comparison_sentence(told.before))
     for reading in readings(told.before):
-        print(f"  {reading.view} {reading.title}: {reading.flag}. {reading.sentence}")
+        print(f"  {reading.title}: {reading.flag}. {reading.sentence}")
     print(verdict_sentence(told.verdict))
     for step in told.ledger.steps[1:]:
         print(f"{step.effect}: {step.decision}; {step.reason}.")

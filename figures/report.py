@@ -99,7 +99,15 @@ class Remark:
     text: str
 
 
-Part = str | Table | Picture | KeyNumbers | Remark
+@dataclass(frozen=True)
+class Code:
+    """Text to be put into a file, line by line as it stands."""
+
+    kind: ClassVar[str] = "code"
+    text: str
+
+
+Part = str | Table | Picture | KeyNumbers | Remark | Code
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,13 @@ class LossInputs:
 
     steel: of the study; loss_grade: grade whose data stand for it, None where the study names none
     winding_temperature: of the copper [degC], in the resistivity of the wound machine already
+    iron_factor: iron loss over that of the data, dimensionless; another one where a bench has shown it
     """
 
     steel: str
     loss_grade: str | None
     winding_temperature: float
+    iron_factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ def losses_stage(
 def loss_law(inputs: LossInputs) -> IronLossLaw:
     """The law of the grade that the study names. Raises LossError without one."""
     try:
-        return iron_loss_law(inputs.loss_grade)
+        return iron_loss_law(inputs.loss_grade).times(inputs.iron_factor)
     except MaterialError as error:
         raise LossError(f"no losses for steel {inputs.steel} (materials.loss_grade): {error}") from None
 

@@ -23,6 +23,8 @@ class FieldCase:
     layers, coil_pitch [slots, None: what the star of slots gives], packing: of the winding; copper over slot area
     density: mesh of sweep, optima and maps; detail: mesh for single states that are looked at
     nominal_density, overload_density: amplitudes of the current density in the copper [A/m^2]
+    end_leakage: share of the magnets' flux that closes beyond the ends of the stack, where no plane field sees it, or
+        that the winding lacks for another reason
     """
 
     family: MachineFamily
@@ -34,6 +36,12 @@ class FieldCase:
     detail: MeshDensity
     nominal_density: float
     overload_density: float
+    end_leakage: float = 0.0
+
+    @property
+    def kept(self) -> float:
+        """Share of the torque of magnets and currents that the ends leave."""
+        return 1.0 - self.end_leakage
 
     def layout(self, machine: Machine) -> WindingLayout:
         """The winding of a machine of this study."""

@@ -112,13 +112,31 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
     angles = map_angles(model, grid.angles)
     tasks = {f"angle {k}": AngleTask(case, machine, float(angle), currents) for k, angle in enumerate(angles)}
     rows = workers.map("flux map", solve_angle_task, tasks)
-    data = mirrored(to_dataset(model, currents, angles.tolist(), list(rows.values())))
+    solved = to_dataset(model, currents, angles.tolist(), list(rows.values()))
+    data = mirrored(with_end_leakage(solved, case.end_leakage))
     error = ErrorTask(case, machine, float(angles[0]), *best_current(data, overload))
     torque, off = workers.map("torque error", torque_error_task, {"overload": error})["overload"]
     layout = model.section.layout
     return FluxMap(
         data, machine.pole_pairs, layout.coils_in_series, layout.coil_pitch, area, overload, off / abs(torque)
     )
+
+
+def with_end_leakage(data: xr.Dataset, share: float) -> xr.Dataset:
+    """A map whose magnets keep a share of their flux beyond the ends; without any, the map itself.
+
+    psi -> psi - share psi_0,   T -> (1 - share) (T - T_0) + (1 - share)^2 T_0      (psi_0, T_0: without current)
+
+    What the currents make is left as it is. The bench model of a machine has the same law.
+    data: with i_q = 0 on its grid and i_d = 0 inside it; share: dimensionless
+    """
+    if share == 0.0:
+        return data
+    idle = data.sel(iq=0.0).interp(id=0.0, method="cubic")
+    kept = 1.0 - share
+    torque = kept * (data.torque - idle.torque) + kept**2 * idle.torque
+    changed = {name: data[name] - share * idle[name] for name in ("psi_d", "psi_q")} | {"torque": torque}
+    return data.assign({name: one.transpose(*data[name].dims) for name, one in changed.items()})
 
 
 def solve_angle_task(task: AngleTask) -> dict[str, list[list[float]]]:

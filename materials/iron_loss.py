@@ -17,7 +17,7 @@ the hysteresis falls with B^3, and the makers' tables have one digit left). Cut 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import gamma, inf, pi, sqrt
 from typing import Any
 
@@ -65,6 +65,11 @@ class IronLossLaw:
                 raise MaterialError(f"{name} of the iron loss of {self.grade} must be a number >= 0, found {value}")
         if not (self.exponent > 0 and self.density > 0):
             raise MaterialError(f"exponent and density of the iron loss of {self.grade} must be positive")
+
+    def times(self, factor: float) -> IronLossLaw:
+        """The law with every term multiplied by a factor, dimensionless."""
+        terms = {name: factor * getattr(self, name) for name in ("hysteresis", "eddy", "excess")}
+        return replace(self, **terms)
 
     def specific_loss(self, frequency: Values, peak: Values) -> Values:
         """Loss [W/kg] for a sinusoidal flux density of this frequency [Hz] and peak [T]; arrays that broadcast."""

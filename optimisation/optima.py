@@ -226,11 +226,11 @@ def _torques(case: FieldCase, machine: Machine) -> _Torques:
     nominal, overload = (_over_period(case, model, density) for density in _densities(case))
     errors = torque_errors([nominal[0], overload[0]])
     return _Torques(
-        _mean([maxwell_torque(solution) for solution in nominal]),
-        _mean([arkkio_torque(solution) for solution in nominal]),
-        errors[0],
-        _mean([maxwell_torque(solution) for solution in overload]),
-        errors[1],
+        case.kept * _mean([maxwell_torque(solution) for solution in nominal]),
+        case.kept * _mean([arkkio_torque(solution) for solution in nominal]),
+        case.kept * errors[0],
+        case.kept * _mean([maxwell_torque(solution) for solution in overload]),
+        case.kept * errors[1],
     )
 
 

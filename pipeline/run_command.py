@@ -7,16 +7,27 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+from drivetrain.learned import Learned
+from drivetrain.outcome import Outcome
+from drivetrain.requirements import Requirements, Transmission
+from drivetrain.second_design import FirstDesign
+from electrical.winding_stage import WindingInputs, WindingOutcome
 from figures.files import File
 from figures.report import Part, Picture, Remark, Section, write_report
+from losses.stage import LossMap
+from magnetostatics.case import FieldCase
+from magnetostatics.flux_map_stage import FluxMap
 from pipeline.closure import packages_of
 from pipeline.graph import Graph
+from pipeline.learning import learned_from
+from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from pipeline.pools import DaskCluster, Pool, Processes
-from pipeline.results import results_of
-from pipeline.run import Failure, Run, git_commit
+from pipeline.results import Results, results_of
+from pipeline.run import Failure, Missing, Run, git_commit
 from pipeline.sentences import EXIT_FAILED, sentences
-from pipeline.stages import graph_of
+from pipeline.stages import graph_of, graph_of_second_design
 from study.errors import StudyError
 from study.read import read_study
 from study.schema import Study
@@ -32,24 +43,84 @@ def add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--jobs", type=int, metavar="N", help="processes that work at once (default: the cores)")
     parser.add_argument("--executor", choices=("processes", "dask"), default="processes", help="where tasks run")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://host:8786")
+    parser.add_argument("--with", dest="model", metavar="MODEL.toml", help="design again with what a bench has taught")
+    parser.add_argument("--out", metavar="DIR", help="of the second design; default results/<study>-learned/")
+    add_own_effects(parser)
     parser.set_defaults(run=run_command)
 
 
 def run_command(options: argparse.Namespace) -> None:
-    """Run the graph of a study. Exit codes: 0 all done, 1 a stage could not go on (the report says why), 130 Ctrl-C."""
+    """Run the graph of a study. Exit codes: 0 all done, 1 a stage could not go on (the report says why), 130 Ctrl-C.
+
+    With a model file the first design is run as far as it is not current, then the second one beside it.
+    """
     study = read_study(options.study)
     check_study(study)
     graph = graph_of(study)
     last = _wanted(graph, options.to)
+    learned = _learned(options)
     with sentences(), _pool(options, graph) as pool:
-        run = Run(graph, study, results_of(study), pool)
-        with run.results.held():
-            run.all(graph.usual if last is None else graph.before(graph.stage(last)))
-            if last is None or run.failures:
-                run.write_report(page_of)
-                print(f"report: {run.results.folder / REPORT}")
-        if run.failures:
-            raise SystemExit(EXIT_FAILED)
+        first = Run(graph, study, results_of(study), pool)
+        _run_all(first, None if learned is not None else last)
+        if learned is not None:
+            again = graph_of_second_design(study, learned, first_design(first))
+            _run_all(Run(again, study, _results_again(study, options.out), pool), last)
+
+
+def _run_all(run: Run, last: str | None) -> None:
+    """Every stage, or those up to one, and the report; SystemExit where one could not go on."""
+    with run.results.held():
+        run.all(run.graph.usual if last is None else run.graph.before(run.graph.stage(last)))
+        if last is None or run.failures:
+            run.write_report(page_of)
+            print(f"report: {run.results.folder / REPORT}")
+    if run.failures:
+        raise SystemExit(EXIT_FAILED)
+
+
+def _learned(options: argparse.Namespace) -> Learned | None:
+    """What the model file teaches, said at once; None without one."""
+    if options.model is None:
+        if options.out is not None:
+            raise StudyError("--out goes with --with: the first design has its place in results/<study>/.")
+        return None
+    with exit_on_wrong_campaign():
+        learned = learned_from(Path(options.model), own_library(options))
+    for lesson in learned.lessons:
+        print(f"learned: {lesson.reason}: {lesson.words}", flush=True)
+    for sentence in learned.unused:
+        print(f"not used: {sentence}", flush=True)
+    return learned
+
+
+def _results_again(study: Study, out: str | None) -> Results:
+    """The folder of the second design, never that of the first."""
+    first = results_of(study).folder
+    folder = first.with_name(f"{first.name}-learned") if out is None else Path(out)
+    if folder.resolve() == first.resolve():
+        raise StudyError(f"--out {out}: is the folder of the first design; name another one.")
+    return Results(folder)
+
+
+def first_design(run: Run) -> FirstDesign:
+    """The artefacts and inputs of a run that came to its end."""
+    return FirstDesign(
+        case=run.value(FieldCase),
+        windings=run.value(WindingInputs),
+        flux_map=run.value(FluxMap),
+        winding=run.value(WindingOutcome),
+        outcome=run.value(Outcome),
+        required=run.value(Requirements),
+        transmission=run.value(Transmission),
+        losses=_if_there(run, LossMap),
+    )
+
+
+def _if_there(run: Run, kind: type) -> Any:
+    try:
+        return run.value(kind)
+    except Missing:
+        return None
 
 
 def _wanted(graph: Graph, name: str | None) -> str | None:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import direct_drive, gear_demand, stated_loads, transmission
+from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
 from drivetrain.matching import match_stage, matched_machine
 from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
-from drivetrain.requirements import shaft_demand
+from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
 from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
@@ -52,14 +53,21 @@ from report import (
     sweep,
     winding,
 )
+from report import learned as learned_report
 from study.chain import drives, searches_linkage
 from study.inputs_drive import output
-from study.inputs_electrical import flux_map_grid, loss_inputs, winding_inputs
-from study.inputs_field import field_case, saturation_limit, sweep_grid
+from study.inputs_electrical import flux_map_grid, loss_inputs
+from study.inputs_field import saturation_limit, sweep_grid
 from study.inputs_gearbox import gear_inputs
+from study.inputs_learned import (
+    field_case_as_learned,
+    loss_inputs_as_learned,
+    outcome_inputs_as_learned,
+    study_itself,
+    winding_inputs_as_learned,
+)
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
-from study.inputs_outcome import outcome_inputs
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from vehicle.demands import required, requirements_stage
@@ -73,8 +81,12 @@ REFUSALS = (
 )  # fmt: skip
 
 _SOURCES = (
-    field_case, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    winding_inputs, loss_inputs, gear_inputs, outcome_inputs, output,
+    study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
+    gear_inputs, output,
+)  # fmt: skip
+_AS_LEARNED = (
+    field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
+    demand_as_learned,
 )  # fmt: skip
 _VEHICLE: tuple[Node, ...] = (
     Source(ride_case),
@@ -105,7 +117,6 @@ _MACHINE: tuple[Node, ...] = (
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
-    View(shaft_demand),
     Stage("winding", winding_stage, "turns, wires, final length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
@@ -114,18 +125,38 @@ _MACHINE: tuple[Node, ...] = (
 )
 
 
-def graph_of(study: Study) -> Graph:
-    """The graph of a study."""
+def graph_of(study: Study, learned: Learned = NOTHING_LEARNED) -> Graph:
+    """The graph of a study; learned: what a bench has taught about its machines."""
+    return Graph(_nodes(study, learned), _sections(study), REFUSALS)
+
+
+def graph_of_second_design(study: Study, learned: Learned, first: FirstDesign) -> Graph:
+    """The graph of a study that is designed again, with what each lesson costs the first design."""
+
+    def given(study: Study) -> FirstDesign:
+        return first
+
+    costs = Stage("lessons", lesson_costs_stage, "what each lesson costs", learned_report.files)
+    nodes = (*_nodes(study, learned), Source(given), costs)
+    return Graph(nodes, (learned_report.section, *_sections(study)), REFUSALS)
+
+
+def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
     driven, searched = drives(study), searches_linkage(study)
-    nodes = (
+
+    def given(study: Study) -> Learned:
+        return learned
+
+    return (
+        Source(given),
         *(Source(function) for function in _SOURCES),
+        *(View(function) for function in _AS_LEARNED),
         *(_VEHICLE if driven else _STATED),
         *(_SEARCHED if searched else (Source(stated_linkage),)),
         *_MACHINE,
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
-    return Graph(nodes, _sections(study), REFUSALS)
 
 
 def _has_loss_data(study: Study) -> bool:

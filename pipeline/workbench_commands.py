@@ -1,4 +1,4 @@
-"""The commands of the workbench: compare, diagnose, add, ledger, effects, new-effect, import."""
+"""The commands of the workbench: compare, diagnose, add, ledger, validate, effects, new-effect, import."""
 
 from __future__ import annotations
 
@@ -11,26 +11,44 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from disk import write_atomically
 from effects.base import Effect
-from effects.library import Library, effects_of_file, library
+from effects.library import Library
 from effects.parameter import parameters_of
+from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
 from workbench.explain.diagnosis import SEED, diagnose
-from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger.model_file import NAME, with_effects_of
+from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Ranked, Validation
+from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
+from workbench.ledger.validate import validate
 from workbench.ledger.walk import add_effect, skeleton_for, walk
 from workbench.models.bases import nominal_model
 from workbench.models.model import Model
-from workbench.report import write_comparison_report, write_diagnosis_report, write_ledger_report
-from workbench.report.as_json import comparison_json, diagnosis_json
-from workbench.report.sentences import conclusions, readings, verdict_sentence
-
-EXIT_WRONG_INPUT = 2
+from workbench.report import (
+    write_comparison_report,
+    write_diagnosis_report,
+    write_ledger_report,
+    write_validation_report,
+)
+from workbench.report.as_json import comparison_json, diagnosis_json, validation_json
+from workbench.report.sentences import (
+    NO_GAIN,
+    bound_sentences,
+    conclusions,
+    left_out_sentence,
+    meaning,
+    readings,
+    sealed_sentence,
+    verdict_sentence,
+)
+from workbench.report.validation import validation_sentence, warnings
+from workbench.report.words import factor_text, odds_text
 
 Run = Callable[[argparse.Namespace], None]  # a command
 
@@ -46,7 +64,7 @@ def add_diagnose(parser: argparse.ArgumentParser) -> None:
 
 
 def add_add(parser: argparse.ArgumentParser) -> None:
-    """Add an effect to the model: accepted only if the held-out error falls."""
+    """Add an effect to the model: accepted only if the data speak for it and prediction does not get worse."""
     parser.add_argument("effect", help="name of an effect, see `airgap effects`")
     _diagnose_parser(parser, _add)
 
@@ -56,10 +74,19 @@ def add_ledger(parser: argparse.ArgumentParser) -> None:
     _diagnose_parser(parser, _ledger)
 
 
+def add_validate(parser: argparse.ArgumentParser) -> None:
+    """Apply a model file to data that it was not learned from."""
+    parser.add_argument("model", help="model.toml that `airgap ledger` or `airgap add` wrote")
+    parser.add_argument("data", help="folder of a campaign of the same device; its [device] may be left out")
+    parser.add_argument("--out", metavar="DIR", help="where results go; default results/<id of the data>/")
+    add_own_effects(parser)
+    parser.set_defaults(run=_validate)
+
+
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """What the library knows; a name shows its equation."""
     parser.add_argument("name", nargs="?")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=_effects)
 
 
@@ -70,8 +97,9 @@ def add_new_effect(parser: argparse.ArgumentParser) -> None:
 
 
 def add_import(parser: argparse.ArgumentParser) -> None:
-    """A ``campaign.toml`` for a plain CSV file."""
-    parser.add_argument("csv", help="CSV file, one column a quantity; it is only read")
+    """A ``campaign.toml`` for plain data files."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="CSV, text or Parquet files of one folder; only read")
+    parser.add_argument("--like", metavar="DIR", help="campaign of the same device: takes its device and instruments")
     parser.set_defaults(run=_import)
 
 
@@ -82,69 +110,50 @@ def _bench(parser: argparse.ArgumentParser, run: Run, positional: bool = True) -
         parser.add_argument("campaign", nargs="?", help="folder of a campaign whose residual gives the first guess")
     parser.add_argument("--out", metavar="DIR", help="where results go; default results/<campaign id>/")
     parser.add_argument("--model", metavar="FILE", help="model file; default model.toml in the results, if it is there")
-    _own_effects(parser)
+    add_own_effects(parser)
     parser.set_defaults(run=run)
 
 
 def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
     _bench(parser, run)
     parser.add_argument("--seed", type=int, help="of the simulated campaigns")
-
-
-def _own_effects(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--effects-from",
-        action="append",
-        default=[],
-        metavar="FILE.py",
-        help="import effects of one's own: this runs the file; repeatable, a folder means its .py files",
+        "--accept-conventions",
+        action="store_true",
+        help="go on with what the columns of the files look like, where campaign.toml does not say it",
     )
-
-
-@contextmanager
-def exit_on_wrong_campaign() -> Iterator[None]:
-    """A ``WorkbenchError`` as its sentence on standard error and exit code 2."""
-    try:
-        yield
-    except WorkbenchError as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(EXIT_WRONG_INPUT) from None
-
-
-def _library(options: argparse.Namespace) -> Library:
-    for file in options.effects_from:
-        if not Path(file).exists():
-            raise WorkbenchError(f"--effects-from {file}: there is no such file.")
-        print(f"importing effects from {file}: this runs the file", file=sys.stderr, flush=True)
-        _must_hold_an_effect(file)
-    return library(options.effects_from)
-
-
-def _must_hold_an_effect(file: str) -> None:
-    """One sentence where a named file (or every file of a named folder) cannot be imported or holds no effect."""
-    path = Path(file)
-    found: Library = {}
-    for own in sorted(path.glob("*.py")) if path.is_dir() else [path]:
-        try:
-            found |= effects_of_file(own)
-        except Exception as error:  # whatever the user's own file raises
-            raise WorkbenchError(f"{own}: cannot be imported: {type(error).__name__}: {error}.") from None
-    if not found:
-        raise WorkbenchError(
-            f"{file}: holds no effect; one is a frozen dataclass derived from effects.base, with a title and a "
-            "parameter."
-        )
 
 
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
-    campaign, effects = read_campaign(options.campaign), _library(options)
+    campaign, effects = read_campaign(options.campaign), own_library(options)
     out = Path(options.out) if options.out else Path("results") / campaign.id
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
-        model = with_effects_of(saved, model, effects)
+        learned = read_model(saved, effects)
+        model = with_effects(learned, model, saved)
+        if learned.source is not None and learned.source.campaign != campaign.id:
+            print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)
     out.mkdir(parents=True, exist_ok=True)
     return campaign, effects, model, out
+
+
+def _from_elsewhere(source: str, here: str) -> str:
+    return (
+        f"learned from {source}; its effects are the start, the inputs are fitted to {here} anew. "
+        "`airgap validate` applies it as it is."
+    )
+
+
+def _settled(options: argparse.Namespace, campaign: Campaign, effects: Library, model: Model) -> Campaign:
+    """The campaign with the conventions that were found in it, where the user accepts them."""
+    if not options.accept_conventions:
+        return campaign
+    with _progress() as progress:
+        conventions = settle(model, campaign, effects, progress)
+    if not conventions.are_right:
+        print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
+    return conventions.campaign
 
 
 def _compare(options: argparse.Namespace) -> None:
@@ -159,6 +168,7 @@ def _compare(options: argparse.Namespace) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -168,6 +178,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -180,6 +191,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
+        campaign = _settled(options, campaign, effects, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -188,9 +200,22 @@ def _ledger(options: argparse.Namespace) -> None:
         _print_diagnosis(diagnosis, out)
 
 
+def _validate(options: argparse.Namespace) -> None:
+    with exit_on_wrong_campaign():
+        effects = own_library(options)
+        learned, campaign = read_model(options.model, effects), read_campaign(options.data)
+        with _progress() as progress:
+            validation = validate(learned, campaign, effects, progress)
+        out = Path(options.out) if options.out else Path("results") / campaign.id
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "validation.json").write_text(validation_json(validation), encoding="utf-8")
+        write_validation_report(out / "validation.html", validation)
+        _print_validation(validation, out)
+
+
 def _effects(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        found = _library(options)
+        found = own_library(options)
         if options.name is None:
             width = max(len(name) for name in found)
             for name, cls in found.items():
@@ -229,7 +254,10 @@ def _new_effect(options: argparse.Namespace) -> None:
 
 def _import(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
-        print(f'wrote {write_draft(Path(options.csv))}: fill in every "?"')
+        like = None if options.like is None else Path(options.like)
+        target, lines = write_draft([Path(file) for file in options.files], like)
+        todo = f'fill in the "?" of line {", ".join(map(str, lines))}' if lines else "read it once"
+        print(f"wrote {target}: {todo}, then airgap compare {target.parent}")
 
 
 @contextmanager
@@ -240,64 +268,104 @@ def _progress() -> Iterator[Callable[[str], None]]:
 
 
 def _write_comparison(out: Path, comparison: Comparison) -> None:
-    (out / "comparison.json").write_text(comparison_json(comparison), encoding="utf-8")
-    write_comparison_report(out / "comparison.html", comparison)
+    _write_text(out / "comparison.json", comparison_json(comparison))
+    write_atomically(out / "comparison.html", lambda part: write_comparison_report(part, comparison))
 
 
 def _write_diagnosis(out: Path, diagnosis: Diagnosis) -> None:
-    (out / "diagnosis.json").write_text(diagnosis_json(diagnosis), encoding="utf-8")
-    write_diagnosis_report(out / "diagnosis.html", diagnosis)
+    _write_text(out / "diagnosis.json", diagnosis_json(diagnosis))
+    write_atomically(out / "diagnosis.html", lambda part: write_diagnosis_report(part, diagnosis))
 
 
 def _write_ledger(out: Path, ledger: Ledger) -> None:
-    write_ledger_report(out / "ledger.html", ledger)
+    write_atomically(out / "ledger.html", lambda part: write_ledger_report(part, ledger))
+
+
+def _write_text(path: Path, text: str) -> None:
+    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def _print_comparison(c: Comparison, out: Path) -> None:
-    print(
-        f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'held out':>8}"
-    )
+    print(f"\n{'channel':28} {'unit':>9} {'n':>8} {'rms error':>10} {'%':>6} {'noise':>9} {'chi2/n':>8} {'sealed':>8}")
     for s in c.scoreboard:
-        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.2f}"
+        sealed = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.2f}"
         print(
             f"{s.channel:28} {s.unit:>9} {s.n:8d} {s.rms_error:10.4g} {s.rms_error_percent:6.2f} {s.noise_floor:9.3g} "
-            f"{s.chi2_per_n:8.2f} {held:>8}"
+            f"{s.chi2_per_n:8.2f} {sealed:>8}"
         )
     for reading in readings(c):
-        print(f"{'!' if reading.alarming else ' '} {reading.view}: {reading.sentence}")
+        print(f"{'!' if reading.alarming else ' '} {reading.title}: {reading.sentence}")
     for words in c.checks + c.complaints:
         print(f"! {words}")
     print(f"results in {out}")
 
 
 def _print_diagnosis(d: Diagnosis, out: Path) -> None:
-    print(f"\n{'effect':28} {'P':>6} {'ln Z':>8} {'held out':>16}  size")
+    print("", *(f"! {check}" for check in d.checks), sep="\n")
+    if d.verdict != "convention":
+        _print_found(d)
+    print(verdict_sentence(d), meaning(d), *bound_sentences(d), *conclusions(d), sep="\n")
+    if d.fix:
+        print("", d.fix, "", sep="\n")
+    print(f"results in {out}")
+
+
+def _print_found(d: Diagnosis) -> None:
+    """What was tried, the other probabilities, the sealed rows and what to measure next."""
+    print(f"{'effect':28} {'is there':>8} {'best with it':>12} {'left out':>16}  size [90 % interval]")
     for r in d.ranking[:8]:
-        held = (
-            "-"
-            if r.held_out_chi2_per_n_after is None
-            else (f"{r.held_out_chi2_per_n_before:.2f} -> {r.held_out_chi2_per_n_after:.2f}")
-        )
         sizes = ", ".join(
-            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}" for n, e in r.parameters.items()
+            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}{' on a bound' * (n in r.at_bound)}"
+            for n, e in r.parameters.items()
         )
-        print(f"{r.name:28} {r.probability:6.3f} {r.log_evidence:8.1f} {held:>16}  {sizes}")
-    print(f"nothing missing {d.p_nothing_missing:.3f}, none of these {d.p_none_of_these:.3f}")
-    for option in d.next_measurements[:3]:
-        print(f"next: {option.words} ({option.gain_nats:.1f} nats)")
-    print("", verdict_sentence(d), *conclusions(d), f"results in {out}", sep="\n")
+        print(f"{r.name:28} {r.probability:8.3f} {odds_text(r.log_evidence):>12} {_left_out(r):>16}  {sizes}")
+    print(
+        f"nothing missing {d.p_nothing_missing:.3f}, something unknown {d.p_something_remains:.3f}, "
+        f"none of these (unknown, no effect) {d.p_none_of_these:.3f}"
+    )
+    print("Is there: probability, alone or with others. Best with it: evidence of the best explanation that holds it.")
+    print(left_out_sentence(d), f"Rows that no fit has seen: {sealed_sentence(d)}", sep="\n")
+    for option in (m for m in d.next_measurements[:3] if m.gain_nats >= NO_GAIN):
+        print(f"next: {option.words} (expected {factor_text(option.gain_nats)} in the odds)")
+    print()
+
+
+def _left_out(r: Ranked) -> str:
+    before, after = r.held_out_chi2_per_n_before, r.held_out_chi2_per_n_after
+    return "-" if before is None or after is None or not r.parameters else f"{before:.2f} -> {after:.2f}"
 
 
 def _print_ledger(ledger: Ledger) -> None:
-    print(f"\n{'step':>4} {'effect':28} {'decision':9} {'ln Z gain':>9} {'chi2/n':>9} {'held out':>9}  then")
+    print(f"\n{'step':>4} {'effect':28} {'decision':9} {'evidence':>12} {'chi2/n':>9} {'left out':>9}  then")
     for s in ledger.steps:
-        held = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
+        left_out = "-" if s.held_out_chi2_per_n is None else f"{s.held_out_chi2_per_n:.3f}"
+        evidence = "-" if s.decision == "start" else odds_text(s.log_evidence_gain)
         print(
-            f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {s.log_evidence_gain:9.1f} {s.chi2_per_n:9.3f} {held:>9}"
+            f"{s.step:4d} {s.effect or '-':28} {s.decision:9} {evidence:>12} {s.chi2_per_n:9.3f} {left_out:>9}"
             f"  {s.verdict}"
         )
+    for s in ledger.steps:
+        if s.reason:
+            print(f"step {s.step}, {s.effect}, was {s.decision}: {s.reason}")
+
+
+def _print_validation(v: Validation, out: Path) -> None:
+    print(
+        f"\n{'':10} {'channel':28} {'unit':>9} {'n':>6} {'rms error':>10} {'bias':>10} {'chi2/n':>8} {'in 90 %':>8}",
+        end="",
+    )
+    print(f" {'outside':>8} {'error there':>11}")
+    for words, channels in (("corrected", v.corrected), ("as drawn", v.base)):
+        for c in channels:
+            there = "-" if c.outside_rms_error is None else f"{c.outside_rms_error:.4g}"
+            print(
+                f"{words:10} {c.channel:28} {c.unit:>9} {c.n:6d} {c.rms_error:10.4g} {c.bias:10.3g} "
+                f"{c.chi2_per_n:8.2f} {c.share_in_90:8.0%} {c.outside_range:8.0%} {there:>11}"
+            )
+    for words in v.range_left + v.complaints:
+        print(f"! {words}")
+    print(validation_sentence(v), *warnings(v), f"results in {out}", sep="\n")
 
 
 def _print_step(step: LedgerStep) -> None:
-    held = "" if step.held_out_chi2_per_n is None else f", held-out chi2/n {step.held_out_chi2_per_n:.3f}"
-    print(f"{step.effect}: {step.decision}; {step.reason}{held}")
+    print(f"{step.effect}: {step.decision}; {step.reason}")

@@ -23,7 +23,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class ChannelScore:
-    """V0: one channel. Errors [unit]; rms_error_percent of the channel's rms reading.
+    """One channel. Errors [unit]; rms_error_percent of the channel's rms reading.
 
     excess_share: share of this channel in the sum of chi2 - n over all channels that exceed it
     noise_floor: rms error that noise alone leaves [unit];  u_val: rms of sqrt(u_D^2 + u_num^2) [unit]
@@ -47,7 +47,7 @@ class ChannelScore:
 
 @dataclass(frozen=True)
 class Pull:
-    """V1: how far the fit moved one declared uncertainty.
+    """How far the fit moved one declared uncertainty.
 
     pull: shift / sigma;  sigma: as declared, relative or [unit];  what: "tolerance", "instrument" or "effect"
     """
@@ -81,7 +81,7 @@ class ChannelFit:
 
 @dataclass(frozen=True, eq=False)
 class RegimeMap:
-    """V2: mean residual in u of the cells of a grid; NaN where no reading lies.
+    """Mean residual in u of the cells of a grid; NaN where no reading lies.
 
     x_edges (nx + 1,), y_edges (ny + 1,): cells; y is None for one condition only, and then ny is 1
     mean, p_value, count: (ny, nx); p_value by permutation of the residuals
@@ -99,7 +99,7 @@ class RegimeMap:
 
 @dataclass(frozen=True, eq=False)
 class OrderSpectrum:
-    """V3: residual amplitude of every order per revolution [unit], (k,).
+    """Residual amplitude of every order per revolution [unit], (k,).
 
     floor: amplitude that noise alone stays below in 99 of 100 spectra
     classes: family of each order, from ORDER_CLASSES
@@ -124,7 +124,7 @@ ORDER_CLASSES = ("native", "rotor", "stator", "emf", "other_emf", "encoder", "cu
 
 @dataclass(frozen=True)
 class Scaling:
-    """V4: residual ~ quantity ** exponent, with its 90 % interval.
+    """Residual ~ quantity ** exponent, with its 90 % interval.
 
     meaning: the law that the exponent speaks for, empty where the interval allows several;  n: levels of the quantity
     """
@@ -140,7 +140,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Parity:
-    """V5: rms of the odd and the even part of the residual in u under a reversal, and what noise alone would give."""
+    """Rms of the odd and the even part of the residual in u under a reversal, and what noise alone would give."""
 
     channel: str
     reversal: str
@@ -151,7 +151,7 @@ class Parity:
 
 @dataclass(frozen=True, eq=False)
 class Sequence:
-    """V6: residual in u in the order of acquisition, (n,).
+    """Residual in u in the order of acquisition, (n,).
 
     axis: Axis("sample"), time or a temperature;  scan: number of each row's scan
     trend: residual in u from the first to the last by a straight line;  p_value: by permutation
@@ -176,7 +176,7 @@ class Dependence:
 
 @dataclass(frozen=True, eq=False)
 class Whiteness:
-    """V7: autocorrelation of the residual within scans at lags 1, 2, ... (k,) after whitening, its 99 % band."""
+    """Autocorrelation of the residual within scans at lags 1, 2, ... (k,) after whitening, its 99 % band."""
 
     channel: str
     autocorrelation: np.ndarray
@@ -186,7 +186,7 @@ class Whiteness:
 
 @dataclass(frozen=True)
 class SignatureMatch:
-    """V8: cosine between the residual and what an effect would leave, both freed of what tolerances can explain."""
+    """Cosine between the residual and what an effect would leave, both freed of what tolerances can explain."""
 
     name: str
     title: str
@@ -236,7 +236,11 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Ranked:
-    """One effect that was tried. probability: that it, alone, is what is missing."""
+    """One effect that was tried. probability: that it is there, alone or with others.
+
+    log_evidence: ln p of the fitted rows gained by its best explanation over nothing [nats]
+    parameters: of that explanation;  at_bound: those that end on a bound of what is possible
+    """
 
     name: str
     title: str
@@ -247,6 +251,7 @@ class Ranked:
     chi2_per_n_after: float
     held_out_chi2_per_n_before: float | None
     held_out_chi2_per_n_after: float | None
+    at_bound: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,13 +268,17 @@ class SizePosterior:
 
 
 @dataclass(frozen=True)
-class Separation:
-    """How well the data tell two effects apart: expected log-Bayes factor [nats] at the fitted size, and what would."""
+class Sealed:
+    """Rows that no fit and no choice has seen, opened once. p_value: of their chi2 by chance under the final model
 
-    first: str
-    second: str
-    nats: float
-    separated_by: str = ""
+    tests: what they test, in words;  holds: whether the model holds there
+    """
+
+    n: int
+    chi2_per_n: float
+    p_value: float
+    tests: str
+    holds: bool
 
 
 @dataclass(frozen=True)
@@ -298,9 +307,16 @@ class NextMeasurement:
 class Diagnosis:
     """All that ``diagnose`` found.
 
-    verdict: nothing_missing, effect, group, pair, partial, none_of_these or cannot_tell;  probability: of the verdict
+    verdict: nothing_missing, effect, group, pair, several, partial, none_of_these, cannot_tell or convention
+    probability: that the sentence of the verdict is true: that the names are there (of a group: one of them), that
+        nothing is missing which these data would show plainly, that something is there that no effect is
+    p_nothing_missing: P(no effect and no unknown function);  p_none_of_these: P(an unknown function and no effect)
+    p_something_remains: P(an unknown function, with or without effects);  p_sets: of the leading explanations, by words
+    alternatives: of a name, what may stand for it;  sure: probability from which a name is printed on this bench
     abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
         {3.0: 0.4, 10.0: 1.0}
+    fix: of a convention, the text for campaign.toml;  conventions: what the columns look like, a sentence each
+    checks: of the data alone, before any model
     before, after: the failing channel without and with the leading effect, the same rows
     """
 
@@ -309,26 +325,28 @@ class Diagnosis:
     verdict: str
     names: tuple[str, ...]
     probability: float
-    ranking: tuple[Ranked, ...]
-    p_nothing_missing: float
-    p_none_of_these: float
-    p_pairs: Mapping[str, float]
-    abstention_power: Mapping[float, float]
-    detection_limits: tuple[DetectionLimit, ...]
-    next_measurements: tuple[NextMeasurement, ...]
-    residual_signature: Mapping[str, object]
-    seed: int
-    wall_s: float
+    ranking: tuple[Ranked, ...] = ()
+    p_nothing_missing: float = 0.0
+    p_none_of_these: float = 0.0
+    p_something_remains: float = 0.0
+    p_sets: Mapping[str, float] = field(default_factory=dict)
+    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    sure: float = 0.95
+    abstention_power: Mapping[float, float] = field(default_factory=dict)
+    detection_limits: tuple[DetectionLimit, ...] = ()
+    next_measurements: tuple[NextMeasurement, ...] = ()
+    residual_signature: Mapping[str, object] = field(default_factory=dict)
+    sealed: Sealed | None = None
+    seed: int = 0
+    wall_s: float = 0.0
     before: ChannelFit | None = None
     after: ChannelFit | None = None
     posteriors: tuple[SizePosterior, ...] = ()
-    separations: tuple[Separation, ...] = ()
-    false_alarm_rate: float | None = None
     complaints: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    fix: str = ""
+    conventions: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
-    p_partial: Mapping[str, float] = field(default_factory=dict)
-    # of a pair: name -> names that may stand for it
-    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -336,7 +354,7 @@ class LedgerStep:
     """One row of the ledger. step 0 is the model before any effect; decision: "start", "accepted" or "refused".
 
     rms_error, noise_floor: per channel [unit of the channel];  rms_error_percent: of the rms of the readings
-    held_out_rms_error: of the rows that no fit has seen, channels without such rows left out [unit of the channel]
+    held_out_chi2_per_n: of conditions left out of the fit, region by region; None where there are no regions
     """
 
     step: int
@@ -353,15 +371,110 @@ class LedgerStep:
     verdict: str = ""
     reason: str = ""
     rms_error_percent: Mapping[str, float] = field(default_factory=dict)
-    held_out_rms_error: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FinalParameter:
+    """A number of the final model. owner: its effect, ``input`` or ``instrument``; the latter are shifts from the
+    drawing and from a right reading, in % or in their unit"""
+
+    owner: str
+    name: str
+    estimate: Estimate
+
+
+@dataclass(frozen=True)
+class LearnedAt:
+    """Where a response of a kind of measurement was fitted.
+
+    channel: ``back_emf.voltage``;  conditions: name -> low and high of the fitted rows, unit
+    """
+
+    channel: str
+    rows: int
+    chi2_per_n: float
+    conditions: Mapping[str, tuple[float, float, str]]
 
 
 @dataclass(frozen=True)
 class Ledger:
-    """The steps in their order; goal: held-out chi2/n at which the walk ends."""
+    """The steps in their order; goal: chi2/n at which the walk ends.
+
+    parameters: of the final model;  ranges: where it was learned
+    """
 
     campaign: str
     model: str
     steps: tuple[LedgerStep, ...]
     goal: float = 1.2
+    parameters: tuple[FinalParameter, ...] = ()
+    ranges: tuple[LearnedAt, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ValidatedChannel:
+    """How well one channel of new data was predicted, without anything of the device being fitted to them.
+
+    n: rows;  rms_error, bias: reading minus prediction [unit], of the rows with a prediction
+    chi2_per_n: squared residual over the noise of the readings, 1 for a model without error
+    share_in_90: share of all rows inside the predicted 90 % band;  outside_range: share of rows at conditions beyond
+    those that the model was learned at;  no_answer: rows where the model has no steady state, outside every band
+    outside_*: of the rows beyond the learned conditions, None where there are none
+    """
+
+    channel: str
+    unit: str
+    n: int
+    rms_error: float
+    bias: float
+    chi2_per_n: float
+    share_in_90: float
+    outside_range: float
+    no_answer: int = 0
+    outside_rms_error: float | None = None
+    outside_chi2_per_n: float | None = None
+    outside_share_in_90: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedChannel:
+    """Readings of a channel and what two models predict for them [unit] (n,); NaN where one has no steady state.
+
+    *_half: half width of the predicted 90 % band;  outside: rows beyond the learned conditions
+    """
+
+    channel: str
+    unit: str
+    axis: Axis
+    x: np.ndarray
+    series: tuple[str, ...]
+    measured: np.ndarray
+    corrected: np.ndarray
+    corrected_half: np.ndarray
+    base: np.ndarray
+    base_half: np.ndarray
+    outside: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """A model file applied to a campaign that it was not learned from.
+
+    campaign: of the new data;  learned_from: campaign of the model file
+    corrected, base: with what the file knows, and the device as drawn
+    calibrations: of the new instruments, found with the corrected model;  range_left: one sentence for each condition
+    complaints: what limits the conclusions
+    """
+
+    campaign: str
+    model: str
+    learned_from: str
+    effects: tuple[str, ...]
+    corrected: tuple[ValidatedChannel, ...]
+    base: tuple[ValidatedChannel, ...]
+    predictions: tuple[PredictedChannel, ...]
+    calibrations: tuple[Pull, ...]
+    range_left: tuple[str, ...]
+    complaints: tuple[str, ...]
+    provenance: Mapping[str, str]

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-GROUPS = ("null", "single", "pair", "outside")
+GROUPS = ("null", "single", "pair", "several", "outside", "mistake")
+LAST_REPEAT = "last repeat of every table"
 VISIBLE = 20.0  # chi2 that an effect adds after the tolerances took what they can; 10 nats
 
 
@@ -21,7 +22,10 @@ class Answer:
     bench: "damper", "dq", ...;  group: one of GROUPS
     effects: names as in the library, with the size of their first parameter in SI; empty for null and outside
     outside: words for a truth that no effect of the library describes
-    visibility: chi2 that each hidden effect adds beyond tolerances and instruments, by name
+    visibility: chi2 that each hidden effect adds beyond tolerances, instruments and the other hidden effects, by name
+    ambient: names among ``effects`` that every bench of this kind has, whatever else it hides
+    mistake: names by which the diagnosis may call what the laboratory wrote down wrongly;  detail: that, in words
+    about: how the bench was made: "declared" (true over declared u), "remount" (scatter of a scan in u), ...
     """
 
     bench: str
@@ -30,6 +34,10 @@ class Answer:
     effects: Mapping[str, float] = field(default_factory=dict)
     outside: str = ""
     visibility: Mapping[str, float] = field(default_factory=dict)
+    ambient: tuple[str, ...] = ()
+    mistake: tuple[str, ...] = ()
+    detail: str = ""
+    about: Mapping[str, float] = field(default_factory=dict)
 
     def is_visible(self, name: str) -> bool:
         return self.visibility[name] >= VISIBLE
@@ -63,6 +71,7 @@ class Bench:
     tolerance: Mapping[str, float]  # relative
     systematic: Mapping[str, tuple[str, float]]  # key -> kind, sigma
     tables: tuple[Series, ...]
+    holdout: str = LAST_REPEAT  # empty: the campaign says nothing about it
 
     def write(self, folder: Path) -> Path:
         """campaign.toml and a CSV file a table; returns the folder."""
@@ -75,7 +84,8 @@ class Bench:
     def _toml(self) -> str:
         repeats = int(max(table.repeat.max() for table in self.tables)) + 1
         lines = ["[campaign]", f'id = "{self.id}"', f"repeats = {repeats}"]
-        lines += ['holdout = { rule = "last repeat of every table" }', "", "[device]"]
+        lines += [f'holdout = {{ rule = "{self.holdout}" }}'] if self.holdout else []
+        lines += ["", "[device]"]
         lines += [f"{key} = {_text(value)}" for key, value in self.device.items()]
         lines += ["", "[tolerance]"] + [f"{key} = {{ sigma_rel = {s:g} }}" for key, s in self.tolerance.items()]
         lines += ["", "[systematic]"]
@@ -95,4 +105,8 @@ def _write_csv(path: Path, table: Series) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
-        writer.writerows(zip(*([f"{value:.8g}" for value in values] for values in columns.values())))
+        writer.writerows(zip(*([_cell(value) for value in values] for values in columns.values())))
+
+
+def _cell(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.8g}"

@@ -105,15 +105,25 @@ class DamperBench:
     outside = {
         "cubic stiffness": Hidden(1e10, 1e10, partial(_damper, "cubic_stiffness")),
         "drag with v^1.5": Hidden(40.0, 40.0, partial(_damper, "three_halves")),
-        "heating during a table": Hidden(0.1, 0.1, partial(_damper, "heating")),
-        "force constant over position": Hidden(0.1, 0.1, partial(_damper, "magnet_pitch")),
         "friction pressed on by the load": Hidden(0.1, 0.1, partial(_damper, "load_friction")),
         "resonance of the rig": Hidden(0.02, 0.02, partial(_damper, "rig_resonance")),
         "dead band of the force cell": Hidden(3.0, 3.0, partial(_damper, "dead_band")),
         "force ripple over velocity": Hidden(2.0, 2.0, partial(_damper, "stick_ripple")),
         "second circuit in the iron": Hidden(20.0, 20.0, partial(_damper, "pole_split")),
-        "damping that differs with direction": Hidden(0.2, 0.2, partial(_damper, "asymmetry")),
+        "drag with sqrt(v)": Hidden(1.0, 1.0, partial(_damper, "root_drag")),
+        "shear-thinning lubricant": Hidden(0.5, 0.5, partial(_damper, "grease")),
+        "drag from a threshold speed on": Hidden(20.0, 20.0, partial(_damper, "relief")),
+        "arm that relaxes": Hidden(500.0, 500.0, partial(_damper, "spring_arm")),
+        "rubber bush": Hidden(1e3, 1e3, partial(_damper, "bush")),
+        "stop near the end of the travel": Hidden(2e4, 2e4, partial(_damper, "bump")),
+        "drag of a boundary layer": Hidden(2.0, 2.0, partial(_damper, "history")),
+        "range switch of the force amplifier": Hidden(0.02, 0.02, partial(_damper, "range_step")),
     }
+    tuning_kinds = frozenset(list(outside)[:7])
+    alike = (
+        frozenset({"winding_temperature", "contact_resistance"}),
+        frozenset({"coulomb_friction", "stribeck_friction"}),
+    )
 
     def setup(self, rng: np.random.Generator) -> Setup:
         k, r, m, c = rng.uniform(40, 80), rng.uniform(0.8, 2.0), rng.uniform(1.0, 4.0), rng.uniform(10, 40)

@@ -15,6 +15,7 @@ OPEN = 1e5  # ohm, from here the circuit counts as open
 SAMPLES = 512  # of a period, imposed motion
 STEPS, PERIODS = 360, 3  # of a period and periods of the integration; the last one is read
 MOUNT_LOSS = 2.4e-4  # s, damping over stiffness of the mount (thesis table B.1: 50 N s/m at 2e5 N/m)
+RELAXATION = 0.03  # s, of ``spring_arm``
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)  # of the two-stage Rosenbrock method, which damps stiff parts (Verwer et al. 1999)
 
 
@@ -49,6 +50,14 @@ class TrueDamper:
     three_halves: float = 0.0
     heating: float = 0.0  # rise of the resistance over a table, relative
     magnet_pitch: float = 0.0  # share of K lost two millimetres from mid-stroke
+    root_drag: float = 0.0  # drag with sqrt(v), at 0.1 m/s [N]
+    grease: float = 0.0  # drag of a shear-thinning lubricant, F asinh(v / 15 mm/s) [N]
+    relief: float = 0.0  # drag that sets in beyond 0.18 m/s [N s/m]
+    spring_arm: float = 0.0  # a spring of so much [N/m] in series with a dashpot, relaxing in 30 ms
+    bush: float = 0.0  # stiffness of a rubber bush at small travel [N/m], half of it at a millimetre, loss factor 0.2
+    bump: float = 0.0  # stiffness of a stop from 1.6 mm of travel on [N/m]
+    history: float = 0.0  # drag of the fluid's boundary layer, with sqrt(j omega) [N s^1.5/m]
+    range_step: float = 0.0  # share by which the force amplifier reads more above 12 N
     load_friction: float = 0.0  # dry friction in proportion to the current's force, only when it brakes forwards
     rig_resonance: float = 0.0  # share by which a rig mode at 17 Hz adds to the force
     dead_band: float = 0.0  # force below which the cell shows nothing
@@ -65,6 +74,7 @@ def steady(d: TrueDamper, velocity: np.ndarray, shunt: np.ndarray) -> tuple[np.n
     force = _mechanical(d, x, velocity, d.hysteresis * _sign(d, velocity)) + _factor(d, x, current) * current
     force = force + _coupled(d, velocity, _factor(d, x, current) * current)
     force = force + d.rig_share * np.abs(force) * _sign(d, velocity)
+    force = force + d.spring_arm * RELAXATION * velocity  # the spring stands still, its dashpot drags
     return _through_cell(d, force), current * shunt
 
 
@@ -77,9 +87,16 @@ def impedance(d: TrueDamper, frequency: np.ndarray, amplitude: np.ndarray, shunt
     z = 2.0 / len(theta) * (force @ np.exp(-1j * theta)) / top
     s = 2j * np.pi * frequency
     z = z / (1 + np.sqrt(2) * (s * d.force_lag / np.sqrt(2)) + (s * d.force_lag / np.sqrt(2)) ** 2)
-    split = d.pole_split * s / (s + 2 * np.pi * 12.0)
+    split = d.pole_split * s / (s + 2 * np.pi * 12.0) + _beside(d, s, amplitude)
     mode = 1.0 + d.rig_resonance / (1.0 - (frequency / 17.0) ** 2 + 0.2j * frequency / 17.0)
     return (z + split) * (mode if d.rig_resonance else 1.0)
+
+
+def _beside(d: TrueDamper, s, amplitude):
+    """What acts beside the damper at a harmonic travel: an arm that relaxes, a bush, a boundary layer [N s/m]."""
+    arm = d.spring_arm * RELAXATION / (1 + s * RELAXATION)
+    bush = d.bush * (1 + 0.2j) / (1 + amplitude / 1e-3) / s
+    return arm + bush + d.history * np.sqrt(s)
 
 
 def _motion_of(d: TrueDamper):
@@ -102,6 +119,9 @@ def _mechanical(d: TrueDamper, x, v, hysteresis):
     force = force + d.misalignment * np.sqrt(x**2 + 2.5e-9) * direction
     force = force + d.cubic_stiffness * x**3
     force = force + d.stick_ripple * np.sin(2 * np.pi * v / 0.13)
+    force = force + d.root_drag * np.sqrt(np.abs(v) / 0.1) * direction + d.grease * np.arcsinh(v / 0.015)
+    force = force + d.relief * np.maximum(np.abs(v) - 0.18, 0.0) * direction
+    force = force + d.bump * np.maximum(np.abs(x) - 1.6e-3, 0.0) * np.sign(x)
     return force + hysteresis
 
 
@@ -111,6 +131,7 @@ def _coupled(d: TrueDamper, v, electric):
 
 
 def _through_cell(d: TrueDamper, force):
+    force = force * (1.0 + d.range_step * 0.5 * (1.0 + np.tanh((np.abs(force) - 12.0) / 0.2)))
     if not d.dead_band:
         return force
     return np.sign(force) * np.sqrt(np.maximum(force**2 - d.dead_band**2, 0.0))

@@ -90,16 +90,23 @@ class DqBench:
         "rotor_position_zero": Hidden(0.0005, 0.06, partial(_instrument, "rotor_zero"), signed=True),
     }
     outside = {
-        "d axis saturates forwards": Hidden(0.1, 0.1, partial(_machine, "d_knee")),
         "resonance of the drive train": Hidden(0.05, 0.05, partial(_machine, "speed_bump")),
         "drag with speed^1.5": Hidden(0.05, 0.05, partial(_machine, "drag_power")),
-        "low-pass of the dividers": Hidden(2e-5, 2e-5, partial(_machine, "divider_pole")),
-        "heating during a table": Hidden(0.05, 0.05, partial(_machine, "heating")),
         "dead band of the torque cell": Hidden(0.02, 0.02, partial(_machine, "torque_dead_band")),
-        "proximity loss": Hidden(0.05, 0.05, partial(_machine, "proximity")),
         "magnets give way to negative i_d": Hidden(0.05, 0.05, partial(_machine, "demagnetisation")),
-        "friction of one direction": Hidden(0.03, 0.03, partial(_machine, "one_sided_friction")),
+        "speed sensor that bends": Hidden(0.01, 0.01, partial(_machine, "tacho_bend")),
+        "bearing pulled by the current": Hidden(0.05, 0.05, partial(_machine, "pulled_bearing")),
+        "drag with the root of the speed": Hidden(0.05, 0.05, partial(_machine, "root_drag")),
+        "shear-thinning lubricant": Hidden(0.03, 0.03, partial(_machine, "grease")),
+        "drag from a threshold speed on": Hidden(5e-4, 5e-4, partial(_machine, "relief")),
+        "soft knee of the switches": Hidden(0.3, 0.3, partial(_machine, "soft_knee")),
+        "range switch of the torque amplifier": Hidden(0.02, 0.02, partial(_machine, "range_step")),
+        "current sensor that bends": Hidden(0.02, 0.02, partial(_machine, "shunt_bend")),
+        "bridges saturated by |i_q|": Hidden(2e-4, 2e-4, partial(_machine, "bridges")),
+        "magnets shielded by eddy currents": Hidden(0.01, 0.01, partial(_machine, "shielding")),
     }
+    tuning_kinds = frozenset(list(outside)[:6])
+    alike = (frozenset({"winding_temperature", "contact_resistance"}),)
 
     def setup(self, rng: np.random.Generator) -> Setup:
         psi, l_d, r = rng.uniform(0.08, 0.13), rng.uniform(2e-3, 4e-3), rng.uniform(0.3, 0.7)

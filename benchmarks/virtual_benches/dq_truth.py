@@ -46,6 +46,16 @@ class TrueMachine:
     proximity: float = 0.0  # extra resistance at 1000 rad/s electrical, relative
     demagnetisation: float = 0.0  # share of psi_m lost at i_d = -RATED, with its square
     one_sided_friction: float = 0.0  # Nm when turning backwards
+    tacho_bend: float = 0.0  # share by which the speed is higher than read, at 300 rad/s, with its square
+    root_drag: float = 0.0  # Nm at 100 rad/s, with the root of the speed
+    grease: float = 0.0  # Nm asinh(speed / 20 rad/s), a shear-thinning lubricant
+    relief: float = 0.0  # Nm s/rad beyond 130 rad/s, a seal that lifts
+    soft_knee: float = 0.0  # V of the switches, reached with exp(-|i| / 6 A)
+    range_step: float = 0.0  # share by which the torque amplifier reads more above 5 Nm
+    shunt_bend: float = 0.0  # share by which the current is larger than read at RATED, with its square
+    bridges: float = 0.0  # Vs/A of the d axis lost to |i_q|, in proportion
+    shielding: float = 0.0  # share of psi_m that eddy currents in the magnets keep out at 1000 rad/s electrical
+    pulled_bearing: float = 0.0  # Nm of friction at RATED, in proportion to the current
 
 
 def _to_dq(phases):
@@ -69,12 +79,15 @@ def _flux_linkage(m: TrueMachine, i_d, i_q):
         s = 2.0 * m.saturation
         psi_q = m.inductance_q / s * np.sign(i_q) * np.log1p(s * np.abs(i_q))
     bend = 1.0 + 0.05 * (i_q / RATED) ** 2
+    psi_d = psi_d - m.bridges * (np.sqrt(i_q**2 + 1.0) - 1.0)
     return psi_d - m.cross * i_q**2 / bend, psi_q - 2.0 * m.cross * i_d * i_q / bend
 
 
 def _induced(m: TrueMachine, i_d, i_q, omega):
     """Voltages of the three phases from d(psi)/dt (n, 3, angles)."""
-    psi = _to_phases(*_flux_linkage(m, i_d, i_q))
+    psi_d, psi_q = _flux_linkage(m, i_d, i_q)
+    kept_out = m.shielding * 2.0 * omega**2 / (omega**2 + 1e6)
+    psi = _to_phases(psi_d - m.psi_m * kept_out, psi_q)
     order = np.fft.rfftfreq(len(ANGLES), 1.0 / len(ANGLES))
     slope = np.fft.irfft(1j * order * np.fft.rfft(psi, axis=2), len(ANGLES), axis=2)
     return omega[:, None, None] * slope
@@ -110,27 +123,41 @@ def _shaft(m: TrueMachine, torque, speed):
     lost = lost + m.speed_bump * direction / (1.0 + ((np.abs(speed) - 190.0) / 25.0) ** 2)
     lost = lost + m.drag_power * direction * (np.abs(speed) / 100.0) ** 1.5
     lost = lost - m.one_sided_friction * (speed < 0)
+    lost = lost + m.root_drag * direction * np.sqrt(np.abs(speed) / 100.0) + m.grease * np.arcsinh(speed / 20.0)
+    lost = lost + m.relief * direction * np.maximum(np.abs(speed) - 130.0, 0.0)
     return torque - lost
 
 
 def _cell(m: TrueMachine, torque):
+    torque = torque * (1.0 + m.range_step * 0.5 * (1.0 + np.tanh((np.abs(torque) - 5.0) / 0.1)))
     return torque * np.abs(torque) / (np.abs(torque) + m.torque_dead_band + 1e-30)
 
 
 def operation(m: TrueMachine, i_d, i_q, speed):
     """v_d, v_q at the drive and torque at the cell."""
+    speed = _true_speed(m, speed)
+    more = 1.0 + m.shunt_bend * (np.hypot(i_d, i_q) / RATED) ** 2
+    i_d, i_q = i_d * more, i_q * more
     omega = m.pole_pairs * speed
     e_d, e_q, torque = _air_gap(m, i_d, i_q, speed)
     warm = m.resistance * (1.0 + m.heating * np.linspace(0.0, 1.0, len(speed)))
     warm = warm * (1.0 + m.proximity * (omega / 1000.0) ** 2)
-    switched = _to_dq(m.dead_time * np.tanh(_to_phases(i_d, i_q) / 0.3))
+    phases = _to_phases(i_d, i_q)
+    knee = m.soft_knee * np.sign(phases) * -np.expm1(-np.abs(phases) / 6.0)
+    switched = _to_dq(m.dead_time * np.tanh(phases / 0.3) + knee)
     v = (warm * i_d + e_d + switched[0]) + 1j * (warm * i_q + e_q + switched[1])
     v = v / (1.0 + 1j * omega * m.divider_pole)
-    return v.real, v.imag, _cell(m, _shaft(m, torque, speed))
+    pulled = m.pulled_bearing * np.hypot(i_d, i_q) / RATED * np.sign(speed)
+    return v.real, v.imag, _cell(m, _shaft(m, torque, speed) - pulled)
+
+
+def _true_speed(m: TrueMachine, speed):
+    return speed * (1.0 + m.tacho_bend * (speed / 300.0) ** 2)
 
 
 def back_emf(m: TrueMachine, speed):
     """RMS voltage, line to line, at open terminals."""
+    speed = _true_speed(m, speed)
     none = np.zeros_like(speed)
     e_d, e_q, _ = _air_gap(m, none, none, speed)
     fundamental = np.hypot(e_d, e_q) / np.sqrt(1.0 + (m.pole_pairs * speed * m.divider_pole) ** 2)
@@ -139,12 +166,14 @@ def back_emf(m: TrueMachine, speed):
 
 def drag(m: TrueMachine, speed):
     """Torque that brakes at open terminals."""
+    speed = _true_speed(m, speed)
     none = np.zeros_like(speed)
     return -_cell(m, _shaft(m, _air_gap(m, none, none, speed)[2], speed))
 
 
 def short_circuit(m: TrueMachine, speed):
     """Torque that brakes and RMS current with the terminals short-circuited."""
+    speed = _true_speed(m, speed)
     omega = m.pole_pairs * speed
 
     def voltages(currents):
@@ -156,4 +185,6 @@ def short_circuit(m: TrueMachine, speed):
     start = np.concatenate([np.full_like(speed, -m.psi_m / m.inductance_d), np.zeros_like(speed)])
     i_d, i_q = np.split(fsolve(voltages, start, xtol=1e-10), 2)
     torque = _air_gap(m, i_d, i_q, speed)[2]
-    return -_cell(m, _shaft(m, torque, speed)), np.hypot(i_d, i_q) / np.sqrt(2.0)
+    size = np.hypot(i_d, i_q)
+    torque = _shaft(m, torque, speed) - m.pulled_bearing * size / RATED * np.sign(speed)
+    return -_cell(m, torque), size / (1.0 + m.shunt_bend * (size / RATED) ** 2) / np.sqrt(2.0)

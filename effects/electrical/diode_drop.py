@@ -9,6 +9,7 @@ import numpy as np
 from effects.law_effects import CircuitEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Touches
 
 
 @dataclass(frozen=True)
@@ -22,13 +23,32 @@ class DiodeDrop(CircuitEffect):
     title = "voltage drop of a rectifier"
     looks_like = "no braking below a threshold of velocity, a constant loss of voltage above it"
     remedy = ("slow force-velocity points at low shunt", "voltage on both sides of the rectifier")
-    model_error = 0.02
+    signature = (
+        Odd("damping_velocity.force", ("velocity",)),
+        Touches("back_emf.voltage"),
+        Touches("damping_shunt.damping"),
+        Touches("impedance.re"),
+    )
+    model_error = 0.004
+    model_error_source = "benchmarks/law_errors.py: against exponential (softplus) bridge"
+    base_rate = 0.01
+    base_rate_source = "engineering judgement: a rectifier is seldom forgotten, one damper in a hundred"
 
     drop: float = parameter(
-        0.0, "V", prior=LogNormal(0.5, 1.0), low=0.0, high=5.0, source="0.4 V (thesis) to 1.4 V (silicon bridge)"
+        0.0,
+        "V",
+        prior=LogNormal(0.5, 1.0),
+        low=0.0,
+        high=5.0,
+        source="thesis section 5.2.1: 0.4 V; data sheet class: silicon bridge 1.4 V",
     )
     knee: float = parameter(
-        0.05, "V", prior=LogNormal(0.05, 0.7), low=1e-3, high=1.0, source="two diodes at 25 mV of thermal voltage"
+        0.05,
+        "V",
+        prior=LogNormal(0.05, 0.7),
+        low=1e-3,
+        high=1.0,
+        source="textbook: two diodes at 25 mV of thermal voltage (Sedra and Smith)",
     )
 
     def left(self, voltage, resistance):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from effects.law_effects import ForceEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Power, Touches
 
 
 @dataclass(frozen=True)
@@ -19,13 +20,32 @@ class EddyDrag(ForceEffect):
     title = "eddy-current drag"
     looks_like = "extra damping at open terminals that bends over at high velocity"
     remedy = ("drag with and without magnets", "drag up to higher velocity")
-    model_error = 0.03
+    signature = (
+        Odd("damping_velocity.force", ("velocity",)),
+        Power("damping_velocity.force", "shunt", 0.0),
+        Touches("damping_shunt.damping"),
+        Touches("impedance.re"),
+    )
+    model_error = 0.018
+    model_error_source = "benchmarks/law_errors.py: against brake curve with another power above the corner"
+    base_rate = 0.02
+    base_rate_source = "engineering judgement: solid back iron or housing near the magnets, one damper in fifty"
 
     coefficient: float = parameter(
-        0.0, "N s/m", prior=LogNormal(20.0, 1.0), low=0.0, high=5e3, source="solid back iron of small actuators"
+        0.0,
+        "N s/m",
+        prior=LogNormal(20.0, 1.0),
+        low=0.0,
+        high=5e3,
+        source="engineering judgement: solid back iron of small actuators",
     )
     corner: float = parameter(
-        0.5, "m/s", prior=LogNormal(0.5, 0.7), low=0.05, high=50.0, source="skin depth equals pole pitch, 0.1-2 m/s"
+        0.5,
+        "m/s",
+        prior=LogNormal(0.5, 0.7),
+        low=0.05,
+        high=50.0,
+        source="textbook: skin depth equals pole pitch, 0.1 to 2 m/s (Wouterse 1991)",
     )
 
     def force(self, position, velocity):

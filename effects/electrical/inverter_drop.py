@@ -10,6 +10,7 @@ from effects.base import ResponseEffect
 from effects.dq_design import DqMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
@@ -24,9 +25,27 @@ class InverterDrop(ResponseEffect):
     looks_like = "a constant voltage along the current that does not depend on speed"
     remedy = ("voltage measured at the terminals instead of commanded", "two DC-link voltages")
     designs = (DqMachine,)
+    signature = (
+        Power("dq_operation.v_d", "speed", 0.0),
+        Power("dq_operation.v_q", "speed", 0.0),
+        Odd(
+            "dq_operation.v_q",
+            (
+                "i_q",
+                "i_d",
+            ),
+        ),
+    )
+    base_rate = 0.05
+    base_rate_source = "engineering judgement: commanded instead of measured voltages, one drive in twenty"
 
     drop: float = parameter(
-        0.0, "V", prior=LogNormal(1.5, 0.8), low=0.0, high=40.0, source="2 us at 10 kHz and 100 to 400 V"
+        0.0,
+        "V",
+        prior=LogNormal(1.5, 0.8),
+        low=0.0,
+        high=40.0,
+        source="Choi and Sul (1996): 2 us at 10 kHz and 100 to 400 V",
     )
 
     def on_response(self, response, conditions, kind, design):

@@ -8,6 +8,7 @@ from effects.base import DesignEffect
 from effects.dq_design import DqMachine
 from effects.parameter import parameter
 from effects.prior import Normal
+from effects.signature import Power, Touches
 
 
 @dataclass(frozen=True)
@@ -18,9 +19,25 @@ class QuadratureInductance(DesignEffect):
     looks_like = "v_d changes with i_q and speed, at small currents too"
     remedy = ("inductance meter with the rotor locked on q",)
     designs = (DqMachine,)
+    signature = (
+        Power("dq_operation.v_d", "i_q", 1.0),
+        Power("dq_operation.v_d", "speed", 1.0),
+        Power("dq_operation.torque", "i_d", 1.0),
+        Touches("short_circuit.*"),
+        Touches("dq_supply.*"),
+    )
+    base_rate = 0.03
+    base_rate_source = (
+        "engineering judgement: calculated instead of measured, one machine in thirty beyond its tolerance"
+    )
 
     change: float = parameter(
-        0.0, "1", prior=Normal(0.10), low=-0.6, high=1.5, source="leakage and gap tolerance move L_q by 10 %"
+        0.0,
+        "1",
+        prior=Normal(0.10),
+        low=-0.6,
+        high=1.5,
+        source="engineering judgement: leakage and gap tolerance move L_q by 10 %",
     )
 
     def on_design(self, design):

@@ -8,6 +8,7 @@ from effects.base import DesignEffect
 from effects.dq_design import DqMachine
 from effects.parameter import parameter
 from effects.prior import Normal
+from effects.signature import Power, Touches
 
 
 @dataclass(frozen=True)
@@ -18,8 +19,21 @@ class WindingTurns(DesignEffect):
     looks_like = "back-EMF, inductances and resistance all off in the ratio n : n^2 : n^2"
     remedy = ("count, or phase resistance together with back-EMF",)
     designs = (DqMachine,)
+    signature = (
+        Power("back_emf.v_ll", "speed", 1.0),
+        Touches("dq_operation.v_d"),
+        Touches("dq_operation.v_q"),
+        Touches("dq_operation.torque"),
+        Touches("short_circuit.current"),
+        Touches("dq_supply.*"),
+        Touches("phase_resistance.resistance"),
+    )
+    base_rate = 0.01
+    base_rate_source = "engineering judgement: a winding other than on the drawing, one prototype in a hundred"
 
-    change: float = parameter(0.0, "1", prior=Normal(0.05), low=-0.5, high=0.5, source="one turn of ten to forty")
+    change: float = parameter(
+        0.0, "1", prior=Normal(0.05), low=-0.5, high=0.5, source="geometry: one turn of ten to forty"
+    )
 
     def on_design(self, design):
         n = 1.0 + self.change

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from effects.instrument.readings import ReadingGain
 from effects.parameter import parameter
 from effects.prior import Normal
+from effects.signature import Touches
 
 
 @dataclass(frozen=True)
@@ -18,5 +19,18 @@ class CurrentGain(ReadingGain):
     remedy = ("a shunt resistor in series with the probe",)
     readings = ("current", "power")
     set_points = ("i_*",)
+    signature = (
+        Touches("dq_operation.v_d"),
+        Touches("dq_operation.v_q"),
+        Touches("dq_operation.torque"),
+        Touches("short_circuit.current"),
+        Touches("dq_supply.*"),
+        Touches("locked_rotor.torque"),
+        Touches("flux_linkage.dpsi_?"),
+    )
+    base_rate = 0.02
+    base_rate_source = "engineering judgement: probe range or turns ratio a little off, one bench in fifty"
 
-    gain: float = parameter(0.0, "1", prior=Normal(0.02), low=-0.3, high=0.3, source="Hall probes 1 to 3 %")
+    gain: float = parameter(
+        0.0, "1", prior=Normal(0.02), low=-0.3, high=0.3, source="data sheet class: Hall probes 1 to 3 %"
+    )

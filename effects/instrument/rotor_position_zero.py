@@ -9,6 +9,7 @@ import numpy as np
 from effects.base import InstrumentEffect
 from effects.parameter import parameter
 from effects.prior import Normal
+from effects.signature import Touches
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,24 @@ class RotorPositionZero(InstrumentEffect):
     title = "zero of the rotor position in the drive"
     looks_like = "torque without the set i_q, v_d at open terminals in proportion to speed"
     remedy = ("v_d while coasting at zero current", "align the rotor with a direct current")
+    signature = (
+        Touches("dq_operation.v_d"),
+        Touches("dq_operation.v_q"),
+        Touches("dq_operation.torque"),
+    )
+    base_rate = 0.04
+    base_rate_source = (
+        "engineering judgement: alignment by a short current pulse, one drive in twenty-five off by a degree"
+    )
 
-    offset: float = parameter(0.0, "rad", prior=Normal(0.02), low=-0.8, high=0.8, source="1 electrical degree is good")
+    offset: float = parameter(
+        0.0,
+        "rad",
+        prior=Normal(0.02),
+        low=-0.8,
+        high=0.8,
+        source="engineering judgement: one electrical degree is good, three are met",
+    )
 
     def on_condition(self, conditions, kind):
         return self._turned(conditions, "i", -self.offset)

@@ -2,40 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import numpy as np
-
-from effects.base import Columns, ResponseEffect
+from effects.base import DesignEffect
+from effects.machine.places import CREEP, SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
-
-KINDS = ("cogging", "drag")  # measured while the rotor turns; a locked rotor does not move
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
-class BearingFriction(ResponseEffect):
-    """Dry friction of the bearings between torque cell and rotor: the cell reads T - level sign(motion)."""
+class BearingFriction(DesignEffect):
+    """Dry friction of the bearings between torque cell and rotor: the cell reads T - level sign(motion).
+
+    It acts wherever the direction of the motion is known: by the speed, or by a column ``direction``.
+    """
 
     title = "dry friction of the bearings"
     looks_like = "both directions of a cogging scan apart by twice the same torque"
     remedy = ("drag with a rotor without magnets",)
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 0.0))
+    base_rate = 0.3
+    base_rate_source = "judgement: every rotor turns in bearings, and few campaigns declare their friction"
 
     level: float = parameter(
         0.0, "Nm", prior=LogNormal(0.01, 1.0), low=0.0, high=1.0, source="small ball bearings with seals, 1 to 50 mNm"
     )
 
-    def on_response(self, response: Columns, conditions: Columns, kind: str, design: MachineAsBuilt) -> Columns:
-        if kind not in KINDS or self.is_null:
-            return response
-        return {**response, "torque": response["torque"] - self.level * np.sign(moving(conditions))}
-
-
-def moving(conditions: Columns) -> np.ndarray:
-    """Speed [rad/s] where it is known, or the direction of the motion as +1 and -1; zero where neither is."""
-    for name in ("speed", "direction"):
-        if name in conditions:
-            return np.asarray(conditions[name], dtype=float)
-    return np.zeros_like(next(iter(conditions.values())), dtype=float)
+    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+        return replace(design, dry_friction=design.dry_friction + self.level)

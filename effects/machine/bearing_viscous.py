@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import numpy as np
-
-from effects.base import Columns, ResponseEffect
+from effects.base import DesignEffect
+from effects.machine.places import SPEED
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
-
-KINDS = ("drag",)  # measured while the rotor turns; a locked rotor does not move
+from effects.signature import Odd, Power
 
 
 @dataclass(frozen=True)
-class BearingViscous(ResponseEffect):
-    """Viscous drag of bearings and grease: T - slope speed."""
+class BearingViscous(DesignEffect):
+    """Viscous drag of bearings and grease: T - slope speed, wherever the speed is known."""
 
     title = "viscous friction of the bearings"
     looks_like = "drag in proportion to the speed"
     remedy = ("drag with a rotor without magnets",)
     designs = (MachineAsBuilt,)
+    signature = (*SPEED, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 1.0))
+    base_rate = 0.03
+    base_rate_source = "judgement: greased bearings have it, seals and dry friction hide most of it"
 
     slope: float = parameter(0.0, "Nms/rad", prior=LogNormal(2e-5, 1.0), low=0.0, high=0.1, source="greased bearings")
 
-    def on_response(self, response: Columns, conditions: Columns, kind: str, design: MachineAsBuilt) -> Columns:
-        if kind not in KINDS or self.is_null:
-            return response
-        return {**response, "torque": response["torque"] - self.slope * moving(conditions)}
-
-
-def moving(conditions: Columns) -> np.ndarray:
-    """Speed [rad/s] where it is known, or the direction of the motion as +1 and -1; zero where neither is."""
-    for name in ("speed", "direction"):
-        if name in conditions:
-            return np.asarray(conditions[name], dtype=float)
-    return np.zeros_like(next(iter(conditions.values())), dtype=float)
+    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+        return replace(design, viscous_friction=design.viscous_friction + self.slope)

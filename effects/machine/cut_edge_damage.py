@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,9 @@ class CutEdgeDamage(DesignEffect):
     looks_like = "lower flux at low and medium saturation; narrow teeth suffer most"
     remedy = ("core loss and permeability of cut rings of two widths", "flux linkage at low current")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: punched sheets have it, it shows at low flux only"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     loss: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import LEAKAGE
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -21,6 +22,9 @@ class EndLeakage(DesignEffect):
     looks_like = "voltage and torque constant lower as with warm magnets, flux change with current unchanged"
     remedy = ("flux linkage against current", "a longer and a shorter stack")
     designs = (MachineAsBuilt,)
+    signature = LEAKAGE
+    base_rate = 0.02
+    base_rate_source = "judgement: every short machine has some, designs mostly allow for it"
 
     share: float = parameter(
         0.0, "1", prior=LogNormal(0.04, 0.6), low=0.0, high=0.3, source="stacks shorter than their bore: 2 to 10 %"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -18,6 +19,9 @@ class LaminationStacking(DesignEffect):
     looks_like = "less torque and flux change at high current, little without current"
     remedy = ("weight of the stack", "flux linkage at the highest current")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: declared stacking factors are good to 1 or 2 %"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     loss: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import PHASE_A
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,9 @@ class LostTurns(DesignEffect):
     looks_like = "one phase lower in voltage, flux change and resistance, torque ripple with the poles"
     remedy = ("resistance and back-EMF of single coils",)
     designs = (MachineAsBuilt,)
+    signature = PHASE_A  # of the first variant
+    base_rate = 0.01
+    base_rate_source = "judgement: hand-wound coils"
 
     coil: int = 0  # its number
     turns: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -18,6 +19,9 @@ class MagnetArc(DesignEffect):
     looks_like = "cogging of native order and the higher odd orders of the voltage change, its fundamental hardly"
     remedy = ("width of the magnets", "fifth and third electrical harmonic of the back-EMF")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: magnet widths are held to 0.1 mm"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     loss: float = parameter(

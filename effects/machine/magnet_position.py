@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -19,6 +20,9 @@ class MagnetPosition(DesignEffect):
     looks_like = "cogging orders that are multiples of the slots, hardly a trace in the fundamental of the voltage"
     remedy = ("angles between the poles with a gaussmeter",)
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: one magnet slips while the glue sets"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     magnet: int = 0  # its number

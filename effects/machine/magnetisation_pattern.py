@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -18,6 +19,9 @@ class MagnetisationPattern(DesignEffect):
     looks_like = "third harmonic of the voltage and locked-rotor torque change"
     remedy = ("field around the bare rotor", "harmonics of the back-EMF")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: what a fixture makes is seldom checked"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     share: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import PHASE_A
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -18,6 +19,9 @@ class PhaseImbalance(DesignEffect):
     looks_like = "one phase off in voltage, flux change and resistance by the same share"
     remedy = ("resistance of the phases", "back-EMF of the phases")
     designs = (MachineAsBuilt,)
+    signature = PHASE_A  # of the first variant
+    base_rate = 0.01
+    base_rate_source = "judgement: hand-wound phases"
 
     phase: int = 0  # 0 A, 1 B, 2 C
     share: float = parameter(0.0, "1", prior=Normal(0.02), low=-0.15, high=0.15, source="winding by hand")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -18,6 +19,9 @@ class RecoilPermeability(DesignEffect):
     looks_like = "lower voltage and inductance-like changes: the magnets are a shorter magnetic gap"
     remedy = ("demagnetisation curve of a spare magnet", "flux linkage against current")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.005
+    base_rate_source = "judgement: data sheets are near"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     excess: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -22,6 +23,9 @@ class RotorSkew(DesignEffect):
     looks_like = "cogging falls most, then the higher harmonics of the voltage"
     remedy = ("cogging", "look along the magnets")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: rotors put together without a jig"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     angle: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -19,6 +20,9 @@ class SlotOpening(DesignEffect):
     looks_like = "cogging of native order grows with the opening; locked-rotor torque changes little"
     remedy = ("width of the openings", "cogging")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: closing of slots and burrs"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(

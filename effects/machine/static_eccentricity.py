@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
 from effects.base import DesignEffect
+from effects.machine.places import LEAKAGE
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal, Uniform
@@ -22,6 +23,9 @@ class StaticEccentricity(DesignEffect):
     looks_like = "faint cogging orders near multiples of the poles; even in its size for a machine of two alike halves"
     remedy = ("run-out with a dial gauge", "bearing force", "back-EMF of single coils")
     designs = (MachineAsBuilt,)
+    signature = LEAKAGE
+    base_rate = 0.03
+    base_rate_source = "judgement: bearing seats and end shields of prototypes"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     share: float = parameter(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -12,12 +13,18 @@ from effects.prior import LogNormal
 
 @dataclass(frozen=True)
 class SteelGrade(DesignEffect):
-    """The steel needs more field than its grade for the same flux density: H = (1 + excess) H_grade(B)."""
+    """The steel needs more field than its grade for the same polarisation: J(H) = J_grade(H/(1 + excess)).
+
+    B = J + mu_0 H: it saturates at the same polarisation, with the slope mu_0 beyond.
+    """
 
     title = "permeability of the steel"
-    looks_like = "slightly lower flux everywhere, more where the steel is nearly saturated"
+    looks_like = "slightly lower flux everywhere, most where the steel begins to saturate"
     remedy = ("ring sample", "flux linkage over current")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: another grade or sheet not annealed"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     excess: float = parameter(

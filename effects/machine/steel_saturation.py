@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -18,6 +19,9 @@ class SteelSaturation(DesignEffect):
     looks_like = "flux change and torque at the highest currents off, little at low current"
     remedy = ("flux linkage at the highest current", "ring sample")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: another alloy"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(0.0, "1", prior=Normal(0.04), low=-0.2, high=0.2, source="silicon content, 1.95 to 2.1 T")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import LogNormal
@@ -18,6 +19,9 @@ class WeakMagnet(DesignEffect):
     looks_like = "cogging orders that are multiples of the slots, new orders beside the fundamental of the voltage"
     remedy = ("gaussmeter over every pole", "back-EMF of single coils")
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.02
+    base_rate_source = "judgement: overheated or cracked magnets"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     magnet: int = 0  # its number

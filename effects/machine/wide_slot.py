@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from effects.base import DesignEffect
+from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
@@ -19,6 +20,9 @@ class WideSlot(DesignEffect):
     looks_like = "cogging orders that are multiples of the poles, no new orders in the voltage"
     remedy = ("width of the openings",)
     designs = (MachineAsBuilt,)
+    signature = FIELD
+    base_rate = 0.01
+    base_rate_source = "judgement: a damaged or burred tooth"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     slot: int = 0  # its number

@@ -9,6 +9,7 @@ import numpy as np
 from effects.law_effects import TorqueEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Power, Touches
 
 
 @dataclass(frozen=True)
@@ -18,9 +19,21 @@ class LoadLoss(TorqueEffect):
     title = "load-proportional loss of the drive train"
     looks_like = "a share of the torque missing when motoring, as much too much when braking"
     remedy = ("torque cell on the machine's own shaft",)
+    signature = (
+        Touches("short_circuit.torque"),
+        Touches("dq_supply.*"),
+        Power("dq_operation.torque", "i_q", 1.0),
+    )
+    base_rate = 0.02
+    base_rate_source = "engineering judgement: a stage between machine and torque cell, one bench in fifty"
 
     share: float = parameter(
-        0.0, "1", prior=LogNormal(0.02, 0.7), low=0.0, high=0.3, source="1 to 3 % a gear or belt stage"
+        0.0,
+        "1",
+        prior=LogNormal(0.02, 0.7),
+        low=0.0,
+        high=0.3,
+        source="textbook: 1 to 3 % a gear or belt stage (Niemann and Winter, Machine Elements)",
     )
 
     def lost_torque(self, speed, torque):

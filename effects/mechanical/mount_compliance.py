@@ -8,6 +8,7 @@ from effects.base import DesignEffect
 from effects.damper_design import Damper
 from effects.parameter import parameter
 from effects.prior import LogNormal
+from effects.signature import Touches
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,14 @@ class MountCompliance(DesignEffect):
     looks_like = "impedance falls and its phase turns negative towards a resonance with the moving mass"
     remedy = ("displacement of the mass itself", "impedance at higher frequency")
     designs = (Damper,)
-    model_error = 0.02
+    signature = (
+        Touches("impedance.re"),
+        Touches("impedance.im"),
+    )
+    model_error = 0.03
+    model_error_source = "benchmarks/law_errors.py: against mount that hardens by 2 %, integrated in time"
+    base_rate = 0.03
+    base_rate_source = "engineering judgement: clamps softer than believed, one shaker test in thirty"
 
     compliance: float = parameter(
         0.0, "m/N", prior=LogNormal(1e-6, 1.2), low=0.0, high=1e-3, source="2e5 to 9e5 N/m (thesis app. B, 5.3)"

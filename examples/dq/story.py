@@ -12,7 +12,7 @@ from examples.story import Story, folder_of_results, hidden, show, tell
 STORY = Story(
     title="A servo motor whose magnets give way to opposing current",
     bench=hidden(DqBench, seed=10003, outside="magnets give way to negative i_d"),
-    wrong="voltage_offset",
+    wrong="torque_offset",
     own=Path(__file__).parent / "my_effect.py",
 )
 

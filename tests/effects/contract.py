@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, dataclass, fields, is_dataclass, replace
+from fnmatch import fnmatch
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,12 +15,15 @@ from effects.damper_design import Damper
 from effects.dq_design import DqMachine
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameters_of
+from effects.signature import NOTHING, names
 from geometry.machine import Machine
 from materials.magnet import Magnet
 from workbench.data.table import Response, Table
 from workbench.models.damper.model import DamperModel
 from workbench.models.dq.model import DqModel
 from workbench.models.model import Model
+
+SMALL = 1e-3  # share of a typical size at which an effect counts as vanishing
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +41,20 @@ class Case:
         answers = [model.answers(table) for table in self.tables]
         return np.concatenate([values for answer in answers for values in answer.values()])
 
+    def places(self, effect: Effect | None = None) -> dict[str, np.ndarray]:
+        """Readings by "kind.column", tables of one kind one after the other."""
+        model, found = self.model if effect is None else self.model + effect, {}
+        for table in self.tables:
+            for column, values in model.answers(table).items():
+                found.setdefault(f"{table.kind}.{column}", []).append(values)
+        return {place: np.concatenate(values) for place, values in found.items()}
+
+    def conditions(self, place: str) -> dict[str, np.ndarray]:
+        """Conditions of the rows of a place, and their order."""
+        mine = [table for table in self.tables if table.kind == place.split(".")[0]]
+        columns = [{**table.conditions, "order": table.order} for table in mine]
+        return {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+
 
 def numbers(value: Any) -> np.ndarray:
     """Every number in a nest of dataclasses and tuples."""
@@ -51,9 +70,21 @@ class Waveforms:
 
     name = "waveforms"
 
-    def respond(self, design, kind, conditions):
-        angle, speed, current = conditions["angle_mech"], conditions["speed"], conditions["i_a"]
-        return {"v_a": 0.1 * speed * np.sin(5 * angle), "torque": 2.0 * current * np.cos(5 * angle)}
+    def respond(self, design, kind, at):
+        phases = {x: at.get("angle_mech", 0.0) * 5 - 2 * np.pi / 3 * k for k, x in enumerate("abc")}
+        if kind == "back_emf":
+            return {f"v_{x}": 0.1 * at["speed"] * np.sin(phase) for x, phase in phases.items()}
+        if kind == "cogging":
+            return {"torque": 0.02 * np.sin(12 * at["angle_mech"])}
+        if kind == "drag":
+            return {"torque": np.zeros_like(at["speed"])}
+        if kind == "locked_rotor":
+            return {"torque": sum(2.0 * at[f"i_{x}"] * np.cos(phase) for x, phase in phases.items())}
+        if kind == "flux_linkage":
+            return {f"dpsi_{x}": 1e-3 * at[f"i_{x}"] * (1 + 0.1 * np.cos(2 * phase)) for x, phase in phases.items()}
+        warm = 1 + 0.00393 * (at["winding_T"] - 20.0)
+        both = zip("abc", design.phase_resistance, design.lead_resistance)
+        return {f"r_{x}": r * warm + lead for x, r, lead in both}
 
 
 def table(kind: str, responses: tuple[str, ...], **conditions) -> Table:
@@ -64,39 +95,61 @@ def table(kind: str, responses: tuple[str, ...], **conditions) -> Table:
     return Table(kind, kind, conditions, read, nothing.astype(int), nothing.astype(int), nothing.astype(bool))
 
 
+def grid(**axes) -> dict[str, np.ndarray]:
+    """Columns of every combination of the values of the axes, the last changing fastest."""
+    columns = np.meshgrid(*(np.asarray(values, dtype=float) for values in axes.values()), indexing="ij")
+    return {name: column.ravel() for name, column in zip(axes, columns)}
+
+
+@cache
 def damper_case() -> Case:
-    both = np.array([-0.4, -0.1, 0.05, 0.2, 0.3])
-    frequency = np.geomspace(1, 40, 5)
-    same = np.ones(5)
+    both = np.array([-0.4, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, 0.4])
     tables = (
-        table("damping_velocity", ("force",), velocity=both, shunt=same),
+        table("damping_velocity", ("force",), **grid(shunt=[0.5, 2.0, 1e6], velocity=both, damper_T=[60.0])),
         table("back_emf", ("voltage",), velocity=both),
-        table("impedance", ("re", "im"), frequency=frequency, amplitude=2e-3 * same, shunt=same),
-        table("impedance", ("re", "im"), frequency=frequency, amplitude=5e-4 * same, shunt=1e6 * same),
+        table("damping_shunt", ("damping",), **grid(shunt=[0.5, 2.0, 10.0], velocity=[0.3])),
+        table("impedance", ("re", "im"), **grid(shunt=[1.0], amplitude=[1e-3, 4e-3], frequency=[2, 5, 10, 20.0])),
+        table("impedance", ("re", "im"), **grid(shunt=[1e6], amplitude=[1e-3, 4e-3], frequency=[2, 5, 10, 20.0])),
     )
     return Case(Model(DamperModel(), Damper(60.0, 1.2, 2.0, 20.0)), tables)
 
 
+@cache
 def dq_case() -> Case:
-    speed = np.array([-200.0, 50.0, 150.0, 300.0])
-    warm = {"winding_T": np.array([20.0, 60, 90, 120]), "magnet_T": np.array([20.0, 40, 60, 80])}
-    i_d, i_q = np.array([-8.0, 0, 5, -3]), np.array([10.0, -16, 8, 24])
+    currents = dict(i_d=[-8.0, -4.0, 4.0, 8.0], i_q=[-16.0, -8.0, 8.0, 16.0])
+    warm = dict(winding_T=[100.0], magnet_T=[80.0])
+    supply = dict(v_ll=[88.0, 80, 85, 95], torque=[1.0, 2, 3, 4], speed=[150.0] * 4)
+    hot = {name: values * 4 for name, values in warm.items()}
+    speeds = np.array([50.0, 100, 200, 300])
     tables = (
-        table("dq_operation", ("v_d", "v_q", "torque"), i_d=i_d, i_q=i_q, speed=speed, **warm),
-        table("back_emf", ("v_ll",), speed=np.abs(speed), magnet_T=warm["magnet_T"]),
-        table("short_circuit", ("torque", "current"), speed=np.abs(speed)),
-        table("drag", ("torque",), speed=speed),
-        table("dq_supply", ("current", "power"), v_ll=[88.0, 80, 85, 95], torque=[1.0, 2, 3, 4], speed=[150.0] * 4),
+        table("dq_operation", ("v_d", "v_q", "torque"), **grid(speed=[-200, 50, 200.0], **currents, **warm)),
+        table("back_emf", ("v_ll",), **grid(speed=speeds, magnet_T=[80.0])),
+        table("short_circuit", ("torque", "current"), **grid(speed=speeds, **warm)),
+        table("drag", ("torque",), speed=np.concatenate([-speeds, speeds])),
+        table("dq_supply", ("current", "power"), **supply, **hot),
+        table("phase_resistance", ("resistance",), winding_T=[20.0, 60.0, 100.0]),
     )
     return Case(Model(DqModel(), DqMachine(4, 0.1, 3e-3, 4e-3, 0.5)), tables)
 
 
+@cache
 def waveform_case() -> Case:
-    angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    waves = table("waves", ("v_a", "torque"), angle_mech=angle, speed=100 + 0 * angle, i_a=3 + 0 * angle)
-    return Case(Model(Waveforms(), None), (waves,))
+    angle = np.linspace(0, 2 * np.pi, 72, endpoint=False)
+    same = np.ones_like(angle)
+    currents = dict(i_a=3.0 * same, i_b=-1.0 * same, i_c=-2.0 * same)
+    phases = {letter: tuple(f"{letter}_{x}" for x in "abc") for letter in ("v", "dpsi", "r")}
+    tables = (
+        table("back_emf", phases["v"], angle_mech=angle, speed=100 * same),
+        table("cogging", ("torque",), angle_mech=angle, direction=same),
+        table("drag", ("torque",), speed=[-200.0, -100.0, 100.0, 200.0]),
+        table("locked_rotor", ("torque",), angle_mech=angle, **currents),
+        table("flux_linkage", phases["dpsi"], angle_mech=angle, **currents),
+        table("phase_resistance", phases["r"], winding_T=[20.0, 60.0, 100.0]),
+    )
+    return Case(Model(Waveforms(), machine_case().model.design), tables)
 
 
+@cache
 def machine_case() -> Case:
     mm = 1e-3
     drawn = Machine(
@@ -114,6 +167,12 @@ def cases_of(cls: type[Effect]) -> list[Case]:
     return [case for case in cases if cls.can_act_on(case.model.design)]
 
 
+def vanishing(effect: Effect, share: float) -> Effect:
+    """The effect with every parameter brought near its null."""
+    values = {name: (p.null, getattr(effect, name)) for name, p in parameters_of(effect).items()}
+    return replace(effect, **{name: null + share * (value - null) for name, (null, value) in values.items()})
+
+
 def first(cls: type[Effect], case: Case) -> Effect:
     return cls.variants(case.model.design)[0]
 
@@ -128,6 +187,7 @@ def check_declared(cls: type[Effect]) -> None:
     assert not cls.__doc__.startswith(f"{cls.__name__}("), "the docstring states the law"
     parameters = parameters_of(cls)
     assert parameters, "an effect without a parameter has no null"
+    assert 0.0 < cls.base_rate <= 0.5 and cls.base_rate_source, "a base rate and its source are needed"
     for name, p in parameters.items():
         assert p.unit and p.source, f"{name} lacks its unit or source"
         assert p.low <= p.null <= p.high, f"the null of {name} is outside its bounds"
@@ -176,12 +236,10 @@ def check_smooth(cls: type[Effect]) -> None:
         for name, p in parameters_of(cls).items():
             size = max(abs(getattr(effect, name) - p.null), 1e-6 * (p.high - p.low))
             _check_slopes(case, effect, name, 1e-4 * size)
-        nulls = {name: p.null for name, p in parameters_of(cls).items()}
-        vanishing = replace(
-            effect, **{name: null + 1e-5 * (getattr(effect, name) - null) for name, null in nulls.items()}
-        )
         whole = _distance(case.seen(effect), case.seen(null))
-        assert _distance(case.seen(vanishing), case.seen(null)) <= 0.03 * whole + 1e-12, "the effect jumps at its null"
+        assert _distance(case.seen(vanishing(effect, 1e-5)), case.seen(null)) <= 0.03 * whole + 1e-12, (
+            "the effect jumps at its null"
+        )
 
 
 def _check_slopes(case: Case, effect: Effect, name: str, step: float) -> None:
@@ -197,6 +255,31 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max()) if a.size else 0.0
 
 
+def check_signature(cls: type[Effect]) -> None:
+    """At a typical size readings change at the places of its claims and at no other; its claims hold as it vanishes."""
+    cases = [case for case in cases_of(cls) if case.tables]
+    if not cases or _needs_a_field(cls):
+        return  # held against the surrogate of a machine: test_machine_signatures
+    assert cls.signature, "an effect claims what it does to readings"
+    for case in cases:
+        base, effect = case.places(), sized(first(cls, case))
+        seen, small = case.places(effect), case.places(vanishing(effect, SMALL))
+        for place, readings in base.items():
+            touched = np.abs(seen[place] - readings).max() > NOTHING * np.abs(readings).max()
+            assert touched == names(cls.signature, place), f"{place} changes: {touched}, claimed otherwise"
+        for claim in cls.signature:
+            for place in base:
+                if fnmatch(place, claim.place):
+                    error = claim.error(case.conditions(place), small[place] - base[place])
+                    assert error <= claim.within, f"{claim} at {place} is off by {error:.3g}"
+    unseen = [claim for claim in cls.signature if not any(names((claim,), p) for case in cases for p in case.places())]
+    assert not unseen, f"no bench here can tell {unseen[0]}"
+
+
+def _needs_a_field(cls: type[Effect]) -> bool:
+    return cls.__module__.startswith("effects.machine.")
+
+
 CHECKS: tuple[Callable[[type[Effect]], None], ...] = (
     check_declared,
     check_frozen,
@@ -204,4 +287,5 @@ CHECKS: tuple[Callable[[type[Effect]], None], ...] = (
     check_restores,
     check_acts,
     check_smooth,
+    check_signature,
 )

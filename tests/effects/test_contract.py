@@ -17,6 +17,7 @@ from effects.law_effects import ForceEffect  # noqa: E402
 from effects.library import package_effects  # noqa: E402
 from effects.parameter import parameter  # noqa: E402
 from effects.prior import LogNormal, Normal  # noqa: E402
+from effects.signature import Touches  # noqa: E402
 
 EFFECTS = package_effects()
 
@@ -48,6 +49,7 @@ class Good(DesignEffect):
     """A mass more: m = m_declared + mass, which moves the imaginary part of the impedance."""
 
     title = "more mass"
+    signature = (Touches("impedance.im"),)
     looks_like = "more inertia"
     remedy = ("weigh it",)
     designs = (Damper,)

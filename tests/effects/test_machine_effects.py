@@ -15,7 +15,9 @@ from effects.machine.magnet_temperature import MagnetTemperature
 from effects.machine.phase_imbalance import PhaseImbalance
 from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameters_of
-from tests.workbench.models.machine_case import drawn
+from tests.workbench.models.machine_case import drawn, surrogate
+from workbench.models.machine.answers import Answers
+from workbench.models.machine.drag import lost_torque
 
 OWN = {name: cls for name, cls in package_effects().items() if cls.__module__.startswith("effects.machine.")}
 FIELD = {name: cls for name, cls in OWN.items() if issubclass(cls, DesignEffect)}
@@ -82,13 +84,13 @@ def test_eccentricities_add_up():
 
 
 def test_friction_has_the_sign_of_the_motion():
-    design, torque = drawn(), np.zeros(2)
-    found = BearingFriction(level=0.01).on_response(
-        {"torque": torque}, {"angle_mech": torque, "direction": np.array([1.0, -1.0])}, "cogging", design
-    )
-    assert_allclose(found["torque"], [-0.01, 0.01])
-    still = BearingFriction(level=0.01).on_response({"torque": torque}, {"angle_mech": torque}, "locked_rotor", design)
-    assert still["torque"] is torque
+    """By the column of the direction, by the sign of the speed, and none where neither is known."""
+    answers = Answers(surrogate(), BearingFriction(level=0.01).on_design(drawn()))
+    both = np.array([1.0, -1.0])
+    assert_allclose(lost_torque(answers, {"angle_mech": both, "direction": both}), [-0.01, 0.01])
+    assert_allclose(lost_torque(answers, {"speed": 50 * both}), [-0.01, 0.01])
+    assert_allclose(lost_torque(answers, {"speed": np.array([50.0, 50.0]), "direction": both}), [-0.01, 0.01])
+    assert not lost_torque(answers, {"angle_mech": both}).any()
 
 
 def test_they_act_on_machines_only():

@@ -62,9 +62,9 @@ def _fits(sections):
     return tuple(fit_polynomial(name, RADII, [getattr(one, name) for one in sections]) for name in QUANTITIES)
 
 
-def fitted(study, without=()):
-    """The graph of a study with ``fitted_sections`` from the start, and without some stages."""
-    graph, gone = graph_of(study), {"sweep", "optima", "limits", "fits", *without}
+def fitted(study, without=(), graph=None):
+    """The graph of a study, or another one, with ``fitted_sections`` from the start, and without some stages."""
+    graph, gone = graph or graph_of(study), {"sweep", "optima", "limits", "fits", *without}
     kept = tuple(node for node in graph.nodes if not (isinstance(node, Stage) and node.name in gone))
     return replace(graph, nodes=(*kept, View(fitted_sections)))
 

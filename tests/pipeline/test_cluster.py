@@ -1,4 +1,4 @@
-"""Sweep, optima, flux map and blind score on a local cluster give the bytes of one process, a worker killed too."""
+"""Sweep, optima, flux map and blind campaigns on a local cluster give the bytes of one process, a worker killed too."""
 
 import os
 import signal
@@ -9,7 +9,7 @@ import pytest
 from pool_here import Here
 from small_studies import small
 
-from benchmarks import blind_score
+from benchmarks import blind_campaigns
 from pipeline.pools import DaskCluster
 from pipeline.results import Results
 from pipeline.run import Run
@@ -70,12 +70,10 @@ def test_the_design_chain_is_the_same_to_the_byte(study, cluster, tmp_path):
     assert [name for name in FILES if alone[name] != together[name]] == []
 
 
-def test_the_blind_score_is_the_same(cluster, tmp_path):
-    chosen = blind_score.tasks(12000, {"damper": {"null": 2, "single": 2}})
-    found = [
-        blind_score.all_cases(chosen, tmp_path / f"{name}.jsonl", "cases", pool)
-        for name, pool in (("here", Here()), ("cluster", cluster))
-    ]
-    for cases in found:
-        assert [case.pop("wall_s") > 0 for case in cases] == [True] * 4
-    assert found[0] == found[1]
+def test_blind_campaigns_are_the_same(cluster, tmp_path):
+    chosen = blind_campaigns.wanted("damper", 4, False, ("null", "single"))
+    found = []
+    for name, pool in (("here", Here()), ("cluster", cluster)):
+        blind_campaigns.write_campaigns(tmp_path / name, chosen, pool)
+        found.append(blind_campaigns.hashes(tmp_path / name))
+    assert len(found[0]) == 5 and found[0] == found[1]

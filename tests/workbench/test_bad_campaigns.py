@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from pipeline.cli import main
-from tests.workbench.test_reading_a_campaign import DECLARED, ROWS, declared
+from tests.workbench.data.test_reading_a_campaign import DECLARED, ROWS, declared
 from tests.workbench.toy_bench import LIBRARY, TOML, SpringModel, written
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign

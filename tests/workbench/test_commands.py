@@ -103,12 +103,11 @@ def test_import_writes_a_campaign_file_beside_a_plain_csv(bench, tmp_path, capsy
     plain.write_bytes((bench / "force_velocity.csv").read_bytes())
     run(capsys, "import", plain)
     text = (tmp_path / "campaign.toml").read_text()
-    assert (
-        'kind = "damping_velocity"' in text and '"force_N" = { unit = "N", role = "response", u_random = "?" }' in text
-    )
-    filled = text.replace('u_random = "?"', "u_random = 0.5").replace(
-        'model = "?"', TOML.split("[device]")[1].split("[tol")[0]
-    )
+    assert 'kind = "damping_velocity"' in text and '"force_N" = { unit = "N", role = "response", u_random = ' in text
+    keys = dict(line.split(" = ") for line in TOML.split("[device]")[1].split("[tol")[0].strip().splitlines())
+    filled = text
+    for key, value in keys.items():
+        filled = filled.replace(f'{key} = "?"', f"{key} = {value}")
     (tmp_path / "campaign.toml").write_text(filled)
     assert nominal_model(read_campaign(tmp_path)).base.name == "damper"
     assert plain.read_bytes() == (bench / "force_velocity.csv").read_bytes()

@@ -11,6 +11,9 @@ import numpy as np
 from effects.base import DesignEffect, InstrumentEffect, ResponseEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal, Normal
+from workbench.models.base import BaseModel
+
+RATE = 0.1  # base rate of each of the few things that so simple a device may have
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class Spring:
     stiffness: float  # N/m
 
 
-class SpringModel:
+class SpringModel(BaseModel):
     name = "spring"
 
     def accepts(self, device):
@@ -41,7 +44,8 @@ class Hardening(ResponseEffect):
     title: ClassVar[str] = "hardening spring"
     looks_like: ClassVar[str] = "a force that grows with the cube of the displacement"
     designs: ClassVar[tuple[type, ...]] = (Spring,)
-    cubic: float = parameter(0.0, "N/m^3", prior=LogNormal(3e4, 1.0), low=0.0, high=1e9, source="made up")
+    base_rate: ClassVar[float] = RATE
+    cubic: float = parameter(0.0, "N/m^3", prior=LogNormal(3e5, 1.0), low=0.0, high=1e9, source="made up")
 
     def on_response(self, response, conditions, kind, design):
         return {**response, "force": response["force"] + self.cubic * conditions["displacement"] ** 3}
@@ -54,6 +58,7 @@ class Bump(ResponseEffect):
     title: ClassVar[str] = "even part"
     looks_like: ClassVar[str] = "a force that does not change sign"
     designs: ClassVar[tuple[type, ...]] = (Spring,)
+    base_rate: ClassVar[float] = RATE
     size: float = parameter(0.0, "N", prior=Normal(0.3), low=-100.0, high=100.0, source="made up")
 
     def on_response(self, response, conditions, kind, design):
@@ -67,6 +72,7 @@ class SoftSpring(DesignEffect):
     title: ClassVar[str] = "softer spring"
     looks_like: ClassVar[str] = "a smaller force"
     designs: ClassVar[tuple[type, ...]] = (Spring,)
+    base_rate: ClassVar[float] = RATE
     loss: float = parameter(0.0, "1", prior=LogNormal(0.05, 0.7), low=0.0, high=0.9, source="made up")
 
     def on_design(self, design):
@@ -79,6 +85,7 @@ class ForceOffset(InstrumentEffect):
 
     title: ClassVar[str] = "zero of the force cell"
     looks_like: ClassVar[str] = "the same force everywhere"
+    base_rate: ClassVar[float] = RATE
     offset: float = parameter(0.0, "N", prior=Normal(0.2), low=-100.0, high=100.0, source="made up")
 
     def on_reading(self, response, conditions, kind):

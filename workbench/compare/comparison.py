@@ -13,12 +13,11 @@ from workbench.data.checks import checks_of
 from workbench.data.column_units import unit_inside
 from workbench.data.stack import rows_of, stacked
 from workbench.data.table import Campaign
-from workbench.explain.diagnosis import candidates, screen_of
-from workbench.explain.results import nearest
 from workbench.findings import ChannelScore, Comparison, Pull, SignatureMatch
-from workbench.likelihood.bench import Bench, bench_of
+from workbench.likelihood.bench import Bench, bench_of, sealed_tables
 from workbench.likelihood.noise import measured_noise, whitener
 from workbench.likelihood.nuisance import DeclaredError, InstrumentError, TolerancedInput
+from workbench.likelihood.signatures import candidates, nearest, signatures_of
 from workbench.models.model import Model
 
 BLOCK = 50_000  # rows that the model is asked for at once
@@ -47,9 +46,9 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
     scores = scoreboard(bench)
     pulls = pulls_of(bench)
     every = views.channel_views(bench)
-    screen, _ = screen_of(bench, candidates(bench, library), progress)
-    titles = {p.signature.name: p.signature.effect.title for p in screen.prepared}
-    matches = nearest(screen, bench.residual)
+    signatures = signatures_of(bench, candidates(bench, library), progress)
+    titles = {name: variants[0].effect.title for name, variants in signatures.found.items()}
+    matches = nearest(bench, signatures)
     held = [s for s in scores if s.held_out_chi2_per_n is not None]
     maps = [views.regime_map(v) for v in every]
     return Comparison(
@@ -77,7 +76,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
 
 def scoreboard(bench: Bench) -> tuple[ChannelScore, ...]:
     """V0: one score a channel over all rows of the campaign, fitted or not; the model is asked block by block."""
-    stack = stacked(bench.campaign.tables)
+    stack = stacked(sealed_tables(bench.campaign).tables)
     predictor = bench.fit.predictor.on(stack)
     nominal, fitted = (_in_blocks(predictor, x) for x in (predictor.start, bench.null.x))
     if stack.size == bench.stack.size:

@@ -1,34 +1,53 @@
-"""Reads a campaign: a folder with ``campaign.toml`` and one CSV file a table. Everything is data; nothing is
+"""Reads a campaign: a folder with ``campaign.toml`` and one CSV or Parquet file a table. Everything is data; nothing is
 executed or written.
 
-Two spellings are read. Columns declared in ``[table.columns]`` with unit, role and uncertainty; or columns that
-carry their
-unit in the name (``torque_Nm``) with ``u_random = { column = value or formula }`` of the table.
+Two spellings are read. Columns declared in ``[table.columns]`` with unit, role and uncertainty; or columns that carry
+their unit in the heading (``torque_Nm``, ``torque [Nm]``) with ``u_random = { column = value or formula }`` of the
+table. ``docs/campaign.md`` lists every key.
 """
 
 from __future__ import annotations
 
 import hashlib
-import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from workbench.data.column_units import factor, split_unit
+from workbench.data.column_units import difference, factor, split_unit, to_inside
+from workbench.data.columns import BOOKKEEPING, Column, columns_of
+from workbench.data.conventions import with_conventions
 from workbench.data.expression import evaluate
-from workbench.data.kinds import Kind, kind_of
-from workbench.data.table import Campaign, Response, Systematic, Table, Tolerance
+from workbench.data.kinds import kind_of
+from workbench.data.raw_table import Layout, RawTable, read_raw
+from workbench.data.schema import (
+    BY_REGION,
+    FILE,
+    LAST_REPEAT,
+    NO_HOLDOUT,
+    OF_A_COLUMN,
+    CampaignFile,
+    SystematicEntry,
+    TableEntry,
+    ToleranceEntry,
+    campaign_file,
+    folder_name,
+    holdout_rule,
+)  # fmt: skip
+from workbench.data.suspicions import FEW_ROWS, suspicions
+from workbench.data.table import OPEN_CIRCUIT, Campaign, Conditions, Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
 
-FILE = "campaign.toml"
-BOOKKEEPING = ("scan", "repeat", "holdout")
-LAST_REPEAT = "last repeat of every table"
-NO_HOLDOUT = "none"
-FEW_ROWS = 12  # below this a table says little; the campaign says so
+__all__ = [
+    "BOOKKEEPING", "BY_REGION", "FEW_ROWS", "FILE", "LAST_REPEAT", "NO_HOLDOUT", "columns_of_systematics",
+    "holdout_rule", "read_campaign",
+]  # fmt: skip
+
+SPARSE = 0.05  # share of a table's readings that gaps of another column may cost before that column is kept apart
+FINEST = 1e-12  # of the largest reading: no instrument resolves less
+MOST = 2**31  # repeats, scans: numbers of them are counted with
 
 
 def read_campaign(folder: str | Path) -> Campaign:
@@ -38,55 +57,35 @@ def read_campaign(folder: str | Path) -> Campaign:
         WorkbenchError: one sentence, what is wrong and where.
     """
     folder = Path(folder)
-    content = _toml(folder / FILE)
-    head = _section(content, "campaign")
-    reader = _Reader(folder, content, holdout_rule(head.get("holdout", NO_HOLDOUT)))
-    tables = tuple(reader.table(number, entry) for number, entry in enumerate(_tables(content), 1))
-    repeats = _repeats(head, tables, reader.complaints)
-    if not any(table.held_out.any() for table in tables):
-        reader.complaints.append(
-            "no row is held out: an accepted effect cannot be checked on data that no fit has seen"
-        )
-    return Campaign(
-        id=str(head.get("id", folder.name)),
+    content = campaign_file(folder)
+    reader = _Reader(folder, content)
+    tables = tuple(table for number, entry in enumerate(content.table, 1) for table in reader.tables(number, entry))
+    _refuse_twins(tables)
+    repeats = _repeats(content.campaign.repeats, tables, reader.complaints)
+    campaign = Campaign(
+        id=_id(content.campaign.id, folder),
         folder=str(folder),
-        device=_section(content, "device") if "device" in content else {},
+        device=content.device,
         tables=tables,
-        tolerances=tuple(_tolerance(name, entry) for name, entry in content.get("tolerance", {}).items()),
-        systematics=tuple(_systematic(name, entry) for name, entry in content.get("systematic", {}).items()),
+        tolerances=tuple(_tolerance(name, entry) for name, entry in content.tolerance.items()),
+        systematics=tuple(_systematic(name, entry) for name, entry in content.systematic.items()),
         repeats=repeats,
         file_hashes=reader.hashes,
         complaints=tuple(reader.complaints),
+        holdout=content.campaign.holdout,
+        conventions=content.conventions,
     )
+    return with_conventions(campaign)
 
 
 def columns_of_systematics(folder: str | Path) -> dict[str, tuple[tuple[str, str], ...]]:
-    """(file, column) that name a systematic in ``u_sys``; empty where columns carry their unit in the name."""
-    found: dict[str, list] = {}
-    for entry in _tables(_toml(Path(folder) / FILE)):
-        for column, declared in entry.get("columns", {}).items():
-            names = declared.get("u_sys", [])
-            for name in [names] if isinstance(names, str) else names:
-                found.setdefault(name, []).append((entry["file"], column))
+    """(file, quantity) that name a systematic in ``u_sys``; empty where columns carry their unit in the name."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for entry in campaign_file(Path(folder)).table:
+        for key, column in (entry.columns or {}).items():
+            for name in column.u_sys:
+                found.setdefault(name, []).append((entry.file, column.name or entry.alias.get(key, key)))
     return {name: tuple(columns) for name, columns in found.items()}
-
-
-def holdout_rule(entry: object) -> str:
-    """ "last repeat of every table", "column:NAME" or "none".
-
-    Raises:
-        WorkbenchError: the rule is another one.
-    """
-    rule = (
-        entry.get("rule", f"column:{entry['column']}" if "column" in entry else "")
-        if isinstance(entry, dict)
-        else entry
-    )
-    if rule in (LAST_REPEAT, NO_HOLDOUT) or (isinstance(rule, str) and rule.startswith("column:")):
-        return rule
-    raise WorkbenchError(
-        f'{FILE}: holdout = {entry!r} is not understood; write {{ rule = "{LAST_REPEAT}" }}, "column:NAME" or "none".'
-    )
 
 
 @dataclass
@@ -94,261 +93,287 @@ class _Reader:
     """What is collected while the tables of one campaign are read."""
 
     folder: Path
-    content: Mapping[str, Any]
-    rule: str
+    content: CampaignFile
     hashes: dict[str, str] = field(default_factory=dict)
     complaints: list[str] = field(default_factory=list)
 
-    def table(self, number: int, entry: Mapping[str, Any]) -> Table:
-        where = f"{FILE}, table {number}"
-        for key in ("file", "kind"):
-            if not isinstance(entry.get(key), str):
-                raise WorkbenchError(f"{where}: the key {key!r} is missing; give the name of a CSV file and its kind.")
-        kind = kind_of(entry["kind"], where)
-        frame = self._frame(entry["file"])
-        columns = declared_columns(frame, entry, kind, entry["file"])
-        frame = self._complete_rows(frame, columns, entry["file"])
-        return self._assembled(frame, columns, entry)
+    def tables(self, number: int, entry: TableEntry) -> list[Table]:
+        """The tables of a file: one, or more where columns with many gaps are kept apart."""
+        kind = kind_of(entry.kind, f"{FILE}, table {number}")
+        raw = self._raw(entry)
+        self.complaints += raw.remarks
+        columns, remarks = columns_of(raw, entry, kind)
+        self.complaints += remarks
+        if not any(column.role == "response" for column in columns):
+            raise WorkbenchError(
+                f"{entry.file}: no column is a measured response; name one in u_random or give it the role."
+            )
+        whole = _WholeTable(raw, columns, entry)
+        masks = whole.masks(self.complaints)
+        held_out = self._held_out(whole)
+        parts = [whole.part(names, rows, held_out) for names, rows in masks]
+        for part, (_, rows) in zip(parts, masks):
+            self.complaints += suspicions(part, np.asarray(raw.lines)[rows])
+        return parts
 
-    def _frame(self, name: str) -> pd.DataFrame:
-        path = self.folder / name
+    def _raw(self, entry: TableEntry) -> RawTable:
+        path = self._path(entry.file)
+        digest = _sha256(path)
+        for name, known in self.hashes.items():
+            if known == digest and name != entry.file:
+                self.complaints.append(f"{name} and {entry.file} are the same file under two names")
+        self.hashes[entry.file] = digest
+        return read_raw(path, Layout(entry.delimiter, entry.decimal, entry.encoding))
+
+    def _path(self, name: str) -> Path:
+        """The file in the folder of the campaign."""
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise WorkbenchError(f"{FILE}: the file {name!r} must lie in the folder of the campaign.")
-        if not path.is_file():
-            raise WorkbenchError(f"{self.folder}: the data file {name!r} of {FILE} does not exist; put it there.")
-        self.hashes[name] = _sha256(path)
         try:
-            frame = pd.read_parquet(path) if path.suffix == ".parquet" else pd.read_csv(path, skipinitialspace=True)
-        except (ValueError, pd.errors.ParserError, UnicodeDecodeError, ImportError) as error:
-            raise WorkbenchError(f"{path}: cannot be read as a table: {error}.") from None
-        if frame.empty:
-            raise WorkbenchError(f"{path}: has no rows; at least one measured row is needed.")
-        return frame.rename(columns=str.strip)
+            found = (self.folder / name).is_file()
+        except (OSError, ValueError):  # a name that no file can have
+            found = False
+        if not found:
+            raise WorkbenchError(f"{self.folder}: the data file {name[:100]!r} of {FILE} does not exist; put it there.")
+        return self.folder / name
 
-    def _complete_rows(self, frame: pd.DataFrame, columns: dict[str, Column], name: str) -> pd.DataFrame:
-        needed = list(columns)
-        numbers = frame[needed].apply(pd.to_numeric, errors="coerce")
-        whole = np.isfinite(numbers.to_numpy(dtype=float)).all(axis=1)
-        if not whole.any():
-            raise WorkbenchError(f"{name}: no row has a number in every one of its columns {', '.join(needed)}.")
-        if not whole.all():
-            first = int(np.flatnonzero(~whole)[0]) + 2
-            self.complaints.append(
-                f"{name}: {int((~whole).sum())} of {len(whole)} rows have a gap or no number (first in line "
-                f"{first}) and are left out"
-            )
-        return numbers[whole].reset_index(drop=True)
-
-    def _assembled(self, frame: pd.DataFrame, columns: dict[str, Column], entry: Mapping[str, Any]) -> Table:
-        name = entry["file"]
-        repeat = _numbers(frame, columns, "repeat")
-        scan = _numbers(frame, columns, "scan") if "scan" in _roles(columns) else repeat
-        raw = {c: frame[c].to_numpy(dtype=float) for c in columns}
-        responses = {
-            column.name: _response(key, column, raw, columns, name)
-            for key, column in columns.items()
-            if column.role == "response"
-        }
-        self._complain_of(responses, len(frame), name)
-        conditions = {
-            c.name: raw[key] * factor(c.unit or "1", name)
-            for key, c in columns.items()
-            if c.role in ("condition", "group")
-        }
-        condition_random = {
-            c.name: np.broadcast_to(evaluate(c.random, {}, name) * factor(c.unit or "1", name), len(frame))
-            for c in columns.values()
-            if c.role == "condition" and c.random is not None
-        }
-        held_out = self._held_out(frame, columns, repeat, name)
-        return Table(entry["kind"], name, conditions, responses, scan, repeat, held_out, condition_random)
-
-    def _complain_of(self, responses: Mapping[str, Response], rows: int, name: str) -> None:
-        if not responses:
-            raise WorkbenchError(f"{name}: no column is a measured response; name one in u_random or give it the role.")
-        if rows < FEW_ROWS:
-            self.complaints.append(f"{name}: only {rows} rows; its noise and its residuals say little")
-        for response in responses.values():
-            if rows > 2 and np.ptp(response.values) == 0:
-                self.complaints.append(f"{name}: {response.name} has the same value in every row; is it stuck?")
-
-    def _held_out(self, frame, columns, repeat, name) -> np.ndarray:
-        if self.rule == NO_HOLDOUT:
-            return np.zeros(len(frame), dtype=bool)
-        if self.rule == LAST_REPEAT:
-            if len(np.unique(repeat)) > 1:
-                return repeat == repeat.max()
+    def _held_out(self, whole: _WholeTable) -> np.ndarray:
+        rule, name = self.content.campaign.holdout, whole.name
+        none = np.zeros(whole.raw.rows, dtype=bool)
+        if rule == LAST_REPEAT:
+            usable = whole.repeat[whole.complete]
+            if len(np.unique(usable)) > 1:
+                return whole.repeat == usable.max()
             self.complaints.append(
                 f"{name}: one repeat only, so no row of it is held out and its noise is only declared"
             )
-            return np.zeros(len(frame), dtype=bool)
-        column = self.rule.removeprefix("column:")
-        if column not in frame:
-            raise WorkbenchError(f"{name}: the hold-out column {column!r} of {FILE} is not in the file.")
-        return frame[column].to_numpy() != 0
+        if rule.startswith(OF_A_COLUMN):
+            return whole.marked(rule.removeprefix(OF_A_COLUMN))
+        if rule == BY_REGION and "holdout" not in self.content.campaign.model_fields_set and whole.marks:
+            self.complaints.append(
+                f'{name}: its column {whole.marks!r} is not used; say holdout = "column:{whole.marks}" in [campaign]'
+            )
+        return none
 
 
-@dataclass(frozen=True)
-class Column:
-    """How one column of a file is understood: name without unit, unit, role, random uncertainty as written."""
+@dataclass(frozen=True, eq=False)
+class _WholeTable:
+    """All rows of a file, with the columns that take part."""
 
-    name: str
-    unit: str
-    role: str
-    random: object = None
+    raw: RawTable
+    columns: tuple[Column, ...]
+    entry: TableEntry
 
+    @property
+    def name(self) -> str:
+        return self.entry.file
 
-def declared_columns(frame: pd.DataFrame, entry: Mapping[str, Any], kind: Kind, where: str) -> dict[str, Column]:
-    """Column of the file -> how it is understood, in either spelling."""
-    if "columns" in entry:
-        return _columns_of_the_table(frame, entry["columns"], where)
-    return _columns_of_the_names(frame, entry.get("u_random", {}), kind, where)
+    def of_role(self, *roles: str) -> list[Column]:
+        return [column for column in self.columns if column.role in roles]
 
+    # ---- rows -------------------------------------------------------------------------------------------------------
 
-def _columns_of_the_table(frame, declared: Mapping[str, Any], where: str) -> dict[str, Column]:
-    columns = {}
-    for name, entry in declared.items():
-        if name not in frame:
-            if entry.get("optional", False):
-                continue
-            raise WorkbenchError(f"{where}: the column {name!r} of {FILE} is not there; found {', '.join(frame)}.")
-        columns[name] = _declared(name, entry, where)
-    return columns
-
-
-def _declared(name: str, entry: Mapping[str, Any], where: str) -> Column:
-    role = entry.get("role")
-    if role not in ("condition", "response", "scan", "repeat", "group", "holdout"):
-        raise WorkbenchError(
-            f"{where}: column {name!r} has the role {role!r}; use condition, response, scan, repeat, group or holdout."
+    @cached_property
+    def complete(self) -> np.ndarray:
+        """Rows with a number in every column that is no response (n,)."""
+        others = [self.values(column) for column in self.columns if column.role != "response"]
+        return np.logical_and.reduce([np.isfinite(v) for v in others], initial=True) & np.ones(
+            self.raw.rows, dtype=bool
         )
-    quantity, unit_of_name = split_unit(name)
-    unit = entry.get("unit", unit_of_name)
-    if role in ("condition", "response") and not unit:
-        raise WorkbenchError(f'{where}: column {name!r} has no unit; add unit = "..." ("1" for a pure number).')
-    if unit_of_name and unit_of_name != unit:
-        raise WorkbenchError(
-            f"{where}: column {name!r} says {unit_of_name} in its name and {unit} in {FILE}; keep one."
+
+    def masks(self, complaints: list[str]) -> list[tuple[list[str], np.ndarray]]:
+        """Responses and the rows that they have readings in. A row with a gap is left out; where that would cost other
+        responses more than SPARSE of the readings, a response with gaps is kept in a table of its own."""
+        given = {c.name: self.complete & np.isfinite(self.values(c)) for c in self.of_role("response")}
+        self._require_rows(given)
+        whole = np.logical_and.reduce(list(given.values()))
+        readings = sum(int(mask.sum()) for mask in given.values())
+        lost = readings - len(given) * int(whole.sum())
+        groups = {whole.tobytes(): (list(given), whole)} if lost <= SPARSE * readings else _alike(given)
+        if not whole.all() and len(groups) == 1:
+            number, first = self._counted(~whole)
+            complaints.append(f"{self.name}: {number} have a gap or no number (first in {first}) and are left out")
+        if len(groups) > 1:
+            complaints += [self._apart(names, rows) for names, rows in groups.values() if not rows.all()]
+        return list(groups.values())
+
+    def _counted(self, gaps: np.ndarray) -> tuple[str, str]:
+        """("3 of 40 rows", "line 7")."""
+        return f"{int(gaps.sum())} of {len(gaps)} rows", f"line {self.raw.lines[int(np.flatnonzero(gaps)[0])]}"
+
+    def _apart(self, names: Sequence[str], rows: np.ndarray) -> str:
+        what = f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'}"
+        number, first = self._counted(~rows)
+        return f"{self.name}: {what} no reading in {number} (first in {first}); the other responses keep those rows"
+
+    def _require_rows(self, given: Mapping[str, np.ndarray]) -> None:
+        missing = [name for name, mask in given.items() if not mask.any()]
+        if missing:
+            needed = ", ".join(c.heading for c in self.columns if c.role != "response" or c.name == missing[0])
+            raise WorkbenchError(f"{self.name}: no row has a number in every one of its columns {needed}.")
+
+    # ---- values -----------------------------------------------------------------------------------------------------
+
+    def values(self, column: Column) -> np.ndarray:
+        """Numbers in the unit of the file (n,), NaN where there is none; an open shunt is a very large one."""
+        values = self.raw.values(column.place)
+        if column.role in ("scan", "repeat") and np.isnan(values).all():
+            return self.raw.labels(column.place)
+        if column.name == "shunt":
+            values[values == np.inf] = OPEN_CIRCUIT / factor(column.unit, self.name)
+        return np.where(np.isinf(values), np.nan, values)
+
+    def numbers(self, role: str) -> np.ndarray | None:
+        """Whole numbers of the scan or the repeat (n,), 0 where there is none; None without such a column."""
+        found = self.of_role(role)
+        if not found:
+            return None
+        values = np.where(self.complete, self.values(found[0]), 0.0)
+        if not ((np.abs(values) < MOST) & (values == np.round(values))).all():
+            raise WorkbenchError(f"{self.name}: the column {found[0].heading!r} must hold whole numbers.")
+        return values.astype(int)
+
+    @cached_property
+    def repeat(self) -> np.ndarray:
+        found = self.numbers("repeat")
+        return np.zeros(self.raw.rows, dtype=int) if found is None else found
+
+    @property
+    def marks(self) -> str:
+        """Heading of the column that marks rows to hold out, "" without one."""
+        return next((column.heading for column in self.of_role("holdout")), "")
+
+    def marked(self, name: str) -> np.ndarray:
+        """Rows in which a column is not zero (n,)."""
+        for place, heading in enumerate(self.raw.headings):
+            if name in (heading.written, heading.name):
+                values = self.raw.values(place)
+                return np.isfinite(values) & (values != 0)
+        raise WorkbenchError(f"{self.name}: the hold-out column {name!r} of {FILE} is not in the file.")
+
+    # ---- tables -----------------------------------------------------------------------------------------------------
+
+    def part(self, names: Sequence[str], rows: np.ndarray, held_out: np.ndarray) -> Table:
+        """The table of some responses in some rows."""
+        scan = self.numbers("scan")
+        conditions = {c.name: self._inside(c)[rows] for c in self.of_role("condition", "group")}
+        _check_conditions(conditions, self.name)
+        return Table(
+            self.entry.kind,
+            self.name,
+            Conditions(conditions, self.name),
+            {c.name: self._response(c, rows) for c in self.of_role("response") if c.name in names},
+            (self.repeat if scan is None else scan)[rows],
+            self.repeat[rows],
+            held_out[rows],
+            {c.name: self._random(c, rows) for c in self.of_role("condition") if c.random is not None},
+            self.entry.bandwidth_Hz,
+            {c.name: c.unit for c in self.of_role("condition", "group")},
         )
-    random = entry.get("u_random", entry.get("u"))
-    if role == "response" and random is None:
-        raise WorkbenchError(f"{where}: the response {name!r} has no u_random; give its random standard uncertainty.")
-    return Column(quantity, unit, role, random)
+
+    def _inside(self, column: Column) -> np.ndarray:
+        return to_inside(self.values(column), column.name, column.unit or "1", self.name)
+
+    def _response(self, column: Column, rows: np.ndarray) -> Response:
+        scale = difference(column.unit, column.name, self.name)
+        values, random = self._inside(column)[rows], self._random(column, rows)
+        if not (random > FINEST * np.abs(values).max()).all():
+            raise WorkbenchError(
+                f"{self.name}: the random uncertainty of {column.heading!r} must be positive in every row, and not "
+                f"less than {FINEST:g} of the largest reading."
+            )
+        return Response(column.name, values, random, column.unit, scale, column.bandwidth)
+
+    def _random(self, column: Column, rows: np.ndarray) -> np.ndarray:
+        """Declared random uncertainty, inside (n,). y, z and the conditions of a formula are in the units of the file;
+        z is the size of a complex response."""
+        names = {"y": self.values(column)[rows]}
+        for other in self.of_role("condition"):
+            names[other.heading] = names[other.name] = self.values(other)[rows]
+        parts = [self.values(c)[rows] for c in self.columns if c.name in ("re", "im")]
+        if len(parts) == 2:
+            names["z"] = np.hypot(*parts)
+        value = evaluate(column.random, names, f"{self.name}, u_random of {column.heading!r}")
+        if not (value >= 0).all():
+            raise WorkbenchError(f"{self.name}: the random uncertainty of {column.heading!r} is negative somewhere.")
+        size = np.broadcast_to(value, names["y"].shape)
+        return size * difference(column.unit or "1", column.name, self.name)
 
 
-def _columns_of_the_names(frame, random: Mapping[str, Any], kind: Kind, where: str) -> dict[str, Column]:
-    unknown = [name for name in random if name not in frame]
-    if unknown:
-        raise WorkbenchError(f"{where}: u_random names {unknown[0]!r}, which is no column; found {', '.join(frame)}.")
-    columns = {name: _named(name, random, kind, where) for name in frame}
-    for name, column in columns.items():
-        if column.role == "response" and column.random is None:
-            raise WorkbenchError(f"{where}: the response {name!r} has no random uncertainty; add it to u_random.")
-    return columns
+def _alike(given: Mapping[str, np.ndarray]) -> dict[bytes, tuple[list[str], np.ndarray]]:
+    """Responses that have readings in the same rows, together."""
+    groups: dict[bytes, tuple[list[str], np.ndarray]] = {}
+    for name, mask in given.items():
+        groups.setdefault(mask.tobytes(), ([], mask))[0].append(name)
+    return groups
 
 
-def _named(name: str, random: Mapping[str, Any], kind: Kind, where: str) -> Column:
-    quantity, unit = split_unit(name)
-    if name in BOOKKEEPING:
-        return Column(name, "", name)
-    if name == "direction":
-        return Column(name, "", "group")
-    is_response = kind.is_response(quantity) or (not kind.responses and name in random)
-    if not unit:
-        raise WorkbenchError(
-            f"{where}: column {name!r} has no unit; end the name with it ({name}_V) or declare [table.columns]."
-        )
-    return Column(quantity, unit, "response" if is_response else "condition", random.get(name))
+_POSITIVE, _NOT_NEGATIVE = ("frequency", "amplitude"), ("shunt",)
 
 
-def _response(key: str, column: Column, raw: Mapping[str, np.ndarray], columns, where: str) -> Response:
-    """y, z and the conditions of a formula are in the units of the file; z is the size of a complex response."""
-    names = {"y": raw[key], **{c: raw[c] for c, other in columns.items() if other.role == "condition"}}
-    parts = [raw[c] for c, other in columns.items() if other.name in ("re", "im")]
-    if len(parts) == 2:
-        names["z"] = np.hypot(*parts)
-    scale = factor(column.unit, where)
-    random = np.broadcast_to(evaluate(column.random, names, where) * scale, raw[key].shape).astype(float)
-    if not (random > 0).all():
-        raise WorkbenchError(f"{where}: the random uncertainty of {key!r} must be positive in every row.")
-    return Response(column.name, raw[key] * scale, random, column.unit, scale)
+def _check_conditions(conditions: Mapping[str, np.ndarray], where: str) -> None:
+    for name, values in conditions.items():
+        if name in _POSITIVE and not (values > 0).all():
+            raise WorkbenchError(f"{where}: {name} must be positive in every row.")
+        if name in _NOT_NEGATIVE and not (values >= 0).all():
+            raise WorkbenchError(f"{where}: {name} must not be negative in any row.")
 
 
-def _roles(columns: Mapping[str, Column]) -> set[str]:
-    return {column.role for column in columns.values()}
+def _refuse_twins(tables: Sequence[Table]) -> None:
+    """A channel is named by its file and its quantity; no reading takes part twice."""
+    seen: dict[tuple[str, str], str] = {}
+    for table in tables:
+        for name in table.responses:
+            key = (Path(table.file).stem, name)
+            if key in seen:
+                how = "names" if seen[key] == table.file else f"has {seen[key]!r} and"
+                raise WorkbenchError(
+                    f"{FILE}: {how} {table.file!r} twice for {name}; name every file once, each with a name of its own."
+                )
+            seen[key] = table.file
 
 
-def _numbers(frame: pd.DataFrame, columns: Mapping[str, Column], role: str) -> np.ndarray:
-    for key, column in columns.items():
-        if column.role == role:
-            return frame[key].to_numpy().astype(int)
-    return np.zeros(len(frame), dtype=int)
-
-
-def _repeats(head: Mapping[str, Any], tables: tuple[Table, ...], complaints: list[str]) -> int:
+def _repeats(declared: int | None, tables: Sequence[Table], complaints: list[str]) -> int:
     found = max(len(np.unique(table.repeat)) for table in tables)
-    declared = head.get("repeats", found)
-    if declared != found:
+    if declared is not None and declared != found:
         complaints.append(f"{FILE} declares {declared} repeats, the tables have {found}")
     if found < 2:
         complaints.append("one repeat only: the size of the noise is taken as declared and its correlation is unknown")
     return int(found)
 
 
-def _tolerance(name: str, entry: Any) -> Tolerance:
-    where = f"{FILE}, [tolerance] {name}"
-    quantity, unit = split_unit(name)
-    if not isinstance(entry, dict) or ("sigma" in entry) == ("sigma_rel" in entry):
-        raise WorkbenchError(f"{where}: give either sigma (in the unit of the name) or sigma_rel.")
-    relative = "sigma_rel" in entry
-    sigma = _positive(entry["sigma_rel" if relative else "sigma"], where)
-    scale = 1.0 if relative else factor(entry.get("unit", unit) or "1", where)
-    return Tolerance(quantity, sigma * scale, relative, str(entry.get("source", "")))
-
-
-def _systematic(name: str, entry: Any) -> Systematic:
-    where = f"{FILE}, [systematic] {name}"
-    quantity, unit = split_unit(name)
-    if not isinstance(entry, dict) or entry.get("kind") not in ("gain", "offset"):
-        raise WorkbenchError(f'{where}: give sigma and kind = "gain" or "offset".')
-    scale = 1.0 if entry["kind"] == "gain" else factor(entry.get("unit", unit) or "1", where)
-    return Systematic(quantity, entry["kind"], _positive(entry.get("sigma"), where) * scale)
-
-
-def _positive(value: object, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
-        raise WorkbenchError(f"{where}: sigma must be a positive number, found {value!r}.")
-    return float(value)
-
-
-def _toml(path: Path) -> dict[str, Any]:
-    if not path.is_file():
-        raise WorkbenchError(
-            f"{path.parent}: there is no {FILE}; a campaign is a folder with that file and its CSV tables."
-        )
+def _id(written: str | None, folder: Path) -> str:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise WorkbenchError(f"{path}: is not valid TOML: {error}.") from None
+        return folder_name(written or folder.resolve().name)
+    except ValueError as error:
+        raise WorkbenchError(
+            f"{FILE}: [campaign] has no id, and the name of its folder cannot be one: it {error}."
+        ) from None
 
 
-def _section(content: Mapping[str, Any], name: str) -> dict[str, Any]:
-    section = content.get(name)
-    if not isinstance(section, dict):
-        raise WorkbenchError(f"{FILE}: the section [{name}] is missing.")
-    return section
+def _tolerance(name: str, entry: ToleranceEntry) -> Tolerance:
+    quantity, unit = split_unit(name)
+    source = "" if entry.source is None else str(entry.source)
+    if entry.sigma_rel is not None:
+        return Tolerance(quantity, entry.sigma_rel, True, source)
+    return Tolerance(
+        quantity, entry.sigma * factor(entry.unit or unit or "1", f"{FILE}, [tolerance] {name}"), False, source
+    )
 
 
-def _tables(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    tables = content.get("table")
-    if not isinstance(tables, list) or not tables:
-        raise WorkbenchError(f"{FILE}: no [[table]] is given; name at least one CSV file and its kind.")
-    return tables
+def _systematic(name: str, entry: SystematicEntry) -> Systematic:
+    quantity, unit = split_unit(name)
+    where = f"{FILE}, [systematic] {name}"
+    scale = 1.0 if entry.kind == "gain" else factor(entry.unit or unit or "1", where)
+    return Systematic(quantity, entry.kind, entry.sigma * scale)
 
 
 def _sha256(path: Path) -> str:
     digest = hashlib.sha256()
-    with path.open("rb") as stream:
-        for block in iter(lambda: stream.read(1 << 20), b""):
-            digest.update(block)
+    try:
+        with path.open("rb") as stream:
+            for block in iter(lambda: stream.read(1 << 20), b""):
+                digest.update(block)
+    except OSError as error:
+        raise WorkbenchError(f"{path.name}: cannot be read ({error.strerror}).") from None
     return digest.hexdigest()

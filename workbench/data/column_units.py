@@ -7,12 +7,16 @@ from __future__ import annotations
 
 from typing import Final
 
+import numpy as np
+
 import units
 from units import DEGREE, RPM
 from workbench.errors import WorkbenchError
 
 # What columns have beyond the one table: pure numbers, and differences of temperature.
 FACTORS: Final[dict[str, float]] = {**units.FACTORS, "1": 1.0, "K": 1.0}
+# Temperatures that are not in degrees Celsius: degC = scale * (value + offset).
+OFFSETS: Final[dict[str, tuple[float, float]]] = {"K": (1.0, -273.15), "degF": (5 / 9, -32.0)}
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -34,6 +38,19 @@ def factor(unit: str, where: str) -> float:
         known = ", ".join(sorted(FACTORS))
         raise WorkbenchError(f"{where}: the unit {unit!r} is not known; use one of {known}.")
     return FACTORS[unit]
+
+
+def to_inside(values: np.ndarray, name: str, unit: str, where: str) -> np.ndarray:
+    """Readings of a column in the unit used inside; a temperature (``magnet_T``) may be in degC, K or degF (n,)."""
+    if name.endswith("_T") and unit in OFFSETS:
+        scale, offset = OFFSETS[unit]
+        return scale * (values + offset)
+    return values * factor(unit, where)
+
+
+def difference(unit: str, name: str, where: str) -> float:
+    """Factor of a difference or an uncertainty to the unit used inside."""
+    return OFFSETS[unit][0] if name.endswith("_T") and unit in OFFSETS else factor(unit, where)
 
 
 def for_people(name: str) -> tuple[str, float]:

@@ -1,87 +1,185 @@
-"""Writes the ``campaign.toml`` of a plain CSV file, with blanks for what only the lab knows."""
+"""Writes the ``campaign.toml`` of plain data files: what can be seen in them is filled in, what only the laboratory
+knows is a "?"."""
 
 from __future__ import annotations
 
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-import pandas as pd
-
-from workbench.data.campaign import BOOKKEEPING, FILE
-from workbench.data.column_units import split_unit
+from disk import write_atomically
+from workbench.data.device_keys import DEVICE_KEYS
+from workbench.data.guess import Guess, guesses, likely_kind, likely_model, noise_of
 from workbench.data.kinds import KINDS
+from workbench.data.raw_table import RawTable, read_raw
+from workbench.data.schema import FILE, campaign_file
 from workbench.errors import WorkbenchError
 
-_HEAD = """# A campaign: what was measured, how well it is known. Fill in every "?" before use.
+_BOOKKEEPING = ("scan", "repeat", "holdout")
+_HEAD = """# A campaign: what was measured, and how well it is known. Fill in every "?"; see docs/campaign.md.
 [campaign]
-id = "{id}"
-repeats = {repeats}                  # two or more show the size of the noise
-holdout = {holdout}
+id = {id}  # names the folder of the results
+repeats = {repeats}  # two or more show the size of the noise
+holdout = {{ rule = "by region" }}  # operating conditions that no fit sees, to test the prediction
+"""
+_TOLERANCE = """
+[tolerance]  # inputs of the model that are uncertain:  {example} = {{ sigma_rel = 0.01, source = "drawing" }}
 
-[device]
-model = "?"                          # damper, dq or machine, and the keys it needs
-
-[tolerance]                          # inputs of the model:  name = {{ sigma_rel = 0.01, source = "drawing" }}
-
-[systematic]                         # errors of instruments:  voltage_gain = {{ sigma = 0.002, kind = "gain" }}
-
-[[table]]
-file = "{file}"
-kind = "{kind}"
-[table.columns]
+[systematic]  # errors shared by all rows of an instrument:  {error} = {{ sigma = 0.002, kind = "gain" }}
 """
 
 
-def draft_of(path: Path) -> str:
-    """The text of a ``campaign.toml`` for one CSV file.
+@dataclass(frozen=True, eq=False)
+class _Sheet:
+    """A data file with what its columns probably are."""
+
+    raw: RawTable
+    columns: tuple[Guess, ...]
+    kind: str
+
+
+def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
+    """The text of a ``campaign.toml`` for some data files of one folder.
+
+    like: folder of a campaign of the same device, whose device, tolerances and instruments are taken over
+    Raises:
+        WorkbenchError: a file is not there, is no table, or lies in another folder.
+    """
+    sheets = [_sheet(path) for path in paths]
+    folder = paths[0].resolve().parent
+    if any(path.resolve().parent != folder for path in paths):
+        raise WorkbenchError(f"all files of a campaign lie in one folder; put them beside {paths[0]}.")
+    quantities = [guess.quantity for sheet in sheets for guess in sheet.columns]
+    repeats = max(_repeats(sheet) for sheet in sheets)
+    name = re.sub(r"[^\w.-]+", "-", folder.name).strip("-.") or "campaign"
+    head = _HEAD.format(id=_text(name), repeats=repeats)
+    device = _device(likely_model([sheet.kind for sheet in sheets], quantities)) if like is None else _taken_over(like)
+    return head + device + "".join(_table(path.name, sheet) for path, sheet in zip(paths, sheets))
+
+
+def write_draft(paths: Sequence[Path], like: Path | None = None) -> tuple[Path, list[int]]:
+    """Writes the draft beside the data files, which are only read; returns its path and the lines to fill in.
 
     Raises:
-        WorkbenchError: the file is not there or is no table.
+        WorkbenchError: there is a campaign file already, or a file is no table.
     """
-    try:
-        frame = pd.read_csv(path, skipinitialspace=True, nrows=100_000).rename(columns=str.strip)
-    except (OSError, ValueError, pd.errors.ParserError) as error:
-        raise WorkbenchError(f"{path}: cannot be read as CSV: {error}.") from None
-    kind = likely_kind([split_unit(name)[0] for name in frame])
-    repeats = frame["repeat"].nunique() if "repeat" in frame else 1
-    holdout = '{ rule = "last repeat of every table" }' if repeats > 1 else '"none"'
-    head = _HEAD.format(id=path.parent.name or path.stem, repeats=repeats, holdout=holdout, file=path.name, kind=kind)
-    return head + "".join(_line(name, kind) for name in frame)
-
-
-def likely_kind(quantities: list[str]) -> str:
-    """The kind whose responses and axes cover most of the columns."""
-
-    def score(name: str) -> int:
-        kind = KINDS[name]
-        answers = sum(kind.is_response(q) for q in quantities)
-        return 3 * answers + sum(any(_like(q, axis) for axis in kind.axes) for q in quantities) if answers else -1
-
-    return max(KINDS, key=lambda name: (score(name), name == "generic"))
-
-
-def _like(quantity: str, axis: str) -> bool:
-    return quantity == axis or (axis.endswith("_?") and quantity[:-1] == axis[:-1])
-
-
-def _line(name: str, kind: str) -> str:
-    quantity, unit = split_unit(name)
-    if name in BOOKKEEPING:
-        return f'"{name}" = {{ role = "{name}" }}\n'
-    if name == "direction":
-        return f'"{name}" = {{ role = "group" }}\n'
-    if KINDS[kind].is_response(quantity):
-        return f'"{name}" = {{ unit = "{unit or "?"}", role = "response", u_random = "?" }}\n'
-    return f'"{name}" = {{ unit = "{unit or "?"}", role = "condition" }}\n'
-
-
-def write_draft(path: Path) -> Path:
-    """Writes the draft beside the CSV file, which is only read.
-
-    Raises:
-        WorkbenchError: there is a campaign file already.
-    """
-    target = path.parent / FILE
+    target = paths[0].parent / FILE
+    text = draft_of(paths, like)
     if target.exists():
         raise WorkbenchError(f"{target}: exists already; it is not overwritten.")
-    target.write_text(draft_of(path), encoding="utf-8")
-    return target
+    try:
+        write_atomically(target, lambda part: part.write_text(text, encoding="utf-8"))
+    except OSError as error:
+        raise WorkbenchError(f"{target}: cannot be written ({error.strerror}).") from None
+    return target, [number for number, line in enumerate(text.splitlines(), 1) if _is_open(line)]
+
+
+def _is_open(line: str) -> bool:
+    return '= "?"' in line.partition("#")[0] or 'unit = "?"' in line.partition(" # ")[0]
+
+
+def _sheet(path: Path) -> _Sheet:
+    if not path.is_file():
+        raise WorkbenchError(f"{path}: cannot be read as CSV: there is no such file.")
+    raw = read_raw(path)
+    columns = tuple(guesses(raw))
+    return _Sheet(raw, columns, likely_kind([guess.quantity for guess in columns]))
+
+
+def _repeats(sheet: _Sheet) -> int:
+    place = next((guess.place for guess in sheet.columns if guess.quantity == "repeat"), None)
+    return 1 if place is None else len({str(cell) for cell in sheet.raw.columns[place]})
+
+
+# ---- the device ----------------------------------------------------------------------------------------------------
+
+
+def _device(model: str) -> str:
+    if model not in DEVICE_KEYS:
+        return f'\n[device]\nmodel = "?"  # {", ".join(DEVICE_KEYS)}, and the keys it needs\n' + _TOLERANCE.format(
+            example="airgap_mm", error="torque_gain"
+        )
+    needed = [f'{key.key} = "?"  # {key.meaning}' for key in DEVICE_KEYS[model] if key.needed]
+    others = [f"# {key.key} =   # {key.meaning}" for key in DEVICE_KEYS[model] if not key.needed]
+    example = DEVICE_KEYS[model][2].key
+    error = {"damper": "force_gain", "dq": "current_gain"}.get(model, "torque_gain")
+    lines = ["", "[device]  # as drawn", f"model = {_text(model)}", *needed, *others]
+    return "\n".join(lines) + "\n" + _TOLERANCE.format(example=example, error=error)
+
+
+def _taken_over(folder: Path) -> str:
+    """Device, tolerances and instruments of another campaign."""
+    content = campaign_file(folder)
+    entries = {
+        name: {key: entry.model_dump(exclude_none=True) for key, entry in getattr(content, name).items()}
+        for name in ("tolerance", "systematic")
+    }
+    text = "\n[device]\n" + _lines(content.device)
+    return text + "".join(f"\n[{name}]\n{_lines(section)}" for name, section in entries.items())
+
+
+def _lines(section: Mapping[str, object]) -> str:
+    return "".join(f"{_key(key)} = {_value(value)}\n" for key, value in section.items())
+
+
+def _value(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(key)} = {_value(inner)}" for key, inner in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return _text(value) if isinstance(value, str) else str(value)
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
+
+
+def _text(value: str) -> str:
+    """A text as TOML writes it."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+# ---- tables --------------------------------------------------------------------------------------------------------
+
+
+def _table(name: str, sheet: _Sheet) -> str:
+    kind = f"kind = {_text(sheet.kind)}  # what was measured, a guess; the kinds stand in docs/campaign.md"
+    lines = ["", "[[table]]", f"file = {_text(name)}", kind, "[table.columns]  # heading = what the column holds"]
+    return "\n".join(lines + [_line(guess, sheet) for guess in sheet.columns if guess.heading.written]) + "\n"
+
+
+def _line(guess: Guess, sheet: _Sheet) -> str:
+    heading, quantity = _text(guess.heading.written), guess.quantity
+    named = "" if quantity == guess.heading.name else f"name = {_text(quantity)}, "
+    if not quantity or quantity == "time":
+        return f"# {heading} = {{ ... }}  # not read"
+    if quantity in _BOOKKEEPING:
+        return f'{heading} = {{ role = "{quantity}" }}'
+    if quantity == "direction":
+        return f'{heading} = {{ {named}role = "group" }}'
+    unit = _text(guess.unit or "?")
+    if not KINDS[sheet.kind].is_response(quantity):
+        return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}'
+    size = _size(guess, sheet)
+    note = "" if size is None else "  # u_random: scatter of neighbours; better the data sheet's"
+    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size or _text("?")} }}{note}'
+
+
+def _size(guess: Guess, sheet: _Sheet) -> str | None:
+    conditions = [
+        other for other in sheet.columns
+        if other.quantity and other.quantity != "time" and not KINDS[sheet.kind].is_response(other.quantity)
+    ]  # fmt: skip
+    axes = [sheet.raw.values(other.place) for other in _main_axis_first(conditions, sheet.kind)]
+    size = noise_of(sheet.raw.values(guess.place), axes)
+    return None if size is None else f"{size:.2g}"
+
+
+def _main_axis_first(conditions: Sequence[Guess], kind: str) -> list[Guess]:
+    """Rows are sorted by the first of these within all others."""
+    axes = KINDS[kind].axes
+    return sorted(conditions, key=lambda g: axes.index(g.quantity) if g.quantity in axes else len(axes))

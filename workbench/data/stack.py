@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from workbench.data.table import Response, Table
+from workbench.data.table import Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +63,7 @@ def stacked(tables: Sequence[Table]) -> Stack:
 def rows_of(table: Table, chosen: np.ndarray) -> Table:
     """The table with the chosen rows only (a mask or row numbers), in their order."""
     responses = {
-        name: Response(r.name, r.values[chosen], r.random[chosen], r.unit, r.scale)
-        for name, r in table.responses.items()
+        name: replace(r, values=r.values[chosen], random=r.random[chosen]) for name, r in table.responses.items()
     }
     return replace(
         table,

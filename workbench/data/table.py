@@ -8,6 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
+from workbench.errors import WorkbenchError
+
+OPEN_CIRCUIT = 1e6  # ohm; a shunt of this size is an open circuit
+
 
 @dataclass(frozen=True, eq=False)
 class Response:
@@ -26,16 +30,29 @@ class Response:
     bandwidth: float | None = None
 
 
+class Conditions(dict[str, np.ndarray]):
+    """Conditions of a table by name; one that a model asks for and the table has not is one sentence."""
+
+    def __init__(self, columns: Mapping[str, np.ndarray], table: str):
+        super().__init__(columns)
+        self.table = table
+
+    def __missing__(self, name: str) -> np.ndarray:
+        known = ", ".join(self) or "none"
+        raise WorkbenchError(f"{self.table}: the model needs the condition {name!r}, the table has {known}; add it.")
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """One table of a campaign; n rows in the order of acquisition.
 
     kind: measurement kind, for example "back_emf"
     conditions: columns that the model is asked at, by SI-less name ("angle_mech", "i_a", "velocity"), SI (n,)
-    condition_random: their declared random uncertainties, SI (n,), where any
+    condition_random: their declared random uncertainties, SI (n,), where any;  condition_units: as in the file
     responses: measured columns by name without unit ("v_a", "torque", "force", "re", "im")
     scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
     held_out: rows that no fit may see (n,) bool
+    bandwidth: frequency above which the recorder of the table lets nothing pass [Hz], None where it is not known
     """
 
     kind: str
@@ -46,6 +63,8 @@ class Table:
     repeat: np.ndarray
     held_out: np.ndarray
     condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
+    bandwidth: float | None = None
+    condition_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -90,6 +109,9 @@ class Campaign:
 
     device: the ``[device]`` table as read, keys with units;  repeats: declared number of repeats
     file_hashes: SHA-256 of every data file;  complaints: what had to be left out or limits the conclusions
+    holdout: the rule of ``[campaign]``: "by region", "last repeat of every table", "column:NAME" or "none"; with "by
+    region" no row is marked here
+    conventions: the section ``[conventions]`` as read
     """
 
     id: str
@@ -101,3 +123,5 @@ class Campaign:
     repeats: int
     file_hashes: Mapping[str, str]
     complaints: tuple[str, ...] = ()
+    holdout: str = "by region"
+    conventions: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

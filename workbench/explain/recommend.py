@@ -20,7 +20,9 @@ from workbench.data.kinds import KINDS
 from workbench.data.stack import rows_of, stacked
 from workbench.data.table import Response, Table
 from workbench.errors import WorkbenchError
-from workbench.explain.verdict import Posterior
+from workbench.explain.explore import Posterior
+from workbench.explain.hypotheses import Hypothesis
+from workbench.explain.search import Search
 from workbench.findings import NextMeasurement
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import with_parameters
@@ -29,7 +31,7 @@ from workbench.models.base import Option
 
 CAP = 20.0  # nats; more certainty than this is worth nothing
 FLOOR = 0.02  # least weight of a hypothesis: what is unlikely now is not forgotten
-LEADERS = 5  # effects that are weighed against one another
+LEADERS = 5  # explanations that are weighed against one another
 POINTS = 12  # operating points of a recommended measurement
 LISTED = 6
 STRETCHES = (0.5, 2.0)  # factors on one condition that make a new measurement of an old kind
@@ -84,13 +86,13 @@ def _expected(seen: np.ndarray, true: tuple[int, ...], other: tuple[int, ...]) -
     return 0.5 * np.maximum(size - followed, 0.0)
 
 
-def next_measurements(search, p: Posterior) -> tuple[NextMeasurement, ...]:
+def next_measurements(search: Search, p: Posterior) -> tuple[NextMeasurement, ...]:
     """The best few measurements, most nats for their cost first; empty where nothing was fitted."""
     weighing = _weighing(search, p)
     if weighing is None:
         return ()
     found = []
-    for option in options_of(search.bench, search.unknown.raw):
+    for option in options_of(search.bench, search.unknown):
         try:
             found.append(_best_rows(option, *weighing))
         except WorkbenchError:
@@ -99,22 +101,21 @@ def next_measurements(search, p: Posterior) -> tuple[NextMeasurement, ...]:
     return tuple(m for m in ranked if m.gain_nats > 0)[:LISTED]
 
 
-def gains_of(search, p: Posterior, options: Sequence[Option]) -> np.ndarray:
+def gains_of(search: Search, p: Posterior, options: Sequence[Option]) -> np.ndarray:
     """U [nats] of each option with all its rows (options,); zero where nothing was fitted or there is no answer."""
     weighing = _weighing(search, p)
     return np.array([_gain_of_all(option, *weighing) if weighing else 0.0 for option in options])
 
 
-def _weighing(search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
+def _weighing(search: Search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
     """What the leading hypotheses are weighed with, and the sums over the rows that were fitted."""
-    leaders = sorted(search.singles, key=lambda n: (-p.singles[n], n))[:LEADERS]
-    if not leaders:
+    hypotheses = [search.fitted[names] for names in search.ranked if names][:LEADERS]
+    if not hypotheses:
         return None
-    bench: Bench = search.bench
-    hypotheses = [search.singles[n] for n in leaders]
+    bench = search.bench
     forms, columns = _forms(bench, hypotheses, p), _Columns(bench, hypotheses)
     try:
-        have = columns.of_fit(search.unknown.whitened)
+        have = columns.of_fit(bench.fit.white(search.unknown * bench.fit.white.sigma))
     except WorkbenchError:  # a leader that has no answer without the tolerances that were fitted with it
         return None
     return forms, columns, have.T @ have
@@ -128,15 +129,15 @@ def _gain_of_all(option: Option, forms: _Forms, columns: _Columns, gram: np.ndar
     return float(forms.utility(gram + values.T @ values) - forms.utility(gram))
 
 
-def _forms(bench: Bench, hypotheses, p: Posterior) -> _Forms:
+def _forms(bench: Bench, hypotheses: Sequence[Hypothesis], p: Posterior) -> _Forms:
     m = len(bench.null.x)
     blocks, place = [()], 0
     for h in hypotheses:
         blocks.append(tuple(range(place, place + 1 + len(h.fit.z))))
         place += 1 + len(h.fit.z)
     blocks.append((place,))
-    weights = np.array([p.nothing, *(p.singles[h.names[0]] for h in hypotheses)]).clip(FLOOR)
-    weights = np.append(weights, p.unknown)  # whose readings elsewhere nobody knows: no floor
+    weights = np.array([p.nothing, *(p.sets[h.names] for h in hypotheses)]).clip(FLOOR)
+    weights = np.append(weights, p.none_of_these)  # whose readings elsewhere nobody knows: no floor
     return _Forms(m, tuple(blocks), weights / weights.sum())
 
 
@@ -145,7 +146,7 @@ class _Columns:
     """Whitened derivatives to the nuisances, and change and slopes of every hypothesis, for any rows."""
 
     bench: Bench
-    hypotheses: Sequence
+    hypotheses: Sequence[Hypothesis]
 
     def of_fit(self, unknown: np.ndarray) -> np.ndarray:
         """Of the rows that were fitted (n, c)."""

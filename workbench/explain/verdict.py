@@ -1,217 +1,91 @@
-"""From evidences to probabilities, and from probabilities to one verdict."""
+"""From probabilities to one verdict. Every number that is printed is the probability of the sentence beside it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from math import log
+from dataclasses import dataclass
 
-import numpy as np
-from scipy.special import logsumexp
+from workbench.believed import LARGEST_GROUP, LIKELY
+from workbench.explain.explore import Posterior
 
-from workbench.explain.hypotheses import Hypothesis
-from workbench.explain.priors import EFFECT_AND_UNKNOWN, NOTHING, ONE_EFFECT, TWO_EFFECTS, UNKNOWN
-from workbench.likelihood.linear import Nuisances
-
-SURE = 0.9  # probability from which something is named
-NAMED = 0.6  # share of what is missing that names must carry to be printed
-LIKELY_TWIN = 0.01  # of the probability of the leader, for an effect that the data cannot tell from it
-LIKELY = 0.03  # the same for one that they can
-SAME_SHAPE = 0.8  # cosine of two signatures from which the pair lives on their small difference
-TWINS = 3.0  # expected log-Bayes factor [nats] below which two effects cannot be told apart
-LARGEST_GROUP = 4  # names; with more the data tell nothing
-POWER_NEEDED = 0.5  # share of unknown discrepancies of ten u that must be noticed before a name is believed
-
-NOTHING_MISSING, EFFECT, GROUP, PAIR = "nothing_missing", "effect", "group", "pair"
-PARTIAL, NONE_OF_THESE, CANNOT_TELL = "partial", "none_of_these", "cannot_tell"
-
-Pair = tuple[str, str]
-
-
-@dataclass(frozen=True)
-class Evidences:
-    """ln evidences of all hypotheses, on one scale. rest: an effect beside the unknown function"""
-
-    nothing: float
-    singles: Mapping[str, float]
-    pairs: Mapping[Pair, float]
-    unknown: float
-    rest: Mapping[str, float]
-
-
-@dataclass(frozen=True)
-class Posterior:
-    """Probabilities of all hypotheses; they add up to one.
-
-    logs: their logarithms for effects and pairs, by their names; small probabilities are zero, these keep their order
-    """
-
-    nothing: float
-    singles: Mapping[str, float]
-    pairs: Mapping[Pair, float]
-    unknown: float
-    rest: Mapping[str, float]
-    logs: Mapping[tuple[str, ...], float] = field(default_factory=dict)
-
-    def log(self, names: tuple[str, ...]) -> float:
-        if names in self.logs:
-            return self.logs[names]
-        share = self.singles[names[0]] if len(names) == 1 else self.pairs[names]
-        return float(np.log(max(share, 1e-300)))
+NOTHING_MISSING, EFFECT, GROUP, PAIR, SEVERAL = "nothing_missing", "effect", "group", "pair", "several"
+PARTIAL, NONE_OF_THESE, CANNOT_TELL, CONVENTION = "partial", "none_of_these", "cannot_tell", "convention"
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """kind: one of the seven words;  names: the effect, or the members of the group or pair"""
+    """kind: one of the nine words;  names: the effects, or the members of a group
+
+    alternatives: of a name, what may stand for it instead;  probability: that the sentence of the verdict is true
+    """
 
     kind: str
     names: tuple[str, ...]
     probability: float
-
-
-def posterior(evidences: Evidences) -> Posterior:
-    """Probabilities with the shares of ``priors``; pairs that were not fitted keep their share out of the
-    sum."""
-    effects = max(len(evidences.singles), 1)
-    pairs = max(effects * (effects - 1) // 2, 1)
-    weighed = Evidences(
-        evidences.nothing + log(NOTHING),
-        {n: v + log(ONE_EFFECT / effects) for n, v in evidences.singles.items()},
-        {n: v + log(TWO_EFFECTS / pairs) for n, v in evidences.pairs.items()},
-        evidences.unknown + log(UNKNOWN),
-        {n: v + log(EFFECT_AND_UNKNOWN / effects) for n, v in evidences.rest.items()},
-    )
-    total = logsumexp(_all(weighed))
-    share = lambda values: {name: float(np.exp(v - total)) for name, v in values.items()}  # noqa: E731
-    return Posterior(
-        float(np.exp(weighed.nothing - total)),
-        share(weighed.singles),
-        share(weighed.pairs),
-        float(np.exp(weighed.unknown - total)),
-        share(weighed.rest),
-        {(n,): float(v - total) for n, v in weighed.singles.items()}
-        | {n: float(v - total) for n, v in weighed.pairs.items()},
-    )
-
-
-def _all(e: Evidences) -> list[float]:
-    return [e.nothing, e.unknown, *e.singles.values(), *e.pairs.values(), *e.rest.values()]
-
-
-def separation(first: Hypothesis, second: Hypothesis, x_count: int, changes: Mapping[str, np.ndarray]) -> float:
-    """Expected log-Bayes factor [nats] of the first over the second if the first is true at its fitted size.
-
-    D = 1/2 min over v of |W_first - V v|^2, V: what the second can do near its own fit (its change and its slopes)
-    """
-    nuisances = Nuisances(first.fit.jacobian[:, :x_count])
-    own = nuisances.root(changes[first.names[0]])
-    other = np.column_stack([changes[second.names[0]], second.fit.jacobian[:, x_count:]])
-    basis, size, _ = np.linalg.svd(nuisances.root(other), full_matrices=False)
-    basis = basis[:, size > 1e-6 * max(size.max(initial=0.0), 1e-12)]
-    return 0.5 * float(own @ own - np.sum((basis.T @ own) ** 2))
-
-
-def twins_of(name: str, separations: Mapping[Pair, float]) -> tuple[str, ...]:
-    """Effects that the data cannot tell from the named one."""
-    others = {pair[1] for pair in separations if pair[0] == name}
-    return tuple(o for o in sorted(others) if min(separations[name, o], separations[o, name]) < TWINS)
+    alternatives: dict[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True)
-class Signs:
-    """What speaks beside the probabilities.
+class Thresholds:
+    """What simulated campaigns of the same bench say of its probabilities.
 
-    alarm: the data are not those of an empty campaign
-    power: to notice an unknown discrepancy of ten u
-    left: fitted and held-out rows agree on something that the leading explanation leaves over
-    left_by_nothing: the same for the model as it is
-    bendable: the two effects of the leading pair have nearly the same shape; together they follow any smooth curve
-    mended: the effect of the leading pair whose law may be wrong by all that the other one adds; empty for none
-    idle: the leading explanation explains next to nothing
+    sure: from which a name is printed, so that a false one is rare;  quiet: P(nothing) from which there is no alarm
+    can_tell: whether an unknown law would be noticed and not be given a name of the library
     """
 
-    alarm: bool
-    power: float
-    left: bool = False
-    left_by_nothing: bool = False
-    bendable: bool = False
-    mended: str = ""
-    idle: bool = False
+    sure: float
+    quiet: float
+    can_tell: bool
 
 
-def verdict(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs) -> Verdict:
-    """Exactly one verdict.
-
-    twins: effects that cannot be told from each effect
-    """
-    if not signs.alarm:
-        return _quiet(p, signs)
-    if signs.power < POWER_NEEDED:
-        return Verdict(CANNOT_TELL, (), 1 - p.nothing)
-    shares = shares_of(p)
-    something = sum(shares.values())
-    kind = max(shares, key=shares.get)
-    if kind == NONE_OF_THESE:
-        return Verdict(NONE_OF_THESE, (), max(p.unknown / something, SURE * signs.left))
-    if signs.left or kind == PARTIAL:
-        sure = max(shares[PARTIAL] / something, SURE * signs.left)
-        return Verdict(NONE_OF_THESE, (), sure) if signs.idle else Verdict(PARTIAL, leaders(p), sure)
-    return _of_pairs(p, twins, signs, something) if kind == PAIR else _of_singles(p, twins, something)
+def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Verdict:
+    """Exactly one verdict. plainly_nothing: P(nothing that these data would show plainly)"""
+    sure, can_tell = thresholds.sure, thresholds.can_tell
+    if p.nothing < thresholds.quiet and can_tell and (groups := printed(p, sure)):
+        return _of_groups(p, groups)
+    something = 1.0 - p.nothing
+    if p.nothing >= thresholds.quiet:
+        kind = NOTHING_MISSING if can_tell else CANNOT_TELL
+        return Verdict(kind, (), plainly_nothing if can_tell else p.nothing, {})
+    if p.remains >= LIKELY and can_tell:
+        return Verdict(NONE_OF_THESE, (), p.remains, {})
+    return Verdict(CANNOT_TELL, (), something, {})
 
 
-def _quiet(p: Posterior, signs: Signs) -> Verdict:
-    if signs.left_by_nothing:  # and no effect is probable enough for an alarm
-        return Verdict(NONE_OF_THESE, (), SURE)
-    return Verdict(NOTHING_MISSING if signs.power >= POWER_NEEDED else CANNOT_TELL, (), p.nothing)
+def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:
+    """For every effect of the leading set the smallest group of names, itself first, one of which is there for sure;
+    effects for which there is no such group are left out."""
+    found: list[frozenset[str]] = []
+    for name in sorted(p.leading, key=lambda n: (-p.of(n), n)):
+        group = _group_of(p, name, sure, frozenset().union(*found, p.leading - {name}))
+        if group is not None:
+            found.append(group)
+    while found and p.all_of(tuple(found)) < sure:
+        found.remove(min(found, key=lambda group: (p.any_of(group), -len(group))))
+    return tuple(found)
 
 
-def shares_of(p: Posterior) -> dict[str, float]:
-    """Probability of each kind of something."""
-    return {
-        EFFECT: sum(p.singles.values()),
-        PAIR: sum(p.pairs.values()),
-        NONE_OF_THESE: p.unknown,
-        PARTIAL: sum(p.rest.values()),
-    }
+def _group_of(p: Posterior, name: str, sure: float, taken: frozenset[str]) -> frozenset[str] | None:
+    """The effect and what may stand for it, most probable first, until one of them is there for sure."""
+    group = frozenset((name,))
+    while p.any_of(group) < sure:
+        others = [n for n in p.names if n not in group and n not in taken]
+        if len(group) == LARGEST_GROUP or not others:
+            return None
+        group |= {max(others, key=lambda n: p.any_of(group | {n}))}
+    return group
 
 
-def leaders(p: Posterior) -> tuple[str, ...]:
-    """Names of the most probable explanation that effects of the library give: one or two."""
-    singles, pairs = [(name,) for name in p.singles], list(p.pairs)
-    if pairs and (not singles or logsumexp([p.log(n) for n in pairs]) > logsumexp([p.log(n) for n in singles])):
-        return max(pairs, key=p.log)
-    return max(singles, key=p.log, default=())
-
-
-def _of_singles(p: Posterior, twins: Mapping[str, tuple[str, ...]], something: float) -> Verdict:
-    """The leader and its twins; more names where they are needed to be sure, as long as each of them is likely
-    itself."""
-    ranked = sorted(p.singles, key=lambda name: (-p.singles[name], name))
-    best = p.singles[ranked[0]]
-    names = [
-        n for n in ranked if n == ranked[0] or (n in twins.get(ranked[0], ()) and p.singles[n] > LIKELY_TWIN * best)
-    ]
-    for name in ranked:
-        if sum(p.singles[n] for n in names) >= SURE * sum(p.singles.values()) or p.singles[name] < LIKELY * best:
-            break
-        if name not in names:
-            names.append(name)
-    share = sum(p.singles[n] for n in names) / something
-    if len(names) > LARGEST_GROUP or share < NAMED:
-        return Verdict(CANNOT_TELL, (), share)
-    return Verdict(EFFECT if len(names) == 1 else GROUP, tuple(names), share)
-
-
-def _of_pairs(p: Posterior, twins: Mapping[str, tuple[str, ...]], signs: Signs, something: float) -> Verdict:
-    """The leading pair, where no other pair but by twins is as likely; else the effect of it that is sure."""
-    best = max(p.pairs, key=p.pairs.get)
-    share = sum(p.pairs.values()) / something
-    if signs.mended:
-        return Verdict(EFFECT, (signs.mended,), share)
-    alike = [{name, *twins.get(name, ())} for name in best]
-    same = [q for q in p.pairs if all(any(name in names for name in q) for names in alike)]
-    if not signs.bendable and sum(p.pairs[q] for q in same) >= SURE * sum(p.pairs.values()):
-        return Verdict(PAIR, best, share)
-    common = {name: sum(v for q, v in p.pairs.items() if name in q) for name in best}
-    alone = {name: p.log((name,)) if name in p.singles else -np.inf for name in best}
-    return Verdict(PARTIAL, (max(best, key=lambda name: (common[name], alone[name])),), share)
+def _of_groups(p: Posterior, groups: tuple[frozenset[str], ...]) -> Verdict:
+    """Only names that are sure by themselves are printed beside others; what one of several names is, is said apart."""
+    ranked = [tuple(sorted(group, key=lambda n: (-p.of(n), n))) for group in groups]
+    alternatives = {names[0]: names[1:] for names in ranked if len(names) > 1}
+    if len(groups) == 1 and (len(ranked[0]) > 1 or p.remains < LIKELY):
+        return Verdict(EFFECT if len(ranked[0]) == 1 else GROUP, ranked[0], p.any_of(groups[0]), {})
+    sure = tuple(names[0] for names in ranked if len(names) == 1)
+    if not sure:
+        first = ranked[0]
+        return Verdict(GROUP, first, p.any_of(groups[0]), {n: a for n, a in alternatives.items() if n != first[0]})
+    share = p.all_of(tuple(frozenset((name,)) for name in sure))
+    if p.remains >= LIKELY or alternatives:
+        return Verdict(PARTIAL, sure, share, alternatives)
+    return Verdict(PAIR if len(sure) == 2 else SEVERAL, sure, share, {})

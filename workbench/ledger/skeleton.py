@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import ast
+import json
 from collections.abc import Mapping
+from keyword import iskeyword
+from math import isfinite
 from pathlib import Path
 
+from disk import write_atomically
 from workbench.errors import WorkbenchError
 
 _TEXT = '''"""{doc}"""
@@ -25,17 +30,17 @@ class {cls}(ResponseEffect):
     y = y_model + size * (what the residual looks like)
     """
 
-    title = "{title}"
-    looks_like = "{looks}"
+    title = {title}
+    looks_like = {looks}
 
-    size: float = parameter(0.0, "{unit}", prior=Normal({sd:.3g}), low={low:.3g}, high={high:.3g}, source="to be found")
+    size: float = parameter(0.0, {unit}, prior=Normal({sd:.3g}), low={low:.3g}, high={high:.3g}, source="to be found")
 
     def on_response(self, response, conditions, kind, design):
-        """Adds the effect to ``{response}`` of tables of kind ``{kind}``; conditions there: {conditions}."""
-        if kind != "{kind}" or self.is_null:
+        """Adds the effect to the response {about}; conditions there: {conditions}."""
+        if kind != {kind} or self.is_null:
             return response
         shape = {shape}
-        return {{**response, "{response}": response["{response}"] + self.size * shape}}
+        return {{**response, {response}: response[{response}] + self.size * shape}}
 '''
 
 
@@ -44,23 +49,36 @@ def skeleton(
 ) -> str:
     """The text of a Python file with one effect that acts on the channel where the residual sits.
 
+    What comes from a campaign stands in it as quoted text, or with letters and digits only.
     signature: ``residual_signature`` of a diagnosis;  size: of the residual in SI
     """
     words = describe(signature)
+    size = size if isfinite(size) and size > 0 else 1.0
     return _TEXT.format(
-        doc=f"An effect of one's own. The residual: {words}",
+        doc=plain(f"An effect of one's own. The residual: {words}"),
         cls="".join(part.capitalize() for part in path.stem.split("_")),
-        title=path.stem.replace("_", " "),
-        looks=words.replace('"', "'"),
-        unit="SI of the response",
+        title=quoted(path.stem.replace("_", " ")),
+        looks=quoted(words),
+        unit=quoted("SI of the response"),
         sd=size,
         low=-20 * size,
         high=20 * size,
-        response=response,
-        kind=kind,
-        conditions=", ".join(conditions),
+        about=plain(f"{response} of tables of kind {kind}"),
+        response=quoted(response),
+        kind=quoted(kind),
+        conditions=plain(", ".join(conditions)),
         shape=_shape(signature, conditions),
     )
+
+
+def quoted(text: object) -> str:
+    """Text as a Python literal in double quotes, whatever is in it."""
+    return json.dumps(str(text), ensure_ascii=False)
+
+
+def plain(text: str) -> str:
+    """Text that may stand in a docstring: without quotes, backslashes, line breaks and what is no plain letter."""
+    return "".join(sign if sign.isascii() and (sign.isalnum() or sign in " .,;:'^_-+*()") else " " for sign in text)
 
 
 def describe(signature: Mapping[str, object]) -> str:
@@ -79,12 +97,13 @@ def describe(signature: Mapping[str, object]) -> str:
 def _shape(signature: Mapping[str, object], conditions: list[str]) -> str:
     """A first guess of the shape over the conditions: the power law or the order that was found."""
     if signature.get("orders") and "angle_mech" in conditions:
-        return f'np.cos({signature["orders"][0]} * conditions["angle_mech"])'
+        return f'np.cos({float(signature["orders"][0]):g} * conditions["angle_mech"])'
     exponents = {n: e[1] for n, e in signature.get("exponents", {}).items() if n in conditions and abs(e[1]) > 0.3}
     if exponents:
         name, power = max(exponents.items(), key=lambda item: abs(item[1]))
-        return f'np.sign(conditions["{name}"]) * np.abs(conditions["{name}"]) ** {power:.1f}'
-    return f'np.ones_like(response["{signature["channel"].split(".")[-1]}"])' if signature else "1.0"
+        column = f"conditions[{quoted(name)}]"
+        return f"np.sign({column}) * np.abs({column}) ** {float(power):.1f}"
+    return f"np.ones_like(response[{quoted(signature['channel'].split('.')[-1])}])" if signature else "1.0"
 
 
 def write_new(path: Path, text: str) -> None:
@@ -93,8 +112,18 @@ def write_new(path: Path, text: str) -> None:
     Raises:
         WorkbenchError: there is a file of that name, or the name is no name of an effect.
     """
-    if path.suffix != ".py" or not path.stem.isidentifier():
-        raise WorkbenchError(f"{path}: the name of an effect file is a word in snake case and ends in .py.")
+    _check_name(path)
     if path.exists():
         raise WorkbenchError(f"{path}: exists already; choose another name.")
-    path.write_text(text, encoding="utf-8")
+    ast.parse(text)  # what cannot be read by Python is never written
+    try:
+        write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+    except OSError as error:
+        raise WorkbenchError(f"{path}: cannot be written ({error.strerror}).") from None
+
+
+def _check_name(path: Path) -> None:
+    name = path.stem
+    word = name.isascii() and name.isidentifier() and not iskeyword(name) and name.strip("_")
+    if path.suffix != ".py" or not word:
+        raise WorkbenchError(f"{path}: the name of an effect file is a word in snake case and ends in .py.")

@@ -1,8 +1,8 @@
-"""The ledger: which effect was tried, what it did to the error of fitted and held-out rows, and what was decided.
+"""The ledger: which effect was tried, what it did to the errors of fitting and of prediction, and what was decided.
 
-A step is accepted when the error of rows that no fit has seen falls. Where an effect takes over what tolerances had
-hidden, that error stays, or stays within the noise (chi2/n up to 1); then the pulls of the declared uncertainties
-must fall instead. Refused steps stay in the ledger.
+A step is accepted when the data speak for the effect more than its base rate speaks against it, and when the error of
+conditions that are left out of the fit, region by region, does not rise above what it was or above the noise. Sealed
+rows decide nothing. Refused steps stay in the ledger.
 """
 
 from __future__ import annotations
@@ -11,31 +11,32 @@ import csv
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import log, log1p
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import chi2
 
 from effects.base import Effect
+from workbench.believed import SURE
 from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
-from workbench.explain.bank import Prepared, signature
-from workbench.explain.hypotheses import Hypothesis, estimates, single
-from workbench.explain.results import chi2_per_n
+from workbench.explain.explore import beliefs_of
+from workbench.explain.hypotheses import Hypothesis, estimates
+from workbench.explain.search import best_alone
 from workbench.findings import Estimate, Ledger, LedgerStep
 from workbench.ledger.model_file import model_hash
 from workbench.likelihood.bench import Bench, bench_of
-from workbench.likelihood.fit import Problem
+from workbench.likelihood.prediction import predicted
+from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
 START, ACCEPTED, REFUSED = "start", "accepted", "refused"
-SAME = 0.01  # relative change of the held-out error that is none
-LEAST_FALL = 1.0  # fall of chi2 of the held-out rows that is none: a parameter that means nothing changes it by as much
-RELIEF = 9.0  # fall of the sum of squared pulls that speaks for an effect: one pull of three
-OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent", "held_out_rms_error")
+OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent")
 COLUMNS = (
     "step", "effect", "title", "decision", "parameters", "log_evidence_gain", "chi2_per_n", "held_out_chi2_per_n",
-    "rms_error", "noise_floor", "units", "rms_error_percent", "held_out_rms_error", "verdict", "reason", "data_sha256",
+    "rms_error", "noise_floor", "units", "rms_error_percent", "verdict", "reason", "data_sha256",
     "model_sha256",
 )  # fmt: skip
 
@@ -71,7 +72,7 @@ def try_effect(
     after = bench_of(trial, campaign, library)
     fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
     gain = hypothesis.log_evidence - before.null.log_evidence
-    decision, reason = decide(before, after)
+    decision, reason = decide(before, after, gain, cls.base_rate)
     step = replace(
         step_of(after, number, decision),
         effect=name,
@@ -84,45 +85,43 @@ def try_effect(
 
 
 def best_fit(bench: Bench, cls: type[Effect]) -> Hypothesis:
-    """The most probable fit of an effect over its variants and starts."""
-    problem, x = bench.fit, bench.null.x
-    base = problem.predictor.predict(x)
-    change = lambda effect: problem.white(problem.predictor.predict(x, (effect,)) - base)  # noqa: E731
-    prepared = [Prepared(signature(v, change), bench.nuisances) for v in cls.variants(bench.model.design)]
-    seen = [p for p in prepared if p.signature.is_seen]
-    if not seen:
-        raise WorkbenchError(
-            f"{cls.name()} changes nothing in these data; it can be neither shown nor added with them."
+    """The most probable fit of an effect over its forms, starts as linear algebra promises.
+
+    Raises:
+        WorkbenchError: the effect changes nothing in these data, or the model has no answer with it.
+    """
+    signatures = signatures_of(bench, cls.variants(bench.model.design))
+    if cls.name() not in signatures.found:
+        raise WorkbenchError(f"{cls.name()}: {signatures.failed[cls.name()]}; it can be neither shown nor added.")
+    return best_alone(bench, signatures, beliefs_of({cls.name(): cls}, signatures.names))
+
+
+def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[str, str]:
+    """Accepted or refused, and why. gain: of ln p by the effect [nats];  base_rate: of the effect"""
+    old, new = (predicted(bench.fit, bench.null) for bench in (before, after))
+    odds = gain + log(base_rate) - log1p(-base_rate)
+    words = f"the data speak {_nats(odds)} the effect"
+    if old.blocks:
+        words += (
+            f"; chi2/n of conditions left out of the fit, region by region, goes from {old.chi2_per_n:.3g} to "
+            f"{new.chi2_per_n:.3g}"
         )
-    ranked = sorted(seen, key=lambda p: -float(p.log_evidence(bench.residual[:, None])[0]))[:3]
-    return max((h for p in ranked for h in single(bench, p)), key=lambda h: h.log_evidence)
+    else:
+        words += "; these conditions have no regions, so that prediction beyond them was not tested"
+    if odds <= 0:
+        return REFUSED, words
+    if old.blocks and new.chi2_per_n > max(old.chi2_per_n, noise_alone(new.n)):
+        return REFUSED, f"{words}: it rises"
+    return ACCEPTED, words
 
 
-def decide(before: Bench, after: Bench) -> tuple[str, str]:
-    """Accepted or refused, and why."""
-    which = "fitted rows (none are held out)" if before.held_out is None else "held-out rows"
-    old, new = (_unseen(b).squares(_residual(b)).sum() for b in (before, after))
-    rows = len(_residual(before))
-    m = len(before.fit.predictor.nuisances)
-    relief = float(np.sum(before.null.x[:m] ** 2) - np.sum(after.null.x[:m] ** 2))
-    words = f"chi2/n of the {which} goes from {old / rows:.3g} to {new / rows:.3g}"
-    if old - new > max(SAME * old, LEAST_FALL):
-        return ACCEPTED, words
-    if new <= max(old * (1 + SAME), rows) and relief > RELIEF:
-        return (
-            ACCEPTED,
-            f"{words}, no more than noise; the squared pulls of declared uncertainties fall by {relief:.3g}",
-        )
-    return REFUSED, f"{words}: it does not fall" if new >= old else f"{words}: it falls no more than by chance"
+def noise_alone(rows: int) -> float:
+    """chi2/n of so many rows that noise alone stays below with probability ``SURE``."""
+    return float(chi2.ppf(SURE, rows)) / rows
 
 
-def _unseen(bench: Bench) -> Problem:
-    """The rows that decide: those held out, or all where none are."""
-    return bench.held_out or bench.fit
-
-
-def _residual(bench: Bench) -> np.ndarray:
-    return _unseen(bench).residual(bench.null.x)
+def _nats(odds: float) -> str:
+    return f"{'for' if odds > 0 else 'against'} (odds 10^{abs(odds) / log(10):.1f})"
 
 
 def start_step(bench: Bench) -> LedgerStep:
@@ -142,13 +141,12 @@ def step_of(bench: Bench, number: int, decision: str) -> LedgerStep:
         decision=decision,
         parameters={},
         log_evidence_gain=0.0,
-        chi2_per_n=chi2_per_n(bench.fit, bench.null.x),
-        held_out_chi2_per_n=chi2_per_n(bench.held_out, bench.null.x) if bench.held_out else None,
+        chi2_per_n=float(np.mean(bench.null.residual**2)),
+        held_out_chi2_per_n=_left_out(bench),
         rms_error={c.name: _rms(error, c) for c in stack.channels},
         noise_floor={c.name: _rms(bench.white.sigma / bench.noise.inflation, c) for c in stack.channels},
         units={c.name: c.unit for c in stack.channels},
         rms_error_percent={c.name: 100 * _rms(error, c) / size[c.name] for c in stack.channels if size[c.name] > 0},
-        held_out_rms_error=_held_out_rms(bench),
     )
 
 
@@ -157,12 +155,10 @@ def _rms(values: np.ndarray, channel: Channel) -> float:
     return float(np.sqrt(np.mean((values[channel.rows] / channel.scale) ** 2)))
 
 
-def _held_out_rms(bench: Bench) -> dict[str, float]:
-    if bench.held_out is None:
-        return {}
-    part = bench.held_out
-    error = part.stack.y - part.predictor.predict(bench.null.x)
-    return {c.name: _rms(error, c) for c in part.stack.channels if c.size}
+def _left_out(bench: Bench) -> float | None:
+    """chi2/n of conditions left out of the fit, region by region; None where there are no regions."""
+    found = predicted(bench.fit, bench.null)
+    return found.chi2_per_n if found.blocks else None
 
 
 def append(path: Path, step: LedgerStep, campaign: Campaign, model: Model) -> None:

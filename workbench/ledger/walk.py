@@ -11,7 +11,9 @@ from workbench.compare.comparison import comparison_of
 from workbench.data.table import Campaign
 from workbench.explain.diagnosis import SEED, diagnose
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
-from workbench.ledger.model_file import NAME, model_text
+from workbench.ledger.final import final_parameters, learned_at
+from workbench.ledger.learned import Learned, learned_from
+from workbench.ledger.model_file import NAME, read_model, write_model
 from workbench.ledger.skeleton import skeleton
 from workbench.ledger.step import ACCEPTED, append, read_ledger, start_step, try_effect
 from workbench.likelihood.bench import bench_of
@@ -58,11 +60,19 @@ def add_effect(
     said = ": ".join([diagnosis.verdict, *([", ".join(diagnosis.names)] if diagnosis.names else [])])
     step = replace(trial.step, verdict=said)
     append(path, step, campaign, trial.model)
-    if step.decision == ACCEPTED:
-        (out / NAME).write_text(model_text(trial.model), encoding="utf-8")
     bench = trial.after if step.decision == ACCEPTED else trial.before
+    learned = learned_from(bench)
+    if step.decision == ACCEPTED:
+        write_model(out / NAME, learned)
     comparison = comparison_of(bench, library, progress)
-    return Added(trial.model, step, read_ledger(path, campaign.id, model.base.name), comparison, diagnosis)
+    whole = told(read_ledger(path, campaign.id, model.base.name), learned)
+    return Added(trial.model, step, whole, comparison, diagnosis)
+
+
+def told(ledger: Ledger, learned: Learned) -> Ledger:
+    """With the numbers of the final model and where it was learned."""
+    ranges = learned.source.ranges if learned.source is not None else ()
+    return replace(ledger, parameters=final_parameters(learned), ranges=learned_at(ranges))
 
 
 def skeleton_for(path: Path, campaign: Campaign | None, library, model: Model | None) -> str:
@@ -88,7 +98,7 @@ def walk(
     """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
 
     Of several names the one with the most evidence by itself is tried first.
-    out: folder of ``ledger.csv`` and ``model.toml``
+    out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the fitted inputs also where nothing was added
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
     for _ in range(MOST_STEPS):
@@ -100,11 +110,13 @@ def walk(
         else:
             break
     path = out / LEDGER
+    if not path.exists() or not (out / NAME).exists():
+        bench = bench_of(model, campaign, library)
     if not path.exists():
-        append(
-            path, replace(start_step(bench_of(model, campaign, library)), verdict=diagnosis.verdict), campaign, model
-        )
-    return read_ledger(path, campaign.id, model.base.name), diagnosis
+        append(path, replace(start_step(bench), verdict=diagnosis.verdict), campaign, model)
+    if not (out / NAME).exists():
+        write_model(out / NAME, learned_from(bench))
+    return told(read_ledger(path, campaign.id, model.base.name), read_model(out / NAME, library)), diagnosis
 
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:

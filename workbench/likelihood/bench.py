@@ -7,17 +7,19 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from effects.base import Effect
 from workbench.data.campaign import columns_of_systematics
+from workbench.data.schema import BY_REGION
 from workbench.data.stack import Stack, rows_of, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised
-from workbench.likelihood.linear import Nuisances
-from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, whitener
+from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, places_of, whitener
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.predictor import DirectPredictor
+from workbench.likelihood.regions import sealed_region
 from workbench.models.model import Model
 
 MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is said
@@ -51,15 +53,50 @@ class Bench:
         return linearised(self.fit, self.fit.start) if _far(self.fit, self.null) else self.null
 
     @cached_property
-    def nuisances(self) -> Nuisances:
-        """Of the rows to fit, at the centre."""
-        return Nuisances(self.centre.jacobian)
-
-    @cached_property
     def residual(self) -> np.ndarray:
         """Whitened residual of the rows to fit, carried back to x = 0 by the derivatives: N(0, 1 + J J^T) when all
         is well."""
         return extrapolated(self.centre)
+
+
+SAME_PLACE = 0.02  # distance over the range of the conditions, within which a sealed row repeats a fitted one
+
+
+@dataclass(frozen=True, eq=False)
+class SealedTables:
+    """Tables with their sealed rows marked. words: where the region lies that was sealed here; empty for none"""
+
+    tables: tuple[Table, ...]
+    words: str = ""
+
+
+def sealed_tables(campaign: Campaign) -> SealedTables:
+    """The tables of a campaign; where it asks for a region of operating conditions to be sealed, that is done here."""
+    if campaign.holdout != BY_REGION:
+        return SealedTables(campaign.tables)
+    region = sealed_region(campaign.tables)
+    return SealedTables(
+        tuple(replace(t, held_out=mask) for t, mask in zip(campaign.tables, region.masks)), region.words
+    )
+
+
+def sealed_words(bench: Bench) -> str:
+    """What the sealed rows test, for people: prediction where conditions were never fitted, else repeatability."""
+    if words := sealed_tables(bench.campaign).words:
+        return f"{words}, which was never fitted: prediction beyond the conditions of the fit"
+    apart = [_apart(table) for table in bench.stack.tables if table.held_out.any()]
+    new = float(np.mean(np.concatenate(apart) > SAME_PLACE)) if apart else 0.0
+    if new > 0.5:
+        return "conditions that were never fitted: they test prediction"
+    return "conditions that were fitted in other repeats: they test repeatability, not prediction"
+
+
+def _apart(table: Table) -> np.ndarray:
+    """Distance of every sealed row from the nearest fitted one, of the range of the conditions (sealed,)."""
+    places = places_of(table)
+    if table.held_out.all():
+        return np.full(table.rows, np.inf)
+    return cKDTree(places[~table.held_out]).query(places[table.held_out])[0]
 
 
 def extrapolated(fit: Fit) -> np.ndarray:
@@ -75,11 +112,12 @@ def bench_of(
     Raises:
         WorkbenchError: the campaign has nothing that may be fitted, or declares what the model does not know.
     """
-    tables = tuple(thinned(table, most_rows) for table in campaign.tables)
+    sealed = sealed_tables(campaign)
+    tables = tuple(thinned(table, most_rows) for table in sealed.tables)
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = replace(predictor.stack, u=_with_conditions(predictor))
     noise = measured_noise(stack, predictor.predict(predictor.start))
-    white = _with_numerical(whitener(stack, noise), stack, predictor.model)
+    white = whitener(stack, noise)
     chosen = [~table.held_out for table in tables]
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
@@ -90,7 +128,7 @@ def bench_of(
     fit, null = sharpened(fit, fitted(fit, (), predictor.start, np.zeros(0)))
     fit = drawn if _far(fit, null) else fit
     held_out = None if held_out is None else replace(held_out, predictor=fit.predictor.on(held_out.stack))
-    complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise)
+    complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise) + _untested(tables)
     return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, complaints)
 
 
@@ -156,21 +194,18 @@ def _moved(table: Table, name: str, step: float) -> Table:
     return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
 
 
-def _with_numerical(white: Whitener, stack: Stack, model: Model) -> Whitener:
-    """The whitener with the base model's own numerical uncertainty, where it states one."""
-    sigma = white.sigma.copy()
-    for channel in stack.channels:
-        for shape in model.base.numerical(model.design, stack.tables[channel.table]):
-            sigma[channel.rows] = np.hypot(sigma[channel.rows], shape.get(channel.response, 0.0))
-    return replace(white, sigma=sigma)
-
-
 def _thinning(tables: Sequence[Table], used: Sequence[Table]) -> tuple[str, ...]:
     return tuple(
         f"{long.file}: {short.rows} of {long.rows} rows take part in the fits; small effects are seen less well"
         for long, short in zip(tables, used)
         if short.rows < long.rows
     )
+
+
+def _untested(tables: Sequence[Table]) -> tuple[str, ...]:
+    if any(table.held_out.any() for table in tables):
+        return ()
+    return ("no row is sealed: prediction beyond the conditions of the fit was not tested",)
 
 
 def _wildness(noise: Noise) -> tuple[str, ...]:

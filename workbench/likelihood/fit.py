@@ -19,9 +19,9 @@ from scipy.stats import t as student
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from workbench.believed import TAILS
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
-from workbench.explain.priors import TAILS
 from workbench.likelihood.noise import Whitener
 from workbench.likelihood.predictor import STEP, Predictor, jacobian
 

@@ -1,13 +1,16 @@
-"""Noise of every channel from what repeats disagree by: size, correlation of neighbours, single wild readings.
+"""Noise of every channel from what repeats disagree by: size, correlation of neighbours, what a scan as a whole is off
+by (remounting, drift), single wild readings.
 
 The declared uncertainty gives the shape over the rows; its size is measured. Differences between repeats are taken of
-reading minus nominal model, so that conditions that were not set quite alike do no harm.
+reading minus nominal model, so that conditions that were not set quite alike do no harm. Of a scan
+
+    z = (offset + slope (t - 1/2)) / u + AR(1) noise of size 1,   t: how far through the scan, 0 to 1
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -22,6 +25,9 @@ DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the r
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
 POOLED_PAIRS = 30.0  # neighbours that the correlation common to all channels counts for in each channel
 LARGEST_CORRELATION = 0.95
+POOLED_SCANS = 6.0  # offsets and slopes that the spread common to all channels counts for in each channel
+SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
+LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,7 @@ class ChannelNoise:
     """scale: measured over declared size;  rho: correlation of neighbours in a scan
 
     dof: degrees of freedom of the scale;  pairs: differences used;  wild: readings found wild
+    scans: standard deviation of offset and of slope of a scan as a whole, of the size of the noise
     """
 
     channel: str
@@ -37,6 +44,7 @@ class ChannelNoise:
     dof: float
     pairs: int
     wild: int
+    scans: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +113,32 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
         rows = channel.rows
         sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
         rho[rows] = np.where(_follows(stack.tables[channel.table]), found.rho, 0.0)
-    return Whitener(sigma, rho)
+    white = Whitener(sigma, rho)
+    laws = [_of_scans(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
+    return Whitener(sigma, rho, tuple(law for law in laws if law is not None))
+
+
+def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
+    """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
+    if not channel.size or not found.scans:
+        return None
+    scans = _scans(stack.tables[channel.table])
+    raw = np.zeros((stack.size, 2 * len(scans)))
+    for k, rows in enumerate(scans):
+        shapes = found.scans * _scan_shapes(stack.u[channel.rows][rows])
+        raw[channel.rows.start + rows, 2 * k : 2 * k + 2] = shapes * white.sigma[channel.rows][rows][:, None]
+    return law_error(channel.rows, white(raw)[channel.rows])
+
+
+def _scans(table: Table) -> list[np.ndarray]:
+    """Rows of every scan of every repeat."""
+    _, which = np.unique(np.stack([table.scan, table.repeat]), axis=1, return_inverse=True)
+    return [np.flatnonzero(which == k) for k in range(which.max() + 1)]
+
+
+def _through(rows: int) -> np.ndarray:
+    """How far every row is through its scan, from the middle on (rows,)."""
+    return np.linspace(-0.5, 0.5, rows) if rows > 1 else np.zeros(rows)
 
 
 def measured_noise(stack: Stack, nominal: np.ndarray) -> Noise:
@@ -113,20 +146,30 @@ def measured_noise(stack: Stack, nominal: np.ndarray) -> Noise:
 
     nominal: readings of the nominal model (n,)
     """
-    deviations = [_deviation(stack, channel, nominal) for channel in stack.channels]
+    whole = [_deviation(stack, channel, nominal) for channel in stack.channels]
+    deviations = [_within_scans(stack.tables[c.table], stack.u[c.rows], d) for c, d in zip(stack.channels, whole)]
     scales = [_scale(d) for d in deviations]
     rhos = _correlations(stack, deviations, scales)
     inflation = np.ones(stack.size)
-    channels = []
-    for channel, d, scale, rho in zip(stack.channels, deviations, scales, rhos):
+    channels, scans = [], []
+    for channel, d, scale, rho, all_of_it in zip(stack.channels, deviations, scales, rhos, whole):
         ratio = np.nan_to_num(np.abs(d.row) / scale.size) if scale.pairs else np.zeros(channel.size)
         inflation[channel.rows] = np.maximum(ratio / WILD, 1.0)
         dof = _dof(scale.pairs, rho)
         size = np.sqrt((DECLARED_WEIGHT + scale.pairs * scale.size**2) / (DECLARED_WEIGHT + scale.pairs))
         channels.append(
-            ChannelNoise(channel.name, float(size), float(rho), dof, scale.pairs, int((ratio > REPORTED).sum()))
+            ChannelNoise(
+                channel.name,
+                float(size),
+                float(rho),
+                dof,
+                scale.pairs,
+                int((ratio > REPORTED).sum()),
+            )
         )
-    return Noise(tuple(channels), inflation)
+        u = stack.u[channel.rows]
+        scans.append(_of_whole_scans(stack.tables[channel.table], u, all_of_it.spread / size, rho))
+    return Noise(tuple(replace(c, scans=spread) for c, spread in zip(channels, _spreads(scans))), inflation)
 
 
 def noise_on_rows(noise: Noise, stack: Stack, chosen: Sequence[np.ndarray]) -> Noise:
@@ -171,6 +214,74 @@ def _deviation(stack: Stack, channel: Channel, nominal: np.ndarray) -> _Deviatio
     return _Deviation(spread, row, len(stations) * (repeats - 1))
 
 
+def _within_scans(table: Table, u: np.ndarray, whole: _Deviation) -> _Deviation:
+    """The deviations less mean and slope of every scan that is long enough to have them."""
+    spread, row = whole.spread.copy(), whole.row.copy()
+    for rows in _scans(table):
+        known = rows[np.isfinite(spread[rows])]
+        if len(known) < SHORTEST_SCAN:
+            continue
+        shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
+        values = np.clip(spread[known], *_fence(spread[known]))
+        line = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0]
+        free = np.sqrt(len(known) / (len(known) - 2))
+        spread[known] = (spread[known] - line) * free
+        row[known] -= line
+    return _Deviation(spread, row, whole.dof)
+
+
+def _fence(values: np.ndarray) -> tuple[float, float]:
+    """Where a wild reading is cut before a line is drawn through the others."""
+    middle = float(np.median(values))
+    reach = WILD * 1.4826 * float(np.median(np.abs(values - middle))) + 1e-300
+    return middle - reach, middle + reach
+
+
+@dataclass(frozen=True, eq=False)
+class _Scans:
+    """Offsets and slopes of the scans of a channel, of the size of its noise, and their variance by noise (s,)."""
+
+    found: np.ndarray
+    noise: np.ndarray
+
+
+def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _Scans:
+    found, noise = [], []
+    for rows in _scans(table):
+        known = rows[np.isfinite(z[rows])]
+        if len(known) >= SHORTEST_SCAN:
+            shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
+            values = np.clip(z[known], *_fence(z[known]))
+            found += list(np.linalg.lstsq(shapes, values, rcond=None)[0])
+            noise += list((1 + rho) / (1 - rho) * np.diagonal(np.linalg.pinv(shapes.T @ shapes)))
+    return _Scans(np.array(found), np.array(noise))
+
+
+def _scan_shapes(u: np.ndarray) -> np.ndarray:
+    """An offset and a slope in the unit of the reading over the rows of a scan, of rms 1 over their u (n, 2)."""
+    shapes = np.column_stack([np.ones(len(u)), _through(len(u))]) / u[:, None]
+    size = np.sqrt(np.mean(shapes**2, axis=0))
+    return shapes / np.where(size > 0, size, 1.0)
+
+
+def _spreads(scans: Sequence[_Scans]) -> list[float]:
+    """Standard deviation of offset and of slope of the scans of every channel beyond what noise gives them, drawn
+    towards the one common to all: three repeats alone say little of it."""
+    found, noise = (np.concatenate([getattr(s, name) for s in scans]) for name in ("found", "noise"))
+    common = _excess(found, noise)
+    own = [(_excess(s.found, s.noise), len(s.found)) for s in scans]
+    return [float(np.sqrt((POOLED_SCANS * common + n * e) / (POOLED_SCANS + n))) for e, n in own]
+
+
+def _excess(found: np.ndarray, noise: np.ndarray) -> float:
+    """Variance of values beyond that of their noise, each weighed by how well it tells."""
+    excess = 0.0
+    for _ in range(5):
+        weight = 1.0 / (noise + excess) ** 2
+        excess = max(float(np.sum(weight * (found**2 - noise)) / weight.sum()), 0.0) if len(found) else 0.0
+    return excess
+
+
 def matched_rows(table: Table) -> np.ndarray | None:
     """Row numbers (stations, repeats) of readings taken at the same conditions, None where there is one repeat."""
     repeats = [np.flatnonzero(table.repeat == r) for r in np.unique(table.repeat)]
@@ -181,15 +292,21 @@ def matched_rows(table: Table) -> np.ndarray | None:
     return _nearest(table, repeats)
 
 
-def _places(table: Table) -> np.ndarray:
+def places_of(table: Table) -> np.ndarray:
     """Conditions over their range (n, c)."""
-    columns = [v / np.ptp(v) for v in table.conditions.values() if np.ptp(v) > 0]
+    set_ones = {n: v for n, v in table.conditions.items() if np.ptp(v) > (LOGGED_WITHIN if n.endswith("_T") else 0.0)}
+    columns = [_spread(v) / np.ptp(_spread(v)) for v in set_ones.values()]
     return np.array(columns).T if columns else np.zeros((table.rows, 1))
+
+
+def _spread(values: np.ndarray) -> np.ndarray:
+    """The values, by their logarithm where they span decades: 1e6 ohm for open terminals leaves 0.3 and 1 ohm apart."""
+    return np.log(values) if values.min() > 0 and values.max() > 1e3 * values.min() else values
 
 
 def _alike(table: Table, repeats: list[np.ndarray]) -> bool:
     """True when the k-th rows of all repeats were taken at the same place, but for what the readings scatter."""
-    places = _places(table)
+    places = places_of(table)
     apart = np.median(np.abs(places[repeats[0]] - places[repeats[-1]]), axis=0)
     between = np.median(np.abs(places - np.median(places, axis=0)), axis=0) + 1e-12
     return bool((apart < 0.2 * between).mean() >= 0.5)
@@ -197,7 +314,7 @@ def _alike(table: Table, repeats: list[np.ndarray]) -> bool:
 
 def _nearest(table: Table, repeats: list[np.ndarray]) -> np.ndarray | None:
     """Stations by nearest conditions; a row of the first repeat without near partners in all others is left out."""
-    places = _places(table)
+    places = places_of(table)
     first, partners = repeats[0], []
     for rows in repeats[1:]:
         apart, partner = cKDTree(places[rows]).query(places[first])
@@ -229,7 +346,14 @@ def _correlations(stack: Stack, deviations, scales) -> list[float]:
     over, under = np.array(sums).T if sums else (np.zeros(1), np.zeros(1))
     pooled = over.sum() / under.sum() if under.sum() > 0 else 0.0
     rho = (over + POOLED_PAIRS * pooled) / (under + POOLED_PAIRS)
+    rho = rho + np.array([_lost_by_lines(stack.tables[c.table], r) for c, r in zip(stack.channels, rho)])
     return list(np.clip(rho, -LARGEST_CORRELATION, LARGEST_CORRELATION))
+
+
+def _lost_by_lines(table: Table, rho: float) -> float:
+    """By how much a line through every scan makes the correlation of neighbours look smaller, 2 (1 + 2 rho) / n."""
+    sizes = [len(rows) for rows in _scans(table) if len(rows) >= SHORTEST_SCAN]
+    return 2 * (1 + 2 * max(rho, 0.0)) / float(np.mean(sizes)) if sizes else 0.0
 
 
 def _dof(pairs: int, rho: float) -> float:
@@ -243,3 +367,16 @@ def _follows(table: Table) -> np.ndarray:
     same = np.zeros(table.rows, dtype=bool)
     same[1:] = (table.scan[1:] == table.scan[:-1]) & (table.repeat[1:] == table.repeat[:-1])
     return same
+
+
+def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: int) -> np.ndarray:
+    """Whitened noise of simulated campaigns (n, count): its size and correlation are known only as well as the repeats
+    tell."""
+    z = random.standard_normal((stack.size, count))
+    out = np.empty_like(z)
+    for channel, found in zip(stack.channels, noise.channels):
+        size = np.sqrt(found.dof / random.chisquare(found.dof, count))
+        more = random.normal(0.0, np.sqrt((1 - found.rho**2) / max(found.dof, 10.0)), count)
+        part = z[channel.rows]
+        out[channel.rows] = size * (part + more * np.vstack([np.zeros((1, count)), part[:-1]])) / np.sqrt(1 + more**2)
+    return out

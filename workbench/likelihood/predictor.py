@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -23,6 +24,7 @@ class Predictor(Protocol):
 
     names: tuple[str, ...]  # one a component of x
     stack: Stack  # whose rows are predicted
+    shapes: np.ndarray  # of the model's own numerical error (n, L); their weights are the last L components of x
 
     def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
         """Readings (n,) at nuisances x (m,), standard normal numbers, with further effects."""
@@ -31,7 +33,7 @@ class Predictor(Protocol):
 @dataclass(frozen=True, eq=False)
 class DirectPredictor:
     """Asks the model itself. x: first what the campaign declares, then the parameters of effects the model has, both
-    from where they stand now.
+    from where they stand now, then the weights of the model's own numerical error.
 
     origin: x where a fit starts, zero where it is not given
     """
@@ -41,6 +43,7 @@ class DirectPredictor:
     stack: Stack
     calls: list[int] = field(default_factory=lambda: [0])
     origin: np.ndarray | None = None
+    least_shapes: int = 0  # of other rows, whose weights are components of x too
 
     @property
     def fitted(self) -> tuple[EffectParameters, ...]:
@@ -49,7 +52,22 @@ class DirectPredictor:
     @property
     def names(self) -> tuple[str, ...]:
         own = tuple(f"{effect.name}.{p}" for effect in self.fitted for p in parameters_of(effect.effect))
-        return tuple(n.name for n in self.nuisances) + own
+        return tuple(n.name for n in self.nuisances) + own + tuple(f"numerical_error_{k}" for k in range(self.weights))
+
+    @property
+    def weights(self) -> int:
+        """Number of shapes of the numerical error."""
+        return self.shapes.shape[1]
+
+    @cached_property
+    def shapes(self) -> np.ndarray:
+        """Of the base model's own numerical error at the device as drawn (n, L)."""
+        found = [self.model.base.numerical(self.model.design, table) for table in self.stack.tables]
+        out = np.zeros((self.stack.size, max([self.least_shapes, *map(len, found)])))
+        for channel in self.stack.channels:
+            for k, shape in enumerate(found[channel.table]):
+                out[channel.rows, k] = shape.get(channel.response, 0.0)
+        return out
 
     @property
     def start(self) -> np.ndarray:
@@ -89,11 +107,12 @@ class DirectPredictor:
     def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
         self.calls[0] += 1
         model = self.model_at(x, effects)
-        return self.stack.vector([model.answers(table) for table in self.stack.tables])
+        exact = self.stack.vector([model.answers(table) for table in self.stack.tables])
+        return exact + self.shapes @ x[len(x) - self.weights :] if self.weights else exact
 
     def on(self, stack: Stack) -> DirectPredictor:
         """The same for other rows."""
-        return replace(self, stack=stack)
+        return replace(self, stack=stack, least_shapes=self.weights)
 
 
 def _near(m: int) -> Iterator[np.ndarray]:
@@ -107,7 +126,9 @@ def _near(m: int) -> Iterator[np.ndarray]:
 def jacobian(predictor: Predictor, x: np.ndarray, effects: Sequence[Effect] = (), base: np.ndarray | None = None):
     """d readings / d x (n, m): central differences, one-sided where ``base`` = predict(x) is given."""
     slopes = np.empty((predictor.stack.size, len(x)))
-    for k in range(len(x)):
+    moved = len(x) - predictor.shapes.shape[1]
+    slopes[:, moved:] = predictor.shapes
+    for k in range(moved):
         step = np.zeros(len(x))
         step[k] = STEP
         if base is None:

@@ -60,6 +60,10 @@ class BaseModel:
         """The model made ready to answer quickly for the rows of some tables."""
         return self
 
+    def anywhere(self, design: Any) -> BaseModel:
+        """A model that answers at once at any conditions, if only to ten percent: what conventions are judged by."""
+        return self
+
     @property
     def is_expansion(self) -> bool:
         """Whether it answers by an expansion about a design, so that ``recentred`` makes it more exact elsewhere."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Mapping
 
 from workbench import models
 from workbench.data.table import Campaign
@@ -25,13 +26,19 @@ def nominal_model(campaign: Campaign) -> Model:
     Raises:
         WorkbenchError: no base model knows this device.
     """
-    bases = base_models()
-    named = campaign.device.get("model")
-    found = [b for b in bases.values() if b.name == named or (named is None and b.accepts(campaign.device))]
+    return model_of_device(campaign.device, campaign.folder)
+
+
+def model_of_device(device: Mapping[str, object], where: str) -> Model:
+    """The model of a ``[device]`` table, without effects. where: the file or folder that the table is from
+
+    Raises:
+        WorkbenchError: no base model knows this device.
+    """
+    bases, named = base_models(), device.get("model")
+    found = [b for b in bases.values() if b.name == named or (named is None and b.accepts(device))]
     if not found:
         raise WorkbenchError(
-            f"{campaign.folder}: no model knows the [device] table; give model = one of {', '.join(bases)} in it, with "
-            "its keys."
+            f"{where}: no model knows the [device] table; give model = one of {', '.join(bases)} in it, with its keys."
         )
-    device = {key: value for key, value in campaign.device.items() if key != "model"}
-    return Model(found[0], found[0].design(device))
+    return Model(found[0], found[0].design({key: value for key, value in device.items() if key != "model"}))

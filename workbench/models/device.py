@@ -16,9 +16,20 @@ def names(table: Mapping[str, object]) -> dict[str, str]:
     return {split_unit(key)[0]: key for key in table}
 
 
+# No input of a machine or a damper is larger or smaller than these in SI units, zero apart: such a number is a slip,
+# and what is worked out from it would overflow.
+LARGEST, SMALLEST = 1e12, 1e-15
+
+
 def numbers(table: Mapping[str, object], required: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, float]:
-    """Numbers of the table by the fields of the design, SI. Texts are for people and are not looked at."""
+    """Numbers of the table by the fields of the design, SI. Texts are for people and are not looked at.
+
+    Raises:
+        WorkbenchError: a key is missing, said twice, unknown or no finite number of a possible size; a quantity that is
+            no temperature and no coefficient is negative.
+    """
     keys = names(table)
+    _refuse_doubles(table, keys)
     missing = [name for name in required if name not in keys]
     if missing:
         raise WorkbenchError(f"[device] lacks {', '.join(missing)}; give them in campaign.toml, unit at the end")
@@ -31,10 +42,25 @@ def numbers(table: Mapping[str, object], required: tuple[str, ...], optional: tu
     return {name: _number(keys[name], table[keys[name]]) for name in known if name in keys}
 
 
+def _refuse_doubles(table: Mapping[str, object], keys: Mapping[str, str]) -> None:
+    for key in table:
+        name = split_unit(key)[0]
+        if keys[name] != key:
+            raise WorkbenchError(f"[device] says {name} twice, as {key} and as {keys[name]}: keep one")
+
+
 def require_positive(values: Mapping[str, float], *fields: str) -> None:
     for name in fields:
         if not values[name] > 0:
             raise WorkbenchError(f"[device] {name} must be positive, found {values[name]:g}: correct campaign.toml")
+
+
+def require_whole(values: Mapping[str, float], *fields: str) -> None:
+    for name in fields:
+        if values[name] != round(values[name]):
+            raise WorkbenchError(
+                f"[device] {name} must be a whole number, found {values[name]:g}: correct campaign.toml"
+            )
 
 
 def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
@@ -48,7 +74,29 @@ def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) 
 
 
 def _number(key: str, value: object) -> float:
+    """A number of the table in SI."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise WorkbenchError(f"[device] {key} must be a number, found {value!r}: correct campaign.toml")
-    unit = split_unit(key)[1]
-    return float(value) * (factor(unit, f"[device] {key}") if unit else 1.0)
+        raise WorkbenchError(f"[device] {key} must be a number, found {_short(value)}: correct campaign.toml")
+    name, unit = split_unit(key)
+    found = value * (factor(unit, f"[device] {key}") if unit else 1.0) if abs(value) < 1e300 else value
+    if not abs(found) <= LARGEST:
+        raise WorkbenchError(
+            f"[device] {key} = {_short(value)} is not finite or larger than any such input: correct it, or leave the "
+            "key out where the model can do without"
+        )
+    if 0 < abs(found) < SMALLEST:
+        raise WorkbenchError(f"[device] {key} = {_short(value)} is smaller than any such input: correct campaign.toml")
+    if found < 0 and not name.endswith(MAY_BE_NEGATIVE):
+        raise WorkbenchError(
+            f"[device] {name} must be a positive number or zero, found {_short(value)}: correct campaign.toml"
+        )
+    return float(found)
+
+
+# Ends of names of quantities.
+MAY_BE_NEGATIVE = ("_T", "_temperature", "_coefficient", "_reference", "_zero", "_offset", "_angle")
+
+
+def _short(value: object) -> str:
+    text = "a number of many digits" if isinstance(value, int) and abs(value) >= 10**20 else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -5,13 +5,14 @@ model + effect, model.without("end_leakage"), model.answers(table)
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from effects.base import DesignEffect, Effect, InstrumentEffect, ResponseEffect
-from workbench.data.table import Table
+from effects.base import Columns, DesignEffect, Effect, InstrumentEffect, ResponseEffect, StateEffect
+from workbench.data.table import Conditions, Table
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel
 
@@ -40,16 +41,28 @@ class Model:
 
     def answers(self, table: Table) -> dict[str, np.ndarray]:
         """What the instruments should have shown in the rows of a table: response columns, SI (n,)."""
+        if not table.rows:  # all of its rows are held out, or none are
+            return {name: response.values for name, response in table.responses.items()}
         kind, conditions = table.kind, dict(table.conditions)
         for effect in self._of(InstrumentEffect):
             conditions = dict(effect.on_condition(conditions, kind))
-        design = self.design_as_built
+        design, order = self.design_as_built, {"order": table.order}
+        for effect in self._of(StateEffect):
+            conditions = without_order(effect.on_state({**conditions, **order}, kind, design))
+        conditions = self._given(table, conditions)
         response = self.base.respond(design, kind, conditions)
+        _require_answers(table, response | _between_lines(response, table))
         for effect in self._of(ResponseEffect):
-            response = dict(effect.on_response(response, conditions, kind, design))
+            response = dict(effect.on_response(response, {**conditions, **order}, kind, design))
         for effect in self._of(InstrumentEffect):
-            response = dict(effect.on_reading(response, {**conditions, "order": table.order}, kind))
-        return response
+            response = dict(effect.on_reading(response, {**conditions, **order}, kind))
+        return response | _between_lines(response, table)
+
+    def _given(self, table: Table, conditions: Mapping[str, np.ndarray]) -> Conditions:
+        """Conditions that say which of them is missing."""
+        if not conditions:
+            raise WorkbenchError(f"{table.file}: has no condition column; a {self.base.name} is asked at conditions.")
+        return Conditions(conditions, table.file)
 
     @property
     def design_as_built(self) -> Any:
@@ -61,3 +74,29 @@ class Model:
 
     def _of(self, kind: type) -> list:
         return [effect for effect in self.effects if isinstance(effect, kind)]
+
+
+def without_order(conditions: Columns) -> dict[str, np.ndarray]:
+    """The conditions that a base model is asked at; it does not know what was measured first."""
+    return {name: values for name, values in conditions.items() if name != "order"}
+
+
+def _require_answers(table: Table, response: Mapping[str, np.ndarray]) -> None:
+    missing = [name for name in table.responses if name not in response]
+    if missing:
+        raise WorkbenchError(
+            f"{table.file}: the model does not answer {missing[0]!r} in a table of kind {table.kind}; it answers "
+            f"{', '.join(response)}."
+        )
+
+
+def _between_lines(response: dict[str, np.ndarray], table: Table) -> dict[str, np.ndarray]:
+    """Voltages between two phases, v_ab = v_a - v_b, where a table has them and the model answers for the phases."""
+    pairs = {name: (f"v_{name[2]}", f"v_{name[3]}") for name in table.responses if _is_between_lines(name)}
+    return {
+        n: response[p] - response[m] for n, (p, m) in pairs.items() if n not in response and {p, m} <= set(response)
+    }
+
+
+def _is_between_lines(name: str) -> bool:
+    return len(name) == 4 and name.startswith("v_") and set(name[2:]) < set("abc")

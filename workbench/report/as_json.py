@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from workbench.findings import Comparison, Diagnosis
+from workbench.findings import Comparison, Diagnosis, Validation
 from workbench.report.sentences import comparison_sentence, readings, verdict_sentence
+from workbench.report.validation import chi2, share, validation_sentence, warnings
 
 
 def comparison_json(comparison: Comparison) -> str:
@@ -46,6 +47,32 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
         "abstention_power_by_size": {f"{size:g}": share for size, share in power.items()},
         "sentence": verdict_sentence(diagnosis),
         "wall_s": diagnosis.wall_s,
+    }
+    return _text(content)
+
+
+def validation_json(validation: Validation) -> str:
+    """The text of ``validation.json``; ``channels`` are those of the corrected model."""
+    whole = plain(validation)
+    parts = {"corrected": validation.corrected, "base": validation.base}
+    content = {
+        "campaign": validation.campaign,
+        "model": {
+            "base": validation.model,
+            "effects": list(validation.effects),
+            "learned_from": validation.learned_from,
+        },
+        "channels": whole["corrected"],
+        **{
+            name: {"channels": whole[name], "chi2_per_n": chi2(channels), "share_in_90": share(channels)}
+            for name, channels in parts.items()
+        },
+        "calibrations": whole["calibrations"],
+        "range_left": whole["range_left"],
+        "sentence": validation_sentence(validation),
+        "warnings": warnings(validation),
+        "complaints": whole["complaints"],
+        "provenance": whole["provenance"],
     }
     return _text(content)
 

@@ -2,47 +2,45 @@
 
 from __future__ import annotations
 
+from math import log
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from figures.style import BLUE, GREEN, GREY, LIGHT_GREY, ORANGE, new_figure, show_grid, styled
 from workbench.findings import Diagnosis, NextMeasurement, SizePosterior
 from workbench.report.channels import ALARM, bar_rows
-from workbench.report.words import amount, label, plain, probability_text
+from workbench.report.sentences import NEGLIGIBLE
+from workbench.report.words import amount, factor_text, label, plain, probability_text
 
-_LEAST, _MOST = 4, 10  # explanations of the probability chart
-_NEGLIGIBLE = 1e-3  # probability
-_NOTHING, _NONE = "nothing missing", "none of these"
+_LEAST, _MOST = 4, 10  # effects of the probability chart, options of what to measure next
 
 
 @styled
 def probabilities(d: Diagnosis) -> Figure:
-    """Probability of every explanation, the likeliest effects first, with nothing missing and none of these."""
-    rows = _explanations(d)
+    """Probability of every effect, alone or with others, the likeliest first, beside nothing and the unknown."""
+    rows = _statements(d)
     figure, axes, place = bar_rows(len(rows), 0.85)
     axes.barh(place, [p for _, p, _ in rows], height=0.65, color=[colour for *_, colour in rows])
     axes.set_yticks(place, [name for name, *_ in rows])
     for y, (_, p, _) in zip(place, rows):
         axes.text(p + 0.01, y, probability_text(p), va="center", fontsize=9)
-    axes.axvline(0.9, color=GREY, linestyle=":", linewidth=1.0)
-    axes.set(xlim=(0, 1.12), xticks=np.arange(0, 1.01, 0.2), xlabel="probability (dotted: needed for a definite name)")
+    axes.axvline(d.sure, color=GREY, linestyle=":", linewidth=1.0)
+    axes.set(xlim=(0, 1.12), xticks=np.arange(0, 1.01, 0.2))
+    axes.set_xlabel(f"probability (dotted: a name is printed from {probability_text(d.sure)})")
     return figure
 
 
-def _explanations(d: Diagnosis) -> list[tuple[str, float, str]]:
-    named = set(d.names)
-    effects = [(plain(r.name), r.probability, BLUE if r.name in named else LIGHT_GREY) for r in d.ranking]
-    pairs = [(plain(name), p, BLUE if set(name.split(" + ")) <= named else LIGHT_GREY) for name, p in d.p_pairs.items()]
-    parts = [(f"{plain(name)} and something unknown", p, _partly(d, name)) for name, p in d.p_partial.items()]
-    likely = sorted(effects + pairs + parts, key=lambda row: -row[1])
-    shown = likely[:_LEAST] + [row for row in likely[_LEAST:_MOST] if row[1] > _NEGLIGIBLE]
-    rest = sum(p for _, p, _ in likely[len(shown) :])
-    others = [(f"{len(likely) - len(shown)} others together", rest, LIGHT_GREY)] if len(likely) > len(shown) else []
-    return [(_NOTHING, d.p_nothing_missing, GREEN), (_NONE, d.p_none_of_these, ALARM), *shown, *others]
-
-
-def _partly(d: Diagnosis, name: str) -> str:
-    return BLUE if d.verdict == "partial" and name in d.names else LIGHT_GREY
+def _statements(d: Diagnosis) -> list[tuple[str, float, str]]:
+    """Words, probability and colour of each bar."""
+    likely = sorted(d.ranking, key=lambda r: (r.name not in d.names, -r.probability))
+    shown = likely[:_LEAST] + [r for r in likely[_LEAST:_MOST] if r.probability > NEGLIGIBLE]
+    return [
+        ("nothing missing", d.p_nothing_missing, GREEN),
+        ("something unknown", d.p_something_remains, ALARM),
+        ("none of these", d.p_none_of_these, ALARM),
+        *((plain(r.name), r.probability, BLUE if r.name in d.names else LIGHT_GREY) for r in shown),
+    ]
 
 
 @styled
@@ -72,14 +70,15 @@ def _density(axes, p: SizePosterior) -> None:
 
 @styled
 def next_measurements(options: tuple[NextMeasurement, ...]) -> Figure:
-    """Expected gain of evidence of each measurement, for its declared cost, the best first."""
+    """Expected gain of each measurement in powers of ten of the odds, for its declared cost, the best first."""
     shown = sorted(options, key=lambda m: -m.gain_nats / m.cost)[:_MOST]
     figure, axes, place = bar_rows(len(shown))
-    axes.barh(place, [m.gain_nats / m.cost for m in shown], height=0.62, color=ORANGE)
+    powers = [m.gain_nats / m.cost / log(10) for m in shown]
+    axes.barh(place, powers, height=0.62, color=ORANGE)
     axes.set_yticks(place, [m.words or plain(m.kind) for m in shown])
-    for y, m in zip(place, shown):
-        words = f" {amount(m.gain_nats, digits=2)} nats, cost {amount(m.cost, digits=2)}"
-        axes.text(m.gain_nats / m.cost, y, words, va="center", fontsize=9)
-    axes.set(xlim=(0, 1.35 * max(m.gain_nats / m.cost for m in shown) or 1.0), xlabel="gain per cost / nats")
+    for y, power, m in zip(place, powers, shown):
+        words = f" {factor_text(m.gain_nats)} in the odds, cost {amount(m.cost, digits=2)}"
+        axes.text(power, y, words, va="center", fontsize=9)
+    axes.set(xlim=(0, 1.45 * max(powers) or 1.0), xlabel="powers of ten in the odds for a cost of one")
     show_grid(axes)
     return figure

@@ -47,12 +47,12 @@ def panels(count: int, height: float, rest: float, columns: int = 1, **grid) -> 
 
 @styled
 def scoreboard(scores: tuple[ChannelScore, ...]) -> Figure:
-    """chi2/n of every channel: nominal inputs, fitted inputs, held-out rows; the line is pure noise."""
+    """chi2/n of every channel: nominal inputs, fitted inputs, sealed rows; the line is pure noise."""
     figure, axes, place = bar_rows(len(scores), 1.6)
     parts = (
         ("nominal inputs", LIGHT_GREY, [s.chi2_per_n_nominal for s in scores]),
         ("tolerances fitted", BLUE, [s.chi2_per_n for s in scores]),
-        ("held-out rows", ORANGE, [np.nan if s.held_out_chi2_per_n is None else s.held_out_chi2_per_n for s in scores]),
+        ("sealed rows", ORANGE, [np.nan if s.held_out_chi2_per_n is None else s.held_out_chi2_per_n for s in scores]),
     )
     for shift, (name, colour, values) in zip((0.27, 0.0, -0.27), parts):
         if np.isfinite(values).any():
@@ -105,13 +105,13 @@ def channel_fit(fit: ChannelFit) -> Figure:
 
 @styled
 def before_and_after(before: ChannelFit, after: ChannelFit, effect: str) -> Figure:
-    """The same channel without and with an effect; readings at equal scales, each residual at its own."""
+    """The same channel without and with an effect, on the same axes."""
     figure = new_figure(5.8)
-    axes = figure.subplots(2, 2, sharex=True, height_ratios=(3, 2))
-    axes[0, 1].sharey(axes[0, 0])
+    axes = figure.subplots(2, 2, sharex=True, sharey="row", height_ratios=(3, 2))
+    reach = max(_reach(before), _reach(after))
     for column, fit, title in zip(axes.T, (before, after), ("without", "with")):
         _readings(column[0], fit)
-        _residuals(column[1], fit, _reach(fit))
+        _residuals(column[1], fit, reach)
         column[0].set_title(f"{title} {plain(effect)}", loc="left")
         column[1].set_xlabel(axis_label(fit.axis))
     for axis in axes[:, 1]:
@@ -127,11 +127,15 @@ def _readings(axes, fit: ChannelFit) -> None:
         _model_lines(axes, fit, rows, number)
         if name and len(rows_of) <= MOST_SERIES:
             axes.plot([], [], color=_colour(number), marker=_marker(number), markersize=4, label=name)
-    axes.plot([], [], color=GREY, marker="o", linestyle="", markersize=4, label="measured (hollow: held out)")
+    axes.plot([], [], color=GREY, marker="o", linestyle="", markersize=4, label=_measured(fit))
     axes.plot([], [], color=GREY, linestyle="-", label="model, fitted inputs")
     axes.plot([], [], color=GREY, linestyle=":", label="model, nominal inputs")
     axes.set_ylabel(label(quantity_of(fit.channel), fit.unit))
     show_grid(axes)
+
+
+def _measured(fit: ChannelFit) -> str:
+    return "measured (hollow: sealed)" if fit.held_out.any() else "measured"
 
 
 def _rows_of_series(fit: ChannelFit) -> dict[str, np.ndarray]:
@@ -141,7 +145,7 @@ def _rows_of_series(fit: ChannelFit) -> dict[str, np.ndarray]:
 
 
 def _points(axes, fit: ChannelFit, values: np.ndarray, rows: np.ndarray, number: int) -> None:
-    """Markers of a series, hollow where held out; evenly thinned where there are very many."""
+    """Markers of a series, hollow where sealed; evenly thinned where there are very many."""
     step = -(-len(fit.x) // MOST_POINTS)
     look = {"color": _colour(number), "marker": _marker(number), "linestyle": "", "markersize": 4}
     for chosen, fill in ((rows[~fit.held_out[rows]], _colour(number)), (rows[fit.held_out[rows]], "white")):

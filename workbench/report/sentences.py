@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isclose
 
 import numpy as np
 from scipy.stats import binom
 from scipy.stats import f as fisher
 
+from workbench.believed import LIKELY, PLAIN
 from workbench.findings import (
     ChannelScore,
     Comparison,
@@ -29,11 +31,13 @@ from workbench.report.words import (
     interval,
     listed,
     number,
+    odds_text,
     p_text,
     percent,
     plain,
     prefixed,
     probability_text,
+    sentence,
     signed,
 )
 
@@ -43,7 +47,8 @@ ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
 IMPROBABLE = 0.05  # probability of "nothing is missing" below which something is
 POOR = 2.0  # chi2/n of fitted rows above which an effect does not explain them
-TOLD_APART = 3.0  # nats
+NO_GAIN = 0.01  # nats, 1 % of the odds, below which a measurement is not worth its cost
+NEGLIGIBLE = 1e-3  # probability that is not worth a word
 ALARMING_PART = 1.5  # odd or even part over what noise alone gives
 
 ORDER_WORDS = {
@@ -63,7 +68,6 @@ ORDER_WORDS = {
 class Reading:
     """What a view says. alarming: None where these data do not allow the view."""
 
-    view: str
     title: str
     shows: str
     sentence: str
@@ -74,23 +78,23 @@ class Reading:
         return {True: "alarming", False: "in order", None: "not to be had"}[self.alarming]
 
 
-_VIEWS = {
-    "V0": ("Scoreboard", "Error of every channel against its noise."),
-    "V1": ("Tolerance pulls", "How far the fit had to move each declared tolerance and calibration, in its own sigma."),
-    "V2": ("Regime map", "Mean residual over the operating range; p is by permutation of the residuals."),
-    "V3": ("Order spectrum", "Residual amplitude of every mechanical order; noise passes the line once in 100."),
-    "V4": ("Scaling", "Power of the residual's growth with each condition."),
-    "V5": ("Parity", "Odd and even part of the residual when a direction or sign is reversed."),
-    "V6": ("Order of acquisition", "Residual in the order in which it was measured."),
-    "V7": ("Whiteness", "Whether structure is left from reading to reading, and on any condition."),
-    "V8": ("Signature match", "Cosine between the residual and what each effect of the library would leave."),
-}  # fmt: skip
+_VIEWS = (
+    ("Scoreboard", "Error of every channel against its noise."),
+    ("Tolerance pulls", "How far the fit had to move each declared tolerance and calibration, in its own sigma."),
+    ("Regime map", "Mean residual over the operating range; p is by permutation of the residuals."),
+    ("Order spectrum", "Residual amplitude of every mechanical order; noise passes the line once in 100."),
+    ("Scaling", "Power of the residual's growth with each condition."),
+    ("Parity", "Odd and even part of the residual when a direction or sign is reversed."),
+    ("Order of acquisition", "Residual in the order in which it was measured."),
+    ("Whiteness", "Whether structure is left from reading to reading, and on any condition."),
+    ("Signature match", "Cosine between the residual and what each effect of the library would leave."),
+)  # fmt: skip
 
 
 def readings(comparison: Comparison) -> tuple[Reading, ...]:
     """The nine views in their order."""
     said = (_scoreboard, _pulls, _regimes, _orders, _scalings, _parities, _sequences, _whiteness, _signatures)
-    return tuple(Reading(view, *_VIEWS[view], *say(comparison)) for view, say in zip(_VIEWS, said, strict=True))
+    return tuple(Reading(*view, *say(comparison)) for view, say in zip(_VIEWS, said, strict=True))
 
 
 def fails(score: ChannelScore, channels: int) -> bool:
@@ -135,8 +139,8 @@ def _scoreboard(c: Comparison) -> tuple[str, bool]:
     if not off:
         worst = max(c.scoreboard, key=lambda score: score.chi2_per_n)
         return (
-            f"All {len(c.scoreboard)} channels are at the noise, as far as its size is known; the worst, "
-            f"{worst.channel}, has chi²/n = {chi2_text(worst.chi2_per_n)}.",
+            f"Every channel is at its noise, as far as the size of it is known; the worst, {worst.channel}, has "
+            f"chi²/n = {chi2_text(worst.chi2_per_n)}.",
             False,
         )
     worst = max(off, key=lambda score: score.excess_share)
@@ -346,20 +350,25 @@ def verdict_sentence(d: Diagnosis) -> str:
     """The verdict of a diagnosis in plain words."""
     names = [plain(name) for name in d.names]
     return {
-        "nothing_missing": lambda: "Nothing is missing: the model with its tolerances explains these data.",
+        "nothing_missing": lambda: (
+            "Nothing is missing that these data would show plainly: the model with its tolerances explains them."
+        ),
         "effect": lambda: f"What is missing is {names[0]}{_size(d)}.",
-        "group": lambda: f"What is missing is one of {listed(names, 'or')}; these data cannot tell which.",
+        "group": lambda: f"What is missing is one of {listed(names, 'or')}; these data cannot tell which.{_besides(d)}",
         "pair": lambda: f"Two effects are missing together: {listed(names)}.",
-        "partial": lambda: f"{_explains(names)} a part{_size(d)}, but something remains.",
-        "none_of_these": lambda: f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}.",
+        "several": lambda: f"{_COUNTS[len(names)]} effects are missing together: {listed(names)}.",
+        "partial": lambda: f"{_explains(names)} a part{_size(d)}{_rest(d)}.{_besides(d)}",
+        "none_of_these": lambda: _none_of_these(d),
         "cannot_tell": lambda: _cannot_tell(d),
+        "convention": lambda: " ".join(d.conventions) or _convention(names),
     }[d.verdict]() + f" Probability {probability_text(d.probability)}."
 
 
-def _cannot_tell(d: Diagnosis) -> str:
-    if d.p_nothing_missing < IMPROBABLE:
-        return "Something is missing, but these data cannot tell what."
-    return "These data cannot tell whether something is missing."
+def _convention(names: list[str]) -> str:
+    return f"The data look as if read by another convention: {listed(names)}. No effect is named until this is settled."
+
+
+_COUNTS = {2: "Two", 3: "Three", 4: "Four"}
 
 
 def _explains(names: list[str]) -> str:
@@ -367,14 +376,28 @@ def _explains(names: list[str]) -> str:
     return f"{said[0].upper()}{said[1:]} {'explains' if len(names) == 1 else 'together explain'}"
 
 
+def _rest(d: Diagnosis) -> str:
+    return ", but something unknown remains" if d.p_something_remains >= LIKELY else ""
+
+
+def _besides(d: Diagnosis) -> str:
+    """The further effects of which only a group of names is known."""
+    groups = [listed(map(plain, (name, *others)), "or") for name, others in d.alternatives.items()]
+    return "".join(f" Besides, one of {group} is there; these data cannot tell which." for group in groups)
+
+
 def _size(d: Diagnosis) -> str:
-    if len(d.names) > 1:
-        return ""
     leader = leading(d)
-    if leader is None or not leader.parameters:
+    if len(d.names) > 1 or leader is None or not leader.parameters:
         return ""
     sizes = listed(f"{plain(name)} {interval(estimate)}" for name, estimate in leader.parameters.items())
     return f": {sizes}"
+
+
+def set_words(words: str) -> str:
+    """An explanation, so that it is not taken for the probability of one of its parts."""
+    alone = {"nothing": "nothing missing", "something unknown": "something unknown alone (none of these)"}
+    return alone.get(words, plain(words) if " + " in words else f"{plain(words)} alone")
 
 
 def leading(d: Diagnosis) -> Ranked | None:
@@ -384,9 +407,88 @@ def leading(d: Diagnosis) -> Ranked | None:
     return next((by_name[name] for name in d.names if name in by_name), ordered[0] if ordered else None)
 
 
+def _none_of_these(d: Diagnosis) -> str:
+    if _by_sealed_rows(d):
+        return "Something is missing: the fitted rows do not show it, but rows that no fit has seen disagree."
+    return f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}."
+
+
+def _by_sealed_rows(d: Diagnosis) -> bool:
+    """Whether only the sealed rows speak for something missing."""
+    return d.sealed is not None and not d.sealed.holds and isclose(d.probability, 1.0 - d.sealed.p_value)
+
+
 def _where(d: Diagnosis) -> str:
     channel = d.residual_signature.get("channel")
     return f"; look at {channel}" if channel else ""
+
+
+def _cannot_tell(d: Diagnosis) -> str:
+    if _of_nothing(d):
+        return "These data cannot tell whether something is missing."
+    return "Something is missing, but these data cannot tell what."
+
+
+def _of_nothing(d: Diagnosis) -> bool:
+    """Whether the probability of "cannot tell" is that of nothing."""
+    return isclose(d.probability, d.p_nothing_missing)
+
+
+def meaning(d: Diagnosis) -> str:
+    """What the probability of the verdict is the probability of."""
+    verb = "is" if len(d.names) == 1 else "are"
+    there = f"that {listed(map(plain, d.names))} {verb} there, alone or with others"
+    what = {
+        "nothing_missing": lambda: f"that nothing is missing which is expected to show by odds of {odds_text(PLAIN)}",
+        "effect": lambda: there,
+        "group": lambda: "that at least one of these effects is there",
+        "pair": lambda: there,
+        "several": lambda: there,
+        "partial": lambda: there,
+        "none_of_these": lambda: _meaning_of_none(d),
+        "cannot_tell": lambda: "that nothing is missing" if _of_nothing(d) else "that something is missing",
+        "convention": lambda: "that the data follow another convention than campaign.toml says",
+    }[d.verdict]()
+    also = f"; that one of each further group is there, at least {percent(d.sure)}" if d.alternatives else ""
+    return f"The probability is that of the statement {what}{also}."
+
+
+def _meaning_of_none(d: Diagnosis) -> str:
+    if _by_sealed_rows(d):
+        return "that noise alone does not make the sealed rows disagree so much"
+    return "that something is there which no effect describes, alone or beside effects"
+
+
+def bound_sentences(d: Diagnosis) -> tuple[str, ...]:
+    """Parameters of what is named that end on a bound."""
+    return tuple(
+        f"{sentence(f'{listed(map(plain, r.at_bound))} of {plain(r.name)}')[:-1]} "
+        f"{'ends' if len(r.at_bound) == 1 else 'end'} on a bound of what is possible: the size is not to be believed, "
+        "and its law may have another form."
+        for r in d.ranking
+        if r.name in d.names and r.at_bound
+    )
+
+
+def sealed_sentence(d: Diagnosis) -> str:
+    """What the rows that no fit has seen say of the final model."""
+    if d.sealed is None:
+        return "There are none: all rows were fitted, so that prediction was not tested on rows that no fit has seen."
+    holds = "The model holds there" if d.sealed.holds else "The model does not hold there"
+    return (
+        f"{d.sealed.n} rows were sealed and opened once, after all was decided. Where they lie: {d.sealed.tests}. "
+        f"{holds}: chi²/n = {chi2_text(d.sealed.chi2_per_n)}; noise and what the fit leaves uncertain give as much or "
+        f"more with {p_text(d.sealed.p_value)}."
+    )
+
+
+def left_out_sentence(d: Diagnosis) -> str:
+    """Whether prediction was tested on conditions left out of the fit; empty where nothing was tried."""
+    if not d.ranking:
+        return ""
+    if all(r.held_out_chi2_per_n_before is None for r in d.ranking):
+        return "The fitted conditions have no regions to leave out: prediction beyond these conditions was not tested."
+    return "Left out: chi²/n of conditions that were left out of the fit, one region after the other, and predicted."
 
 
 def power_sentence(d: Diagnosis) -> str:
@@ -394,7 +496,7 @@ def power_sentence(d: Diagnosis) -> str:
     if not d.abstention_power:
         return "The power to say “none of these” was not computed for these data."
     said = listed(f"{percent(share)} of those of {size:g} u" for size, share in sorted(d.abstention_power.items()))
-    weak = max(d.abstention_power.values()) < 0.5
+    weak = max(d.abstention_power.values()) < LIKELY
     closing = (
         " A definite name from data this weak must not be trusted: a set like this cannot abstain." if weak else ""
     )
@@ -402,45 +504,44 @@ def power_sentence(d: Diagnosis) -> str:
 
 
 def conclusions(d: Diagnosis) -> tuple[str, ...]:
-    """What these data allow to be concluded, and then what they do not."""
-    return _can_be_said(d) + _cannot_be_said(d)
+    """What these data allow to be concluded, and then what they do not; nothing before conventions are settled."""
+    return () if d.verdict == "convention" else _can_be_said(d) + _cannot_be_said(d)
 
 
 def _can_be_said(d: Diagnosis) -> tuple[str, ...]:
     if d.p_nothing_missing > IMPROBABLE:
         return ()
     said = ["It can be concluded that the model with its tolerances does not explain these data."]
-    fitted = [r for r in d.ranking if r.parameters]
-    best = min(fitted, key=lambda r: r.chi2_per_n_after, default=None)
+    best = min((r for r in d.ranking if r.parameters), key=lambda r: r.chi2_per_n_after, default=None)
     if best is not None and best.chi2_per_n_after > POOR:
         left = chi2_text(best.chi2_per_n_after)
         said.append(
-            "No single effect of the library explains them either: the best, "
-            f"{plain(best.name)}, leaves chi²/n = {left}."
+            f"The effects of the library do not explain them either: the best, with {plain(best.name)}, leaves chi²/n "
+            f"= {left}."
         )
     return tuple(said)
 
 
 def _cannot_be_said(d: Diagnosis) -> tuple[str, ...]:
     said = []
-    pairs = {frozenset((s.first, s.second)): [] for s in d.separations}
-    for s in d.separations:
-        pairs[frozenset((s.first, s.second))].append(s.nats)
-    alike = sum(min(nats) < TOLD_APART for nats in pairs.values())
-    if d.p_nothing_missing <= IMPROBABLE and alike > len(pairs) / 2:
+    if d.verdict == "cannot_tell" and not _of_nothing(d):
+        said.append("It cannot be concluded which effect it is: no name or group of names is sure enough.")
+    if d.names and d.p_none_of_these > NEGLIGIBLE:
         said.append(
-            f"It cannot be concluded which effect it is: of {len(pairs)} pairs of effects {alike} look alike in these "
-            "data."
+            f"Instead of {listed(map(plain, d.names))} there may be one unknown law and no effect, with probability "
+            f"{probability_text(d.p_none_of_these)}."
         )
-    missed = {size: 1 - share for size, share in d.abstention_power.items() if share < 0.5}
+    missed = {size: 1 - share for size, share in d.abstention_power.items() if share < LIKELY}
     if missed:
         size = max(missed)
         said.append(
             f"Nor can these data abstain: {percent(missed[size])} of unknown discrepancies of {size:g} u would be "
             "overlooked or taken for a known effect, so that a name from them alone is not to be believed."
         )
+    if d.sealed is None:
+        said.append("Nothing was checked on rows that no fit has seen: none are sealed.")
     if d.ranking and all(r.held_out_chi2_per_n_before is None for r in d.ranking):
-        said.append("Nothing was checked on rows that no fit has seen: none are held out.")
+        said.append(left_out_sentence(d))
     return tuple(said)
 
 
@@ -452,20 +553,15 @@ def ledger_sentence(ledger: Ledger) -> str:
     kept = [step for step in ledger.steps if step.decision != "refused"]
     refused = [step for step in ledger.steps if step.decision == "refused"]
     first, last = kept[0], kept[-1]
-    start, now = _judged(first), _judged(last)
+    left_out = all(step.held_out_chi2_per_n is not None for step in (first, last))
+    start, now = (step.held_out_chi2_per_n if left_out else step.chi2_per_n for step in (first, last))
+    where = "conditions left out of the fit" if left_out else "the fitted rows (no conditions could be left out)"
     added = listed(plain(step.effect) for step in kept[1:]) or "nothing yet"
     goal = "at the goal" if now <= ledger.goal else "above the goal"
-    fell = "stands at" if last is first else f"fell from chi²/n = {chi2_text(start)} to"
-    said = f"Added: {added}. The error on {_which(last)} {fell} {chi2_text(now)}, {goal} of {ledger.goal:g} (noise: 1)."
+    moved = "fell" if now < start else "went"
+    change = "stands at" if last is first else f"{moved} from chi²/n = {chi2_text(start)} to"
+    said = f"Added: {added}. The error on {where} {change} {chi2_text(now)}, {goal} of {ledger.goal:g} (noise: 1)."
     return said + (f" Refused: {listed(plain(step.effect) for step in refused)}." if refused else "")
-
-
-def _judged(step: LedgerStep) -> float:
-    return step.chi2_per_n if step.held_out_chi2_per_n is None else step.held_out_chi2_per_n
-
-
-def _which(step: LedgerStep) -> str:
-    return "the fitted rows (none are held out)" if step.held_out_chi2_per_n is None else "held-out rows"
 
 
 def size_words(step: LedgerStep) -> str:

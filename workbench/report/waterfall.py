@@ -20,7 +20,7 @@ _ROOM = 1.6  # above the tallest bar on a logarithmic axis, for the words
 
 @styled
 def waterfall(ledger: Ledger) -> Figure:
-    """chi2/n on fitted and held-out rows after each step; refused steps are hatched and do not lower the level."""
+    """chi2/n of fitted rows and of conditions left out of the fit after each step; refused ones are hatched."""
     figure = new_figure(4.6)
     axes = figure.subplots()
     fit = np.array([step.chi2_per_n for step in ledger.steps])
@@ -29,7 +29,7 @@ def waterfall(ledger: Ledger) -> Figure:
     refused = np.array([step.decision == "refused" for step in ledger.steps])
     for shift, values, colour, name in (
         (-_WIDTH / 2, fit, BLUE, "fitted rows"),
-        (_WIDTH / 2, held, ORANGE, "held-out rows"),
+        (_WIDTH / 2, held, ORANGE, "conditions left out of the fit"),
     ):
         if np.isfinite(values).any():
             _bars(axes, place + shift, values, colour, name, refused)

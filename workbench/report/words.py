@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import floor, isfinite, log10
+from math import exp, floor, isfinite, log, log10
 
 import units
 from figures.report import number_text
@@ -11,6 +11,8 @@ from workbench.findings import Axis, Estimate
 _TAKES_PREFIX = ("m", "s", "V", "A", "N", "H", "Ω", "Nm", "Vs", "W", "T", "rad")
 _PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
 _SMALL = 0.01  # below it a prefix reads better than zeros
+_NEAR_ONE = 2.0  # factors up to which the third digit counts
+_READABLE = 1e5  # odds up to which digits read better than a power of ten
 _DIGITS_AT_MOST = 5  # zeros behind the digits that count, rather than an exponent
 
 
@@ -98,6 +100,26 @@ def probability_text(p: float) -> str:
     return "> 99.9 %" if p > 0.999 else "< 0.1 %" if p < 0.001 else percent(p)
 
 
+def odds_text(log_odds: float) -> str:
+    """Odds from their logarithm: ``2000 : 1``, ``1 : 40``, ``10^8.3 : 1``, ``–`` for none."""
+    if not isfinite(log_odds):
+        return number(None)
+    size = _factor(abs(log_odds))
+    return f"{size} : 1" if log_odds >= 0 else f"1 : {size}"
+
+
+def factor_text(log_factor: float) -> str:
+    """A factor in the odds from its logarithm: ``×1.3``, ``×2000``, ``×10^8.3``."""
+    return f"×{_factor(log_factor)}"
+
+
+def _factor(log_size: float) -> str:
+    """Two digits, three near one, and powers of ten where large."""
+    if log_size >= log(_READABLE):
+        return f"10^{log_size / log(10):.1f}"
+    return number(float(f"{exp(log_size):.2g}") if exp(log_size) > _NEAR_ONE else exp(log_size))
+
+
 def p_text(p_value: float) -> str:
     """``p = 0.03``; permutations that were all beaten give ``p < 0.001``."""
     return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
@@ -107,3 +129,10 @@ def listed(names, last: str = "and") -> str:
     """``a, b and c``."""
     names = list(names)
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}" if names else ""
+
+
+def sentence(words: str) -> str:
+    """With a capital, unless the first word is a name, and one full stop."""
+    first = words.split(" ")[0]
+    start = words[0] if "." in first or "_" in first else words[0].upper()
+    return f"{start}{words[1:].rstrip('.')}."

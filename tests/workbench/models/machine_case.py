@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import atexit
+import os
+import shutil
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import gettempdir
 
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from materials.magnet import Magnet
+from units import DEGREE
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.surrogate import Surrogate
@@ -17,8 +21,10 @@ from workbench.models.machine.surrogate import Surrogate
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
 PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
-_SOLVED = TemporaryDirectory(prefix="machine-case-")  # field solutions, gone with this process
-STATES = (LoadedState(0.1, (40.0, -20.0, -20.0)), LoadedState(0.1, (0.0, 0.0, 0.0)))
+SOLVED = Path(gettempdir()) / f"machine-case-{os.environ.get('PYTEST_XDIST_TESTRUNUID', os.getpid())}"
+atexit.register(shutil.rmtree, SOLVED, ignore_errors=True)  # until then all processes of a run share what is solved
+LOADED = LoadedState(0.1, (40.0, -20.0, -20.0))
+STATES = (LOADED, LoadedState(0.1, (0.0, 0.0, 0.0)), LoadedState(9 * DEGREE, (0.0, 0.0, 0.0)))  # those of inductances
 
 
 def drawn() -> MachineAsBuilt:
@@ -36,7 +42,7 @@ def field(density: MeshDensity = COARSE) -> MachineField:
 
 @cache
 def builder() -> SurrogateBuilder:
-    return SurrogateBuilder(drawn(), PLAN, Path(_SOLVED.name))
+    return SurrogateBuilder(drawn(), PLAN, SOLVED)
 
 
 @cache

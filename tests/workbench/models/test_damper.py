@@ -20,8 +20,10 @@ from effects.mechanical.rig_loss import RigLoss
 from workbench.data.campaign import read_campaign
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
+from workbench.models.damper import play as marching
 from workbench.models.damper.harmonic_balance import Drive, fundamental
 from workbench.models.damper.model import BASE, impedance, linear_impedance, steady_force
+from workbench.models.damper.play import change_by_play
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = Damper(60.0, 1.2, 2.0, 20.0)
@@ -31,6 +33,11 @@ THESIS = Damper(sqrt(2 / 3) * 0.0493 / TAU, 0.0683, 5.6, 250.0, 348.7e-6 / 1.0, 
 FREQUENCY = np.array([1.0, 4.0, 12.0, 40.0])
 AMPLITUDE = np.full(4, 2e-3)
 SHUNT = np.full(4, 1.0)
+SWEEP = Drive(FREQUENCY, AMPLITUDE, SHUNT)
+
+
+def one(frequency: float, amplitude: float = 2e-3, shunt: float = 1.0) -> Drive:
+    return Drive(*(np.array([value]) for value in (frequency, amplitude, shunt)))
 
 
 def as_printed(d: Damper, frequency, shunt):
@@ -47,7 +54,7 @@ def as_printed(d: Damper, frequency, shunt):
 
 @pytest.mark.parametrize("shunt", [0.0, 0.055, 0.465, 1e6])
 def test_linear_impedance_is_the_printed_equation(shunt):
-    ours = linear_impedance(THESIS, FREQUENCY, np.full(4, shunt))
+    ours = linear_impedance(THESIS, Drive(FREQUENCY, AMPLITUDE, np.full(4, shunt)))
     assert ours == pytest.approx(as_printed(THESIS, FREQUENCY, shunt), rel=1e-12)
 
 
@@ -56,8 +63,8 @@ def test_linear_impedance_is_the_printed_equation(shunt):
 def test_harmonic_balance_of_a_linear_damper_is_the_closed_form(stiffness, inductance):
     loss = 0.0 if stiffness == inf else 50.0
     d = replace(PLAIN, mount_stiffness=stiffness, mount_damping=loss, inductance=inductance)
-    ours = fundamental(d, Drive(FREQUENCY, AMPLITUDE, SHUNT))
-    assert ours == pytest.approx(linear_impedance(d, FREQUENCY, SHUNT), rel=1e-11)
+    ours = fundamental(d, SWEEP)
+    assert ours == pytest.approx(linear_impedance(d, SWEEP), rel=1e-11)
 
 
 def integrated(d: Damper, frequency: float, amplitude: float, shunt: float, law=lambda v: 0.0, play=0.0, contact=None):
@@ -88,15 +95,15 @@ def integrated(d: Damper, frequency: float, amplitude: float, shunt: float, law=
 
 def test_mount_and_inductance_against_integration_in_time():
     d = replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=5e-3)
-    ours = linear_impedance(d, np.array([20.0]), np.array([1.0]))[0]
+    ours = linear_impedance(d, one(20.0))[0]
     assert ours == pytest.approx(integrated(d, 20.0, 2e-3, 1.0), rel=2e-4)
 
 
 def test_a_law_behind_a_mount_with_inductance_against_integration_in_time():
     d = replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=5e-3).with_force(QuadraticDrag(3000.0))
-    ours = impedance(d, *(np.array([value]) for value in (20.0, 2e-3, 1.0)))[0]
+    ours = impedance(d, one(20.0))[0]
     right = integrated(d, 20.0, 2e-3, 1.0, law=lambda v: 3000.0 * v * abs(v))
-    assert abs(ours - linear_impedance(d, np.array([20.0]), np.array([1.0]))[0]) > 100.0  # the law matters
+    assert abs(ours - linear_impedance(d, one(20.0))[0]) > 100.0  # the law matters
     assert ours == pytest.approx(right, rel=1e-3)
 
 
@@ -104,23 +111,23 @@ def test_a_law_behind_a_mount_with_inductance_against_integration_in_time():
 def test_play_against_integration_of_a_hard_contact(frequency, shunt):
     play = 2e-4
     d = Backlash(play).on_design(PLAIN)
-    ours = impedance(d, *(np.array([value]) for value in (frequency, 2e-3, shunt)))[0]
+    ours = impedance(d, one(frequency, shunt=shunt))[0]
     contact = (5e7, 2 * sqrt(5e7 * PLAIN.moving_mass))  # N/m, critically damped, so that nothing rebounds
     right = integrated(PLAIN, frequency, 2e-3, shunt, play=play, contact=contact)
-    tight = linear_impedance(PLAIN, np.array([frequency]), np.array([shunt]))[0]
+    tight = linear_impedance(PLAIN, one(frequency, shunt=shunt))[0]
     assert abs(ours - right) < 0.12 * abs(right - tight)
 
 
 def test_coulomb_friction_has_the_describing_function_of_a_square_wave():
     d = PLAIN.with_force(CoulombFriction(10.0, reversal=1e-5))
-    ours = impedance(d, FREQUENCY, AMPLITUDE, SHUNT) - linear_impedance(PLAIN, FREQUENCY, SHUNT)
+    ours = impedance(d, SWEEP) - linear_impedance(PLAIN, SWEEP)
     assert ours.real == pytest.approx(4 * 10.0 / (pi * 2 * pi * FREQUENCY * AMPLITUDE), rel=5e-4)
     assert np.abs(ours.imag).max() < 1e-9
 
 
 def test_quadratic_drag_has_its_describing_function():
     d = PLAIN.with_force(QuadraticDrag(100.0))
-    ours = impedance(d, FREQUENCY, AMPLITUDE, SHUNT) - linear_impedance(PLAIN, FREQUENCY, SHUNT)
+    ours = impedance(d, SWEEP) - linear_impedance(PLAIN, SWEEP)
     assert ours.real == pytest.approx(8 / (3 * pi) * 100.0 * 2 * pi * FREQUENCY * AMPLITUDE, rel=2e-6)
 
 
@@ -129,9 +136,7 @@ def test_hysteresis_drag_loses_the_area_of_its_loop(distance):
     """4 level (A - d tanh(A / d)), the integral of the two branches."""
     level, amplitude = 7.0, 0.05
     d = PLAIN.with_force(HysteresisDrag(level, distance))
-    z = impedance(d, np.array([1.0]), np.array([amplitude]), np.array([1.0])) - linear_impedance(
-        PLAIN, np.array([1.0]), np.array([1.0])
-    )
+    z = impedance(d, one(1.0, amplitude)) - linear_impedance(PLAIN, one(1.0))
     omega = 2 * pi
     loss = pi * z.real[0] * omega * amplitude**2  # energy of a period from the fundamental
     assert loss == pytest.approx(4 * level * (amplitude - distance * np.tanh(amplitude / distance)), rel=0.01)
@@ -178,7 +183,7 @@ def test_force_loop_encloses_the_power_of_the_impedance():
         d, "force_loop", {"phase": phase, "frequency": 5 * same, "amplitude": 2e-3 * same, "shunt": same}
     )["force"]
     top = 2 * pi * 5 * 2e-3
-    re = impedance(d, np.array([5.0]), np.array([2e-3]), np.array([1.0])).real[0]
+    re = impedance(d, one(5.0)).real[0]
     assert np.mean(loop * top * np.cos(phase)) == pytest.approx(0.5 * re * top**2, rel=2e-4)
 
 
@@ -243,7 +248,7 @@ def test_device_table_is_read_in_its_units():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"force_constant_N_per_A": -1.0}, "positive"),
+        ({"force_constant_N_per_A": -1.0}, "negative"),
         ({"force_constant_N_per_A": "60"}, "number"),
         ({"stroke_mm": 40.0}, "does not use"),
     ],
@@ -265,3 +270,52 @@ def test_a_missing_key_an_unknown_kind_and_tolerance_get_a_sentence():
 def test_a_tolerance_moves_its_input():
     moved = BASE.with_tolerance(PLAIN, Tolerance("force_constant_N_per_A", 0.01, True), 2.0)
     assert moved == replace(PLAIN, force_constant=60.0 * 1.02)
+
+
+LAWS = {
+    "linear": PLAIN,
+    "with a law": PLAIN.with_force(CoulombFriction(5.0)),
+    "on a mount": replace(PLAIN, mount_stiffness=2e5, mount_damping=50.0, inductance=2e-3).with_force(
+        QuadraticDrag(30.0)
+    ),
+    "with play": replace(PLAIN, mount_clearance=1e-4),
+}
+TABLES = {
+    "damping_velocity": {"velocity": np.array([-0.3, 0.1, 0.2]), "shunt": np.full(3, 2.0)},
+    "damping_shunt": {"shunt": np.array([0.5, 2.0, 5.0]), "velocity": np.full(3, 0.3)},
+    "impedance": {"frequency": np.array([1.0, 5.0, 20.0]), "amplitude": np.full(3, 2e-3), "shunt": np.full(3, 2.0)},
+}
+
+
+@pytest.mark.parametrize("design", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("kind", TABLES)
+def test_states_of_a_row_are_another_device(design, kind):
+    """A winding and an oil as warm in every row as in another design answer as that design."""
+    states = {"resistance_factor": np.full(3, 1.2), "viscous_factor": np.full(3, 0.7)}
+    found = BASE.respond(design, kind, TABLES[kind] | states)
+    warm = replace(design, internal_resistance=1.2 * 1.2, viscous_damping=0.7 * 20.0)
+    for column, values in BASE.respond(warm, kind, TABLES[kind]).items():
+        assert found[column] == pytest.approx(values, rel=1e-9)
+
+
+def test_states_belong_to_their_row():
+    states = {"viscous_factor": np.array([1.0, 0.5, 2.0])}
+    one_by_one = [replace(LAWS["on a mount"], viscous_damping=20.0 * factor) for factor in states["viscous_factor"]]
+    expected = [BASE.respond(d, "impedance", TABLES["impedance"])["re"][k] for k, d in enumerate(one_by_one)]
+    found = BASE.respond(LAWS["on a mount"], "impedance", TABLES["impedance"] | states)["re"]
+    assert found == pytest.approx(np.array(expected), rel=1e-6)
+
+
+def test_voltage_at_a_shunt_is_that_across_the_shunt_and_not_across_a_warm_winding():
+    conditions = {"velocity": np.array([0.2]), "shunt": np.array([3.0]), "resistance_factor": np.array([1.5])}
+    voltage = BASE.respond(PLAIN, "back_emf", conditions)["voltage"]
+    assert voltage == pytest.approx([60 * 0.2 * 3.0 / (3.0 + 1.5 * 1.2)])
+
+
+@pytest.mark.parametrize("play", [1e-6, 1e-4])
+def test_flight_between_the_ends_of_a_play_is_the_march(play, monkeypatch):
+    d, drive = replace(PLAIN, mount_clearance=play), Drive(np.array([1.0, 12.0, 40.0]), np.full(3, 2e-3), np.ones(3))
+    exact = change_by_play(d, drive)
+    monkeypatch.setattr(marching, "STEPS", 1280)
+    marched = marching._change_marched(d, drive)
+    assert np.abs(exact - marched).max() < 0.01 * np.abs(exact).max()

@@ -14,10 +14,13 @@ from effects.electrical.cross_saturation import CrossSaturation
 from effects.electrical.quadrature_saturation import QuadratureSaturation
 from effects.electrical.remanence_drift import RemanenceDrift
 from effects.mechanical.friction_torque import FrictionTorque
+from electrical.dq import DriveLimits, operating_map
 from electrical.synchronous_machine import SynchronousMachine
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.models.dq.model import BASE, Operation
+from workbench.models.dq.control import least_current
+from workbench.models.dq.model import BASE
+from workbench.models.dq.operation import Operation
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = DqMachine(4, 0.1, 3e-3, 4e-3, 0.5)
@@ -141,3 +144,118 @@ def test_prius_needs_more_than_constant_parameters():
 def _held_out_miss(design, table):
     ours = BASE.respond(design, table.kind, table.conditions)
     return np.array([(ours[name] - table.responses[name].values)[table.held_out] for name in ("current", "power")])
+
+
+MAP_TORQUE, MAP_SPEED = (axis.ravel() for axis in np.meshgrid([-12.0, -3.0, 1.0, 6.0, 15.0], [60.0, 150.0, 260.0]))
+
+
+@pytest.mark.parametrize("v_dc", [None, 110.0])
+def test_a_dynamometer_map_has_the_currents_of_the_electrical_package(v_dc):
+    """Least current, and field weakening at 110 V of the d.c. link, searched there along lines of torque."""
+    other = SynchronousMachine(4, 0.1, 3e-3, 4e-3, 0.5)
+    limits = DriveLimits.from_dc_bus(1e3, v_dc or 1e6)
+    expected = operating_map(other, limits, MAP_TORQUE, MAP_SPEED)
+    at = {"speed": MAP_SPEED, "torque": MAP_TORQUE} | ({"v_dc": np.full(15, v_dc)} if v_dc else {})
+    ours = BASE.respond(PLAIN, "dyno_map", at)
+    reached = np.isfinite(expected.i_d)
+    assert reached.sum() >= 10
+    assert ours["current"][reached] == pytest.approx(np.hypot(expected.i_d, expected.i_q)[reached] / sqrt(2), rel=1e-6)
+    assert ours["torque"] == pytest.approx(MAP_TORQUE, abs=1e-9)
+
+
+def test_beyond_its_voltage_a_map_takes_the_lowest_that_gives_the_torque():
+    """Against a search over i_d on the line of torque."""
+    speed, torque, limit = 400.0, 15.0, 20.0
+    ours = BASE.respond(PLAIN, "dyno_map", one_row(speed=speed, torque=torque, v_dc=limit * sqrt(3)))
+    i_d = np.linspace(-80.0, 10.0, 20001)
+    i_q = torque / (1.5 * 4 * (0.1 + (3e-3 - 4e-3) * i_d))
+    w = 4 * speed
+    voltage = np.hypot(0.5 * i_d - w * 4e-3 * i_q, 0.5 * i_q + w * (0.1 + 3e-3 * i_d))
+    assert voltage.min() > limit
+    assert ours["v_ll"][0] == pytest.approx(voltage.min() * sqrt(1.5), rel=1e-6)
+
+
+def test_a_map_balances_its_energy_as_motor_and_as_generator():
+    """Electrical power less copper and friction is at the shaft, efficiency the ratio the energy flows."""
+    machine = FrictionTorque(0.2).on_design(QuadratureSaturation(5e-3).on_design(PLAIN))
+    ours = BASE.respond(machine, "dyno_map", {"speed": MAP_SPEED, "torque": MAP_TORQUE})
+    shaft = MAP_TORQUE * MAP_SPEED
+    assert ours["loss"] == pytest.approx(3 * 0.5 * ours["current"] ** 2 + 0.2 * MAP_SPEED, rel=1e-6)
+    assert ours["power"] == pytest.approx(shaft + ours["loss"], rel=1e-9)
+    motor = shaft > 0
+    assert ours["efficiency"][motor] == pytest.approx((shaft / ours["power"])[motor])
+    assert ours["efficiency"][~motor] == pytest.approx((ours["power"] / shaft)[~motor])
+    assert ours["power"] == pytest.approx(sqrt(3) * ours["v_ll"] * ours["current"] * ours["power_factor"])
+
+
+def test_least_current_is_least_with_saturation_of_both_kinds():
+    """Currents a little aside on the line of torque are larger."""
+    machine = CrossSaturation(1e-5).on_design(QuadratureSaturation(5e-3).on_design(PLAIN))
+    operation = Operation(machine, {"speed": np.zeros(3)})
+    torque = np.array([-6.0, 3.0, 12.0])
+    i_d, i_q = least_current(operation, torque)
+    for aside in (-0.3, 0.3):
+        other = np.array([brentq(_off(machine, t, d + aside), 0.2 * q, 3 * q) for t, d, q in zip(torque, i_d, i_q)])
+        assert np.all(np.hypot(i_d + aside, other) > np.hypot(i_d, i_q))
+
+
+def _off(machine, torque, i_d):
+    one = Operation(machine, {"speed": np.zeros(1)})
+    return lambda i_q: one.shaft_torque(np.array([i_d]), np.array([i_q]))[0] - torque
+
+
+def test_no_load_fed_and_driven():
+    machine = FrictionTorque(0.2).on_design(PLAIN)
+    speed = np.array([100.0, 150.0])
+    driven = BASE.respond(machine, "no_load", {"speed": speed})
+    assert driven["power"] == pytest.approx(0.2 * speed)
+    assert driven["v_ll"] == pytest.approx(4 * speed * 0.1 * sqrt(1.5))
+    fed = BASE.respond(machine, "no_load", {"speed": speed, "v_ll": 1.1 * driven["v_ll"]})
+    assert fed["power"] == pytest.approx(0.2 * speed + 3 * 0.5 * fed["current"] ** 2, rel=1e-6)
+    magnetising = 0.1 * 4 * speed * 0.1 / (4 * speed * 3e-3) / sqrt(2)  # a tenth too much voltage over X_d, no load
+    assert fed["current"] == pytest.approx(magnetising, rel=0.05)
+
+
+def test_a_map_at_given_currents():
+    """The currents of the smallest size give the torque they were chosen for; one or the other, not both."""
+    i_d, i_q = least_current(Operation(PLAIN, {"speed": MAP_SPEED}), MAP_TORQUE)
+    ours = BASE.respond(PLAIN, "dyno_map", {"speed": MAP_SPEED, "i_d": i_d, "i_q": i_q})
+    expected = BASE.respond(PLAIN, "dyno_map", {"speed": MAP_SPEED, "torque": MAP_TORQUE})
+    assert all(ours[name] == pytest.approx(expected[name], rel=1e-9) for name in expected)
+    with pytest.raises(WorkbenchError, match="or in i_d and i_q"):
+        BASE.respond(PLAIN, "dyno_map", {"speed": SPEED, "torque": SPEED, "i_d": SPEED, "i_q": SPEED})
+
+
+def test_the_bench_answers_every_option():
+    """The speeds, torques and instruments of the Prius campaign; a dynamometer map among what is proposed."""
+    campaign = read_campaign(MEASUREMENTS / "prius-2004")
+    design = BASE.design(campaign.device)
+    found = {option.kind: option for option in BASE.options(design, campaign)}
+    assert set(found) == {"back_emf", "dyno_map"}  # nobody read torque or resistance there
+    for option in found.values():
+        answer = BASE.respond(design, option.kind, option.conditions)
+        assert all(
+            np.all(np.isfinite(answer[name])) and answer[name].shape == u.shape for name, u in option.random.items()
+        )
+    assert found["dyno_map"].conditions["torque"].max() == max(
+        t.conditions["torque"].max() for t in campaign.tables[1:]
+    )
+
+
+def test_a_dynamometer_map_is_read_from_a_file(tmp_path):
+    """Units in the names, any of the meters, torque and voltage as conditions; the model answers what was measured."""
+    (tmp_path / "map.csv").write_text(
+        "speed_rpm,torque_Nm,v_dc_V,winding_T_degC,current_A,power_kW,efficiency_percent\n"
+        "1000,10,110,40,12.0,1.3,80\n2000,5,110,42,8.0,1.2,85\n"
+    )
+    (tmp_path / "campaign.toml").write_text(
+        '[campaign]\nid = "map"\n[device]\npole_pairs = 4\npsi_m_Vs = 0.1\ninductance_d_mH = 3\ninductance_q_mH = 4\n'
+        'resistance_mohm = 500\n[[table]]\nfile = "map.csv"\nkind = "dyno_map"\n'
+        "u_random = { current_A = 0.1, power_kW = 0.01, efficiency_percent = 0.5 }\n"
+    )
+    campaign = read_campaign(tmp_path)
+    table = campaign.tables[0]
+    assert set(table.responses) == {"current", "power", "efficiency"}
+    assert table.responses["efficiency"].values == pytest.approx([0.8, 0.85])
+    ours = BASE.respond(BASE.design(campaign.device), table.kind, table.conditions)
+    assert set(table.responses) <= set(ours)

@@ -84,26 +84,13 @@ def test_after_an_interruption_what_was_solved_is_on_disk(tmp_path):
     assert builder.store.load(Stopped(), STATES).missing == STATES
 
 
-def test_pieces_of_two_processes(tmp_path):
-    """The same as in this process; progress counts them."""
-    words = []
-    both = [
-        SurrogateBuilder(drawn(), cache=None, workers=n)._found([Numbered(), Other()], STATES, words.append)
-        for n in (1, 2)
-    ]
-    assert all((both[0][name]["angle"] == both[1][name]["angle"]).all() for name in ("numbered", "other"))
+def test_pieces_of_two_processes_and_one_that_is_lost():
+    """The same as in this process, also where a worker ends on the way; progress counts all."""
+    words, pieces = [], [Numbered(), OnlyHere()]
+    for workers in (1, 2):
+        found = SurrogateBuilder(drawn(), cache=None, workers=workers)._found(pieces, STATES, words.append)
+        assert all(found[piece.name]["angle"].tolist() == [state.angle for state in STATES] for piece in pieces)
     assert [text.split(",")[0][-6:] for text in words] == ["1 of 2", "2 of 2"] * 2
-
-
-class Other(Numbered):
-    name = "other"
-
-
-def test_a_lost_worker_is_no_loss():
-    """One that ends its process is solved here."""
-    builder = SurrogateBuilder(drawn(), cache=None, workers=2)
-    found = builder._found([Numbered(), OnlyHere()], STATES, None)
-    assert_allclose(found["only here"]["angle"], [0.1, 0.1])
 
 
 class OnlyHere(Numbered):

@@ -43,7 +43,7 @@ def by_kind(tables) -> dict:
 def test_the_bench_answers_every_option():
     """All columns that the kind registers, a finite value and an uncertainty for every row."""
     found = by_kind(ALL)
-    assert set(found) == {"drag", "cogging", "back_emf", "phase_resistance", "locked_rotor"}
+    assert set(found) == {"drag", "cogging", "back_emf", "phase_resistance", "locked_rotor", "short_circuit"}
     for option in found.values():
         answer = BENCH.respond(drawn(), option.kind, option.conditions)
         assert set(option.random) <= set(answer)

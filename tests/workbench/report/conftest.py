@@ -14,6 +14,8 @@ from workbench.findings import (
     DetectionLimit,
     Diagnosis,
     Estimate,
+    FinalParameter,
+    LearnedAt,
     Ledger,
     LedgerStep,
     NextMeasurement,
@@ -23,7 +25,7 @@ from workbench.findings import (
     Ranked,
     RegimeMap,
     Scaling,
-    Separation,
+    Sealed,
     Sequence,
     SignatureMatch,
     SizePosterior,
@@ -188,7 +190,10 @@ def diagnosis():
         ranking=tuple(ranked(n, p, g, 4.1, a) for n, p, g, a in zip(names, probabilities, gains, after)),
         p_nothing_missing=1e-40,
         p_none_of_these=0.02,
-        p_pairs={"coulomb_friction + force_offset": 0.01},
+        p_something_remains=0.03,
+        p_sets={"coulomb_friction": 0.9, "coulomb_friction + force_offset": 0.05, "something unknown": 0.02,
+                "coulomb_friction + something unknown": 0.01},
+        sealed=Sealed(40, 1.04, 0.37, "conditions that were never fitted: they test prediction", True),
         abstention_power={3.0: 0.62, 10.0: 0.99},
         detection_limits=(DetectionLimit("coulomb_friction", "Coulomb friction", "force", 0.35, "N"),
                           DetectionLimit("diode_drop", "diode drop", "voltage", 0.12, "V")),
@@ -200,13 +205,15 @@ def diagnosis():
         before=fit(1.0),
         after=fit(0.0),
         posteriors=(posterior(),),
-        separations=(Separation("coulomb_friction", "stribeck", 2.1, "force at velocities below 5 mm/s"),
-                     Separation("coulomb_friction", "diode_drop", 180.0)),
+        checks=("impedance.csv: real and imaginary part miss a causal device by 16 times their uncertainty",),
         complaints=("impedance.csv: only 10 rows; its noise and its residuals say little",),
     )  # fmt: skip
 
 
-def step(number, effect, decision, chi2, held_out, reason=""):
+FOR = "the data speak for (odds 10^13.0) the effect"
+
+
+def step(number, effect, decision, chi2, held_out, reason=FOR):
     sizes = {} if not effect else {"force": estimate(4.1, 0.2, "N")}
     rms, noise, units = (
         {FORCE: 0.4 * chi2**0.5, VOLTAGE: 0.021},
@@ -214,7 +221,21 @@ def step(number, effect, decision, chi2, held_out, reason=""):
         {FORCE: "N", VOLTAGE: "V"},
     )
     verdict = "nothing_missing" if held_out < 1.2 else "effect"
-    return LedgerStep(number, effect, effect, decision, sizes, 30.0, chi2, held_out, rms, noise, units, verdict, reason)
+    return LedgerStep(
+        number,
+        effect,
+        effect,
+        decision,
+        sizes,
+        30.0,
+        chi2,
+        held_out,
+        rms,
+        noise,
+        units,
+        verdict,
+        reason if effect else "",
+    )
 
 
 @pytest.fixture(scope="session")
@@ -226,8 +247,20 @@ def ledger():
         (
             step(0, "", "start", 27.4, 28.2),
             step(1, "contact_resistance", "accepted", 12.1, 12.6),
-            step(2, "velocity_polynomial", "refused", 8.0, 19.4, "the held-out error rose from 12.6 to 19.4"),
+            step(
+                2,
+                "velocity_polynomial",
+                "refused",
+                8.0,
+                19.4,
+                f"{FOR}; chi2/n left out goes from 12.6 to 19.4: it rises",
+            ),
             step(3, "coulomb_friction", "accepted", 2.3, 2.2),
             step(4, "position_drag", "accepted", 1.01, 1.04),
         ),
+        parameters=(
+            FinalParameter("coulomb_friction", "force", estimate(4.1, 0.2, "N")),
+            FinalParameter("input", "viscous_damping", estimate(-3.0, 2.0, "%")),
+        ),
+        ranges=(LearnedAt(FORCE, 120, 1.01, {"velocity": (-0.5, 0.5, "m/s"), "shunt": (1.0, 1.0, "ohm")}),),
     )

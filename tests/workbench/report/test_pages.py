@@ -1,5 +1,6 @@
 """The pages as a whole: complete, self-contained, in reading order, and pictures with nothing cut off."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from figures.style import BLUE, VERMILION
+from workbench.findings import Diagnosis
 from workbench.report import (
     beliefs,
     channels,
@@ -18,6 +20,8 @@ from workbench.report import (
     write_diagnosis_report,
     write_ledger_report,
 )
+from workbench.report.as_json import diagnosis_json
+from workbench.report.sentences import readings, verdict_sentence
 from workbench.report.waterfall import waterfall
 
 SLACK = 0.03  # inch, beyond the edge of a picture
@@ -60,20 +64,57 @@ def test_pages_need_nothing_beside_them(pages):
         assert len(html) < 2_000_000
 
 
-def test_the_comparison_reads_summary_then_failing_channel_then_the_views(pages):
+def test_the_comparison_reads_summary_then_failing_channel_then_the_views(pages, comparison):
     found = headings(pages["compare"])
     assert found[:2] == ["What was found", "Where it fails: force_velocity.force"]
-    assert [h[:2] for h in found[2:11]] == [f"V{k}" for k in range(9)]
+    assert found[2:11] == [r.title for r in readings(comparison)]
     assert found[-1] == "What limits the conclusions" and pictures(pages["compare"]) == 10
-    assert pages["compare"].index("The model does not explain") < pages["compare"].index("V0 Scoreboard</h2>")
+    assert pages["compare"].index("The model does not explain") < pages["compare"].index("Scoreboard</h2>")
 
 
 def test_the_diagnosis_says_everything_that_was_found(pages):
     found = headings(pages["diagnose"])
-    assert found[0] == "Verdict" and "What was tried" in found and "What to measure next" in found
+    assert found[:2] == ["What the data say before any model", "Verdict"]
+    assert {"What was tried", "Rows that no fit has seen", "What to measure next"} < set(found)
     assert pictures(pages["diagnose"]) == 4
-    for words in ("coulomb_friction", "contact_resistance", "force loop at 2 mm and 1 Hz", "below 5 mm/s", "0.35"):
+    for words in ("coulomb_friction", "contact_resistance", "force loop at 2 mm and 1 Hz", "by 16 times", "40 rows"):
         assert words in pages["diagnose"]
+
+
+def test_pages_speak_of_odds_and_not_of_nats_or_numbered_views(pages):
+    for html in pages.values():
+        text = re.sub(r"<[^>]*>", " ", html)
+        assert not re.search(r"\bnats?\b|\bln\b|\bV\d\b", text)
+    assert "10^178.9 : 1" in pages["diagnose"] and "×9900" in pages["diagnose"], "gains of 412 and 9.2 nats"
+
+
+def test_a_convention_is_settled_before_any_effect_is_spoken_of(tmp_path, diagnosis):
+    fix = '[conventions]\nswap = ["v_b", "v_c"]'
+    found = replace(diagnosis, verdict="convention", names=("swapped_phases",), fix=fix, sealed=None)
+    write_diagnosis_report(tmp_path / "d.html", replace(found, conventions=("v_b and v_c look swapped.",)))
+    html = (tmp_path / "d.html").read_text(encoding="utf-8")
+    assert "<pre>[conventions]\nswap = [&#34;v_b&#34;, &#34;v_c&#34;]</pre>" in html
+    assert "v_b and v_c look swapped" in html and "--accept-conventions" in html
+    assert pictures(html) == 0 and not any(r.name in html for r in diagnosis.ranking)
+
+
+def test_both_sides_of_a_picture_have_the_same_axes(diagnosis):
+    figure = channels.before_and_after(diagnosis.before, diagnosis.after, "coulomb_friction")
+    for left, right in np.array(figure.axes).reshape(2, 2):
+        assert left.get_xlim() == right.get_xlim() and left.get_ylim() == right.get_ylim()
+    assert max(np.abs(figure.axes[2].lines[1].get_ydata())) < figure.axes[3].get_ylim()[1], "the worse side fits in"
+
+
+def test_the_ledger_ends_with_final_parameters_and_where_they_were_learned(pages):
+    assert headings(pages["ledger"])[-1] == "Where the model was learned"
+    assert "The final parameters" in headings(pages["ledger"])
+    for words in (
+        "3.77 to 4.43",
+        "−6.29 to 0.29",
+        "velocity −0.5 to 0.5 m/s; shunt 1\N{NO-BREAK SPACE}Ω",
+        "was not tested",
+    ):
+        assert words in pages["ledger"]
 
 
 def test_the_signature_is_shown_where_no_effect_explains(tmp_path, diagnosis):
@@ -82,22 +123,42 @@ def test_the_signature_is_shown_where_no_effect_explains(tmp_path, diagnosis):
     assert "What the residual looks like" in headings(html) and "small velocity" in html
 
 
-def test_refused_steps_stay_visible(pages):
-    assert "the held-out error rose from 12.6 to 19.4." in pages["ledger"]
-    assert pages["ledger"].count("refused") >= 3
+def test_reasons_of_every_step_stay_visible(pages):
+    assert "was refused: the data speak for (odds 10^13.0) the effect; chi²/n left out goes from" in pages["ledger"]
+    assert len(re.findall(r"Step \d, [a-z ]+, was accepted: the data speak for", pages["ledger"])) == 3
 
 
 def test_a_page_is_written_from_what_there_is(tmp_path, clean, diagnosis, ledger):
-    """Views, posteriors and options that cannot be had leave no empty section and raise nothing."""
+    """Views, posteriors and options that cannot be had leave no empty section, no empty column, and raise nothing."""
     bare = replace(clean, pulls=(), regimes=(), parities=(), sequences=(), whiteness=(), signatures=(), fits=())
     write_comparison_report(tmp_path / "c.html", bare)
-    empty = {"before": None, "after": None, "posteriors": (), "separations": (), "detection_limits": ()}
-    nothing = replace(diagnosis, verdict="nothing_missing", names=(), next_measurements=(), **empty)
+    assert headings((tmp_path / "c.html").read_text(encoding="utf-8")) == ["What was found", "Scoreboard"]
+    nothing = Diagnosis("bare", "damper", "nothing_missing", (), 0.9)
     write_diagnosis_report(tmp_path / "d.html", nothing)
-    assert headings((tmp_path / "d.html").read_text(encoding="utf-8"))[1] == "How likely each explanation is"
+    found = headings((tmp_path / "d.html").read_text(encoding="utf-8"))
+    assert found == ["Verdict", "How likely each explanation is", "What can and cannot be concluded",
+                     "Rows that no fit has seen"]  # fmt: skip
     unheld = replace(ledger, steps=tuple(replace(s, held_out_chi2_per_n=None) for s in ledger.steps[:1]))
     write_ledger_report(tmp_path / "l.html", unheld)
-    assert "none are held out) stands at 27.4" in (tmp_path / "l.html").read_text(encoding="utf-8")
+    html = (tmp_path / "l.html").read_text(encoding="utf-8")
+    assert "no conditions could be left out) stands at 27.4" in html and '<th class="text">left out</th>' not in html
+
+
+def test_one_picture_where_before_and_after_are_the_same(tmp_path, diagnosis):
+    same = replace(diagnosis, verdict="nothing_missing", names=(), after=diagnosis.before)
+    write_diagnosis_report(tmp_path / "d.html", same)
+    assert "The fit" in headings((tmp_path / "d.html").read_text(encoding="utf-8"))
+
+
+def test_the_json_keeps_its_keys_and_gains_the_new_ones(diagnosis):
+    content = json.loads(diagnosis_json(diagnosis))
+    kept = {"verdict", "names", "probability", "ranking", "p_nothing_missing", "p_none_of_these", "abstention_power",
+            "detection_limits", "next_measurements", "residual_signature", "seed", "wall_s"}  # fmt: skip
+    new = {"p_something_remains", "p_sets", "sealed", "checks", "fix", "sure", "alternatives", "conventions"}
+    assert kept | new < set(content) and content["sealed"]["holds"] is True
+    assert content["sentence"] == verdict_sentence(diagnosis)
+    assert {"name", "probability", "log_evidence", "parameters", "at_bound"} < set(content["ranking"][0])
+    assert {"kind", "conditions", "gain_nats", "cost"} < set(content["next_measurements"][0])
 
 
 def test_names_from_files_cannot_write_into_the_page(tmp_path, ledger):
@@ -119,7 +180,7 @@ def test_pictures_have_units_and_nothing_cut_off(comparison, diagnosis, ledger):
         "lag / readings": structure.whiteness(comparison.whiteness),
         "coulomb friction": structure.signatures(comparison.signatures),
         "none of these": beliefs.probabilities(diagnosis),
-        "gain per cost / nats": beliefs.next_measurements(diagnosis.next_measurements),
+        "powers of ten in the odds": beliefs.next_measurements(diagnosis.next_measurements),
         "chi²/n": waterfall(ledger),
     }
     for words, figure in figures.items():
@@ -141,11 +202,14 @@ def test_pulls_beyond_three_are_red(comparison):
     assert [to_hex(bar.get_facecolor()).upper() for bar in bars] == [VERMILION.upper(), BLUE.upper(), BLUE.upper()]
 
 
-def test_probabilities_of_the_chart_add_up(diagnosis):
-    small = tuple(replace(diagnosis.ranking[-1], name=f"small_{k}", probability=5e-4) for k in range(5))
-    axes = beliefs.probabilities(replace(diagnosis, ranking=diagnosis.ranking + small)).axes[0]
-    shown = sum(bar.get_width() for bar in axes.patches)
-    assert shown == pytest.approx(0.95 + 0.02 + 1e-5 + 0.02 + 0.01 + 5 * 5e-4, abs=1e-6), "none is dropped"
+def test_the_chart_shows_every_probability_at_its_length(diagnosis):
+    small = tuple(replace(diagnosis.ranking[-1], name=f"small_{k}", probability=5e-4) for k in range(9))
+    named = replace(diagnosis, names=("diode_drop",), ranking=diagnosis.ranking + small)
+    axes = beliefs.probabilities(named).axes[0]
+    shown = dict(zip([t.get_text() for t in axes.get_yticklabels()], [bar.get_width() for bar in axes.patches]))
+    assert shown["something unknown"] == 0.03 and shown["none of these"] == 0.02
+    assert shown["coulomb friction"] == 0.95 and shown["diode drop"] == 1e-12, "what is named is always shown"
+    assert len(shown) == 3 + 4, "negligible ones are not"
 
 
 def test_large_channels_are_thinned_for_the_picture_only(comparison):

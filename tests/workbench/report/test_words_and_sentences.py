@@ -7,20 +7,49 @@ import pytest
 
 from workbench.findings import Dependence, Estimate, Pull
 from workbench.report.sentences import (
+    bound_sentences,
     by_chance,
     channels_off,
     comparison_sentence,
+    conclusions,
     leading,
     ledger_sentence,
+    left_out_sentence,
+    meaning,
     power_sentence,
     readings,
+    sealed_sentence,
+    set_words,
     verdict_sentence,
 )
-from workbench.report.words import amount, interval, label, listed, number, percent, probability_text, unit_text
+from workbench.report.words import (
+    amount,
+    factor_text,
+    interval,
+    label,
+    listed,
+    number,
+    odds_text,
+    percent,
+    probability_text,
+    unit_text,
+)
+
+NINE = (
+    "effect",
+    "group",
+    "pair",
+    "several",
+    "partial",
+    "none_of_these",
+    "cannot_tell",
+    "nothing_missing",
+    "convention",
+)
 
 
-def reading(comparison, view):
-    return next(r for r in readings(comparison) if r.view == view)
+def reading(comparison, title):
+    return next(r for r in readings(comparison) if r.title == title)
 
 
 # ---- words ----------------------------------------------------------------------------------------------------------
@@ -51,6 +80,12 @@ def test_a_probability_is_never_rounded_to_certainty():
     assert percent(0.0) == "0 %" and percent(0.851) == "85 %" and percent(0.996) == "99.6 %"
 
 
+def test_odds_are_read_without_logarithms():
+    assert odds_text(np.log(2000.0)) == "2000 : 1" and odds_text(-np.log(40.0)) == "1 : 40"
+    assert odds_text(8.3 * np.log(10)) == "10^8.3 : 1" and odds_text(-np.inf) == "–"
+    assert factor_text(np.log(1.07)) == "×1.07" and factor_text(9.2) == "×9900"
+
+
 def test_names_are_listed_as_in_a_sentence():
     assert listed(["a", "b", "c"], "or") == "a, b or c" and listed([]) == "" and listed(["a"]) == "a"
 
@@ -59,31 +94,33 @@ def test_names_are_listed_as_in_a_sentence():
 
 
 def test_every_view_of_a_failing_model_alarms(comparison):
-    assert [r.view for r in readings(comparison)] == [f"V{k}" for k in range(9)]
+    assert len({r.title for r in readings(comparison)}) == 9
     assert all(r.alarming for r in readings(comparison))
 
 
 def test_no_view_of_a_sound_model_alarms(clean):
     assert not any(r.alarming for r in readings(clean))
-    assert {r.view for r in readings(clean) if r.alarming is None} == {"V3", "V4"}, "nothing measured for these"
+    assert {r.title for r in readings(clean) if r.alarming is None} == {"Order spectrum", "Scaling"}, (
+        "nothing measured for these"
+    )
     assert comparison_sentence(clean).startswith("The model explains these data")
 
 
 def test_sentences_carry_the_numbers(comparison):
     assert "force_velocity.force" in comparison_sentence(comparison) and "93 %" in comparison_sentence(comparison)
-    assert "viscous damping by +5.2 sigma" in reading(comparison, "V1").sentence
-    assert "12, 24, 36 of a defect on the rotor" in reading(comparison, "V3").sentence
-    assert "open_circuit.voltage moves by +2.4 u" in reading(comparison, "V6").sentence
-    assert "mostly odd (5.4 u" in reading(comparison, "V5").sentence
+    assert "viscous damping by +5.2 sigma" in reading(comparison, "Tolerance pulls").sentence
+    assert "12, 24, 36 of a defect on the rotor" in reading(comparison, "Order spectrum").sentence
+    assert "open_circuit.voltage moves by +2.4 u" in reading(comparison, "Order of acquisition").sentence
+    assert "mostly odd (5.4 u" in reading(comparison, "Parity").sentence
 
 
 def test_the_regime_named_is_the_largest_of_the_clear_cells(comparison):
-    assert "velocity 0.3 to 0.5 m/s and shunt 0.5 to 2" in reading(comparison, "V2").sentence
+    assert "velocity 0.3 to 0.5 m/s and shunt 0.5 to 2" in reading(comparison, "Regime map").sentence
 
 
 def test_an_effect_hidden_in_a_tolerance_is_reported_at_the_noise(clean):
     pulled = replace(clean, pulls=(Pull("force_constant", -8.9, 0.01, "", "tolerance"),))
-    assert reading(pulled, "V1").alarming and not reading(pulled, "V0").alarming
+    assert reading(pulled, "Tolerance pulls").alarming and not reading(pulled, "Scoreboard").alarming
     assert "had to leave the declared tolerance" in comparison_sentence(pulled)
 
 
@@ -108,45 +145,116 @@ def test_one_order_of_sixty_just_above_its_floor_is_noise(comparison):
     amplitude = np.full(60, 0.2)
     amplitude[7] = 0.44
     quiet = replace(comparison, orders=(replace(spectrum, amplitude=amplitude),))
-    assert not reading(quiet, "V3").alarming
+    assert not reading(quiet, "Order spectrum").alarming
     amplitude[7] = 0.66
     loud = replace(comparison, orders=(replace(spectrum, amplitude=amplitude),))
-    assert reading(loud, "V3").alarming, "0.01 ** (0.66 / 0.4) ** 2 = 3.6e-6 of 60"
+    assert reading(loud, "Order spectrum").alarming, "0.01 ** (0.66 / 0.4) ** 2 = 3.6e-6 of 60"
 
 
 def test_one_lag_outside_its_band_is_no_structure(clean):
     values = clean.whiteness[0].autocorrelation.copy()
     values[3] = 0.25
     one = replace(clean.whiteness[0], autocorrelation=values)
-    assert not reading(replace(clean, whiteness=(one,)), "V7").alarming
+    assert not reading(replace(clean, whiteness=(one,)), "Whiteness").alarming
     on_speed = replace(one, dependences=(Dependence("speed", 5e-4), Dependence("i_q", 0.4)))
-    said = reading(replace(clean, whiteness=(on_speed,)), "V7")
+    said = reading(replace(clean, whiteness=(on_speed,)), "Whiteness")
     assert said.alarming and "depends on speed" in said.sentence and "reading to reading" not in said.sentence
 
 
 # ---- verdicts -------------------------------------------------------------------------------------------------------
 
 
+def of(diagnosis, verdict):
+    """The diagnosis with another verdict and names that fit."""
+    names = ("coulomb_friction", "stribeck", "force_offset")
+    count = {"effect": 1, "partial": 1, "group": 2, "pair": 2, "several": 3}.get(verdict, 0)
+    return replace(diagnosis, verdict=verdict, names=names[:count])
+
+
 def test_every_verdict_is_a_plain_sentence(diagnosis):
-    two = ("coulomb_friction", "stribeck")
     said = {
         "effect": "What is missing is coulomb friction: force 4.1",
         "group": "one of coulomb friction or stribeck; these data cannot tell which",
         "pair": "Two effects are missing together: coulomb friction and stribeck",
+        "several": "Three effects are missing together: coulomb friction, stribeck and force offset",
         "partial": "Coulomb friction explains a part",
         "none_of_these": "none of the 6 effects tried; look at force_velocity.force",
         "cannot_tell": "cannot tell",
         "nothing_missing": "Nothing is missing",
+        "convention": "No effect is named until this is settled",
     }
+    assert set(said) == set(NINE)
     for verdict, words in said.items():
-        names = two if verdict in ("group", "pair") else two[:1] if verdict in ("effect", "partial") else ()
-        sentence = verdict_sentence(replace(diagnosis, verdict=verdict, names=names))
+        sentence = verdict_sentence(of(diagnosis, verdict))
         assert words in sentence and sentence.endswith("Probability 95 %.")
 
 
-def test_two_effects_may_leave_something(diagnosis):
-    both = replace(diagnosis, verdict="partial", names=("coulomb_friction", "stribeck"))
+def test_every_verdict_says_what_its_probability_is_of(diagnosis):
+    said = {verdict: meaning(of(diagnosis, verdict)) for verdict in NINE}
+    assert all(words.startswith("The probability is that of the statement that") for words in said.values())
+    assert said["pair"].endswith("coulomb friction and stribeck are there, alone or with others.")
+    assert "22000 : 1" in said["nothing_missing"] and "at least one of these" in said["group"]
+
+
+def test_a_convention_is_its_own_sentence_and_names_no_effect(diagnosis):
+    found = replace(of(diagnosis, "convention"), conventions=("v_b and v_c look swapped.",), names=("swapped_phases",))
+    assert verdict_sentence(found).startswith("v_b and v_c look swapped. Probability")
+    assert conclusions(found) == () and not any(r.name in verdict_sentence(found) for r in diagnosis.ranking)
+
+
+def test_cannot_tell_is_of_what_its_probability_is_of(diagnosis):
+    quiet = replace(of(diagnosis, "cannot_tell"), p_nothing_missing=0.6, probability=0.6)
+    assert "whether something is missing" in verdict_sentence(quiet) and "that nothing is missing" in meaning(quiet)
+    loud = replace(quiet, probability=0.4)
+    assert verdict_sentence(loud).startswith("Something is missing") and "that something is missing" in meaning(loud)
+
+
+def test_what_remains_beside_names_is_said_as_what_it_is(diagnosis):
+    both = replace(diagnosis, verdict="partial", names=("coulomb_friction", "stribeck"), p_something_remains=0.8)
     assert verdict_sentence(both).startswith("Coulomb friction and stribeck together explain a part, but something")
+    ambiguous = replace(both, p_something_remains=0.1, alternatives={"force_offset": ("diode_drop",)})
+    assert "but something" not in verdict_sentence(ambiguous), "nothing unknown is likely to remain"
+    assert "Besides, one of force offset or diode drop is there" in verdict_sentence(ambiguous)
+    assert meaning(ambiguous).endswith("at least 95 %.")
+
+
+def test_sealed_rows_that_disagree_are_not_taken_for_an_unknown_function(diagnosis):
+    """The fitted rows show nothing: the probability is one minus that of such sealed rows by chance."""
+    bad = replace(diagnosis.sealed, p_value=1e-5, chi2_per_n=3.1, holds=False)
+    found = replace(of(diagnosis, "none_of_these"), sealed=bad, probability=1 - 1e-5, p_nothing_missing=0.9)
+    assert "rows that no fit has seen disagree" in verdict_sentence(found) and "noise alone" in meaning(found)
+    assert "does not hold there" in sealed_sentence(found) and "chi²/n = 3.10" in sealed_sentence(found)
+
+
+def test_without_sealed_rows_and_regions_prediction_is_said_to_be_untested(diagnosis):
+    assert "40 rows" in sealed_sentence(diagnosis) and "never fitted: they test prediction" in sealed_sentence(
+        diagnosis
+    )
+    whole = tuple(replace(r, held_out_chi2_per_n_before=None) for r in diagnosis.ranking)
+    untested = replace(diagnosis, sealed=None, ranking=whole)
+    assert "prediction was not tested" in sealed_sentence(untested)
+    assert "beyond these conditions was not tested" in left_out_sentence(untested)
+    said = " ".join(conclusions(untested))
+    assert "none are sealed" in said and "beyond these conditions was not tested" in said
+    assert "not tested" not in " ".join(conclusions(diagnosis))
+
+
+def test_parameters_on_a_bound_are_said_where_they_are_named(diagnosis):
+    bound = tuple(replace(r, at_bound=("force",)) for r in diagnosis.ranking)
+    assert bound_sentences(diagnosis) == ()
+    (said,) = bound_sentences(replace(diagnosis, ranking=bound))
+    assert said.startswith("Force of coulomb friction ends on a bound")
+
+
+def test_an_unknown_law_that_could_stand_for_the_names_is_said(diagnosis):
+    assert "one unknown law and no effect, with probability 2 %" in " ".join(conclusions(diagnosis))
+    assert "unknown law" not in " ".join(conclusions(replace(diagnosis, p_none_of_these=1e-5)))
+
+
+def test_an_explanation_is_not_taken_for_one_of_its_parts():
+    assert set_words("coulomb_friction") == "coulomb friction alone"
+    assert set_words("coulomb_friction + something unknown") == "coulomb friction + something unknown"
+    assert set_words("nothing") == "nothing missing"
 
 
 def test_the_leader_is_the_named_effect_even_if_it_is_not_first(diagnosis):
@@ -160,8 +268,14 @@ def test_data_that_cannot_abstain_are_said_to(diagnosis):
     assert "cannot abstain" in power_sentence(replace(diagnosis, abstention_power={3.0: 0.02, 10.0: 0.1}))
 
 
-def test_the_ledger_is_judged_on_held_out_rows_and_names_refusals(ledger):
+def test_the_ledger_is_judged_on_what_was_left_out_and_names_refusals(ledger):
     said = ledger_sentence(ledger)
     assert "from chi²/n = 28.2 to 1.04, at the goal of 1.2" in said and said.endswith("Refused: velocity polynomial.")
     unfinished = ledger_sentence(replace(ledger, steps=ledger.steps[:3]))
     assert "to 12.6, above the goal" in unfinished, "a refused step does not count"
+
+
+def test_the_ledger_compares_one_kind_of_error_only(ledger):
+    first, *rest = ledger.steps
+    mixed = ledger_sentence(replace(ledger, steps=(replace(first, held_out_chi2_per_n=None), *rest)))
+    assert "from chi²/n = 27.4 to 1.01" in mixed and "no conditions could be left out" in mixed

@@ -28,11 +28,15 @@ ACCEPTABLE = 2e-3  # the same where Newton stalls at a corner of a law; of the o
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Sines at the driving point: frequency [Hz], amplitude [m] and shunt [ohm], each (n,)."""
+    """Sines at the driving point: frequency [Hz], amplitude [m] and shunt [ohm], each (n,).
+
+    viscous_factor: viscous damping in each row over that of the design [1]
+    """
 
     frequency: np.ndarray
     amplitude: np.ndarray
     shunt: np.ndarray
+    viscous_factor: np.ndarray | float = 1.0
 
     @property
     def omega(self) -> np.ndarray:
@@ -43,6 +47,15 @@ class Drive:
     def top_velocity(self) -> np.ndarray:
         """omega A [m/s], a column (n, 1)."""
         return self.omega * self.amplitude[:, None]
+
+    def columns(self) -> np.ndarray:
+        """Its fields as rows of one array (fields, n)."""
+        rows = (self.frequency, self.amplitude, self.shunt, self.viscous_factor)
+        return np.stack(np.broadcast_arrays(*rows))
+
+    def viscous(self, design: Damper) -> np.ndarray:
+        """c [N s/m], a column (n, 1)."""
+        return (design.viscous_damping * np.broadcast_to(self.viscous_factor, self.frequency.shape))[:, None]
 
 
 def fundamental(design: Damper, drive: Drive) -> np.ndarray:
@@ -69,13 +82,12 @@ def _imposed_motion(design: Damper, drive: Drive, steps: int) -> np.ndarray:
     position, velocity = top / omega * np.sin(theta), top * np.cos(theta)
     current = circuit_current(design, position, velocity, drive.shunt[:, None])
     inertia = -design.moving_mass * omega * top * np.sin(theta)
-    return inertia + _force_on_mass(design, position, velocity, current)
+    return inertia + drive.viscous(design) * velocity + _force_of_laws(design, position, velocity, current)
 
 
-def _force_on_mass(design: Damper, position: np.ndarray, velocity: np.ndarray, current: np.ndarray) -> np.ndarray:
-    """c v + force laws + K g i [N]."""
-    force = design.viscous_damping * velocity
-    force = force + design.force_constant * coupling_factor(design, position, current) * current
+def _force_of_laws(design: Damper, position: np.ndarray, velocity: np.ndarray, current: np.ndarray) -> np.ndarray:
+    """Force laws + K g i [N]."""
+    force = design.force_constant * coupling_factor(design, position, current) * current
     for law in design.forces:
         force = force + law.force(position, velocity)
     return force
@@ -99,6 +111,7 @@ class _Balance:
         self.x_d = drive.amplitude[:, None] * np.sin(theta)
         self.v_d = drive.top_velocity * np.cos(theta)
         self.resistance = design.internal_resistance + drive.shunt[:, None]
+        self.viscous = drive.viscous(design)
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -165,13 +178,13 @@ class _Balance:
         s = self._signals(q)
         if self.gives:
             return self._mount(s["x"], s["v"])
-        return self.design.moving_mass * s["a"] + _force_on_mass(self.design, s["x"], s["v"], s["i"])
+        return self._on_mass(**{name: s[name] for name in ("x", "v", "a", "i")})
 
     def _linear_answer(self) -> np.ndarray:
         """Answer of the constants alone: mass velocity and current of eq. B.4."""
         d, s = self.design, 1j * self.drive.omega[:, 0]
         circuit = self.resistance[:, 0] + s * d.inductance
-        inner = s * d.moving_mass + d.viscous_damping + d.force_constant**2 / circuit
+        inner = s * d.moving_mass + self.viscous[:, 0] + d.force_constant**2 / circuit
         mount = d.mount_damping + d.mount_stiffness / s if self.gives else 1.0
         v = self.drive.top_velocity[:, 0] * (mount / (mount + inner) if self.gives else 1.0)
         phasors = [v] * self.gives + [d.force_constant * v / circuit] * self.inductive
@@ -195,7 +208,10 @@ class _Balance:
         return self.design.mount_stiffness * (self.x_d - x) + self.design.mount_damping * (self.v_d - v)
 
     def _force_error(self, x, v, a, i):
-        return self.design.moving_mass * a + _force_on_mass(self.design, x, v, i) - self._mount(x, v)
+        return self._on_mass(x, v, a, i) - self._mount(x, v)
+
+    def _on_mass(self, x, v, a, i):
+        return self.design.moving_mass * a + self.viscous * v + _force_of_laws(self.design, x, v, i)
 
     def _current_error(self, x, v, i, di):
         d = self.design
@@ -211,7 +227,7 @@ class _Balance:
         """A force and a current of each row, to judge residuals by."""
         d, top = self.design, self.drive.top_velocity
         current = d.force_constant * top / self.resistance
-        force = d.force_constant * current + (d.viscous_damping + self.drive.omega * d.moving_mass) * top
+        force = d.force_constant * current + (self.viscous + self.drive.omega * d.moving_mass) * top
         return [force] * self.gives + [current] * self.inductive
 
     def _residual(self, q: np.ndarray) -> np.ndarray:

@@ -74,6 +74,8 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
         Coordinate(REMANENCE, 1e-4, tuple(share * remanence for share in (-0.13, -0.055, 0.04, 0.09, 0.15))),
         Coordinate(("magnet", "recoil_permeability"), 1e-4, (0.08,)),
         Coordinate(AIRGAP, 1e-7, (-0.2 * gap, 0.2 * gap)),
+        Coordinate(("magnet_grinding",), 1e-7, (0.15 * gap,)),
+        Coordinate(("bore_grinding",), 1e-7, (0.15 * gap,)),
         Coordinate(("machine", "slot_opening"), 1e-7, (-0.2 * opening, 0.2 * opening)),
         Coordinate(("field_scale",), 1e-4, (0.6, 1.6)),
         Coordinate(("saturation_scale",), 1e-4, (-0.08, 0.05)),

@@ -28,7 +28,7 @@ from magnetostatics.cut_edge import CutEdge
 from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingState
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.torque import arkkio_torque
-from materials.altered_steel import ScaledReluctivity, ScaledSaturation, stacked
+from materials.altered_steel import ScaledSaturation, hardened, stacked
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
 
@@ -90,7 +90,7 @@ class MachineField:
     def model(self, design: MachineAsBuilt, whole: bool) -> FieldModel:
         """The field problem of a design, on moved nodes of the nominal mesh where that can be."""
         section, morpher, first = self._mesh(design.machine, whole)
-        machine = replace(design.machine, magnetisation=_magnetisation(design))
+        machine = replace(design.cross_section, magnetisation=_magnetisation(design))
         moved = morpher.to(machine, defects_of(design)) if machine != section.machine or whole else section
         return first.like(moved, materials_of(design, self.steel(design.steel)))
 
@@ -266,7 +266,7 @@ def materials_of(design: MachineAsBuilt, grade: Reluctivity) -> MachineMaterials
     """Steel and magnets of a design."""
     law = grade
     if design.field_scale != 1.0:
-        law = ScaledReluctivity(law, design.field_scale)
+        law = hardened(law, design.field_scale)
     if design.saturation_scale != 1.0:
         law = ScaledSaturation(law, design.saturation_scale)
     law = stacked(law, design.stacking_factor)

@@ -1,8 +1,4 @@
-"""What could be measured next on the bench of a machine: measurements that it can make with the instruments it has.
-
-The uncertainty of a reading is that of the same kind of table, else the least that a reading of the same quantity has.
-Where nothing of a quantity was measured, nothing that needs it is proposed.
-"""
+"""What could be measured next on the bench of a machine: measurements that it can make with the instruments it has."""
 
 from __future__ import annotations
 
@@ -11,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from units import DEGREE, RPM
-from workbench.data.kinds import KINDS
 from workbench.data.table import Table
 from workbench.models.base import Option
+from workbench.models.proposals import proposal
 
 SPEEDS = np.array([50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 1500.0, 2000.0]) * RPM
 COGGING_STEP, EMF_STEP = 1.5 * DEGREE, 3.0 * DEGREE
@@ -27,37 +23,18 @@ Columns = Mapping[str, np.ndarray]
 def options(tables: Sequence[Table]) -> list[Option]:
     """Measurements besides those of the tables; with current only at angles and currents that tables have."""
     found = [
-        _option("drag", "drag from 50 to 2000 rpm, both directions", _both(SPEEDS), ("torque",), tables),
-        _option("cogging", "cogging every 1.5 deg, both directions", _turn(COGGING_STEP), ("torque",), tables),
-        _option("back_emf", "back-EMF at 2000 rpm, both directions", _fast_turn(), _phases("v"), tables),
-        _option("phase_resistance", "resistance at 20 to 120 degC", {"winding_T": WINDING}, _phases("r"), tables),
+        proposal("drag", "drag from 50 to 2000 rpm, both directions", _both(SPEEDS), ("torque",), tables),
+        proposal("cogging", "cogging every 1.5 deg, both directions", _turn(COGGING_STEP), ("torque",), tables),
+        proposal("back_emf", "back-EMF at 2000 rpm, both directions", _fast_turn(), _phases("v"), tables),
+        proposal("short_circuit", "short circuit from 50 to 2000 rpm", {"speed": SPEEDS}, ("torque",), tables),
+        proposal("no_load", "power of the drive from 50 to 2000 rpm", {"speed": SPEEDS}, ("power",), tables),
+        proposal("phase_resistance", "resistance at 20 to 120 degC", {"winding_T": WINDING}, _phases("r"), tables),
     ]
     points = _loaded(tables)
     if points:
         words = "locked-rotor torque at every angle and current that was measured"
-        found.append(_option("locked_rotor", words, points, ("torque",), tables))
+        found.append(proposal("locked_rotor", words, points, ("torque",), tables))
     return [option for option in found if option is not None]
-
-
-def _option(kind: str, words: str, conditions: Columns, responses: Sequence[str], tables) -> Option | None:
-    sizes = [_uncertainty(kind, name, tables) for name in responses]
-    if None in sizes:
-        return None
-    rows = len(next(iter(conditions.values())))
-    random = {name: np.full(rows, size) for name, size in zip(responses, sizes)}
-    return Option(kind, words, conditions, random, KINDS[kind].cost)
-
-
-def _uncertainty(kind: str, name: str, tables: Sequence[Table]) -> float | None:
-    """Of one reading, SI; None where no instrument for it is known."""
-    quantity = name.split("_")[0]
-    found = [
-        (table.kind != kind, float(np.median(response.random)))
-        for table in tables
-        for response in table.responses.values()
-        if response.name.split("_")[0] == quantity
-    ]
-    return min(found)[1] if found else None
 
 
 def _phases(quantity: str) -> tuple[str, ...]:

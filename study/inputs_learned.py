@@ -1,0 +1,43 @@
+"""Inputs of a study with what a bench has taught about its machines; where it taught nothing they are the study's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from drivetrain.learned import IRON_LOSS, RESISTANCE, Learned, case_as_learned
+from drivetrain.outcome import OutcomeInputs
+from electrical.winding_stage import WindingInputs
+from losses.stage import LossInputs
+from magnetostatics.case import FieldCase
+from study.inputs_electrical import loss_inputs, winding_inputs
+from study.inputs_field import field_case
+from study.inputs_outcome import outcome_inputs
+from study.schema import Study
+
+
+def study_itself(study: Study) -> Study:
+    """For views that read a study beside something else."""
+    return study
+
+
+def field_case_as_learned(study: Study, learned: Learned) -> FieldCase:
+    """Magnets, steel and end leakage as the bench has shown them."""
+    return case_as_learned(field_case(study), learned)
+
+
+def winding_inputs_as_learned(study: Study, learned: Learned) -> WindingInputs:
+    """The wire with the resistance of the winding on the bench."""
+    inputs = winding_inputs(study)
+    resistivity = inputs.wire.resistivity * learned.of(RESISTANCE)
+    return replace(inputs, wire=replace(inputs.wire, resistivity=resistivity))
+
+
+def loss_inputs_as_learned(study: Study, learned: Learned) -> LossInputs:
+    """The loss data with the iron loss of the bench."""
+    inputs = loss_inputs(study)
+    return replace(inputs, iron_factor=inputs.iron_factor * learned.of(IRON_LOSS))
+
+
+def outcome_inputs_as_learned(study: Study, learned: Learned) -> OutcomeInputs:
+    """What the actuator is held against, with the friction of the bench."""
+    return replace(outcome_inputs(study), added_friction=learned.friction)

@@ -1,0 +1,312 @@
+"""Fits and their evidences against dense Gaussians and brute-force integration."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import logsumexp
+from scipy.stats import multivariate_normal
+from scipy.stats import t as student
+
+from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
+from workbench.believed import TAILS
+from workbench.data.campaign import read_campaign
+from workbench.errors import WorkbenchError
+from workbench.explain.explore import beliefs_of
+from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
+from workbench.explain.search import Search, best_alone, less_one, searched, student_gain
+from workbench.likelihood.bench import SHARP, bench_of, sharpened
+from workbench.likelihood.fit import fitted, misfit
+from workbench.likelihood.signatures import grid, signature, signatures_of
+from workbench.likelihood.unknown import SIZES, seen, shapes_of
+from workbench.models.model import Model
+
+GAUSS = 1e9  # degrees of freedom at which the noise is known for sure
+
+
+def sure_of_noise(folder, **more):
+    """A bench whose noise is known for sure, so that everything linear is Gaussian."""
+    campaign = read_campaign(written(folder, n=40, rho=0.3, **more))
+    found = bench_of(Model(SpringModel(), SpringModel().design(campaign.device)), campaign, LIBRARY)
+    sure = replace(found.fit, dof=np.full(1, GAUSS))
+    return replace(found, fit=sure, null=fitted(sure, (), np.zeros(2), np.zeros(0)))
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    return sure_of_noise(tmp_path_factory.mktemp("c"), extra=lambda x: 4e4 * x**3)
+
+
+def gauss(bench, change=0.0, extra=None):
+    """ln density of the whitened readings, nuisances integrated out, over that of pure white noise at zero."""
+    slopes = bench.null.jacobian
+    covariance = np.eye(len(slopes)) + slopes @ slopes.T + (0 if extra is None else extra)
+    start = bench.fit.residual(np.zeros(2))
+    whole = multivariate_normal(np.zeros(len(slopes)), covariance).logpdf(start - change)
+    return whole + 0.5 * len(slopes) * np.log(2 * np.pi)
+
+
+def alone(bench, cls):
+    signatures = signatures_of(bench, (cls(),))
+    return best_alone(bench, signatures, beliefs_of({cls.name(): cls}, signatures.names))
+
+
+def test_laplace_is_exact_where_everything_is_linear_and_gaussian(bench):
+    assert bench.null.log_evidence == pytest.approx(gauss(bench), abs=1e-3)
+
+
+@pytest.mark.parametrize("cls", [Hardening, Bump])
+def test_evidence_of_an_effect_is_the_integral_over_its_prior(bench, cls):
+    base = bench.fit.residual(np.zeros(2))
+    places = np.linspace(-8, 8, 321)
+    changes = (base - bench.fit.residual(np.zeros(2), (cls().at([z]),)) for z in places)
+    logs = np.array([gauss(bench, c) + student.logpdf(z, TAILS) for c, z in zip(changes, places)])
+    whole = np.log(np.trapezoid(np.exp(logs - logs.max()), places)) + logs.max()
+    assert alone(bench, cls).log_evidence == pytest.approx(whole, abs=0.1)
+    catalogue = signatures_of(bench, (cls(),)).catalogue(bench.null.jacobian, bench.fit.white)
+    gains = catalogue.given((), catalogue.readings(bench.residual[:, None])[0]).gains()
+    grid_sum = float(logsumexp(gains + np.array([term.log_prior for term in catalogue.terms])))
+    assert bench.null.log_evidence + grid_sum == pytest.approx(whole, abs=0.3)  # the grid is coarser
+
+
+def test_student_likelihood_is_the_gauss_with_its_size_integrated_out():
+    dof, n = 7.0, 5
+
+    def integrand(s, q):  # scaled inverse chi2 prior of the variance from dof repeats
+        return s ** (-n / 2 - dof / 2 - 1) * np.exp(-(q + dof) / (2 * s))
+
+    ratio = quad(integrand, 0, np.inf, args=(30.0,))[0] / quad(integrand, 0, np.inf, args=(2.0,))[0]
+    values = [misfit(np.array([q]), np.array([dof]), np.array([n])) for q in (2.0, 30.0)]
+    assert values[0] - values[1] == pytest.approx(np.log(ratio), rel=1e-6)
+
+
+def test_two_starts_find_the_same_maximum(bench):
+    low, high = (fitted_from(bench, (Hardening(),), bench.null.x, np.array([z])) for z in (-1.5, 1.5))
+    assert low.fit.z == pytest.approx(high.fit.z, abs=1e-3)
+    assert low.log_evidence == pytest.approx(high.log_evidence, abs=1e-3)
+
+
+# ---- beside an unknown function --------------------------------------------------------------------------------------
+
+
+def test_evidence_beside_the_unknown_is_the_mean_over_all_shapes_and_sizes(bench):
+    shapes = shapes_of(bench.fit.stack, bench.fit.white)
+    logs = [
+        gauss(bench, extra=a**2 * s.columns @ s.columns.T) + s.log_prior - np.log(len(SIZES))
+        for s in shapes
+        for a in SIZES
+    ]
+    found = beside_unknown(null_of(bench), shapes)
+    assert found.log_evidence == pytest.approx(float(logsumexp(logs)), abs=1e-2)
+
+
+def test_an_unknown_law_is_seen_beside_an_effect_too(tmp_path):
+    """A wave and an even part: the expected function beside the even part is the wave, where noise lets it be seen."""
+    wave = lambda x: 0.5 * np.sin(900 * x)  # noqa: E731
+    bench = sure_of_noise(tmp_path, extra=lambda x: wave(x) + 1.0 * (x / 0.01) ** 2)
+    found = beside_unknown(alone(bench, Bump), shapes_of(bench.fit.stack, bench.fit.white))
+    x = bench.fit.stack.tables[0].conditions["displacement"]
+    assert found.leading[0].shape.law == "smooth"
+    assert np.corrcoef(found.functions[0], wave(x))[0, 1] > 0.97
+
+
+# ---- errors of laws --------------------------------------------------------------------------------------------------
+
+
+class Wrong(Hardening):
+    """Its law is good to a fifth."""
+
+    model_error = 0.2
+
+
+def test_the_error_of_a_law_widens_the_covariance_by_its_share(bench):
+    effect = Wrong().at([1.0])
+    problem, log_det = with_law_error(bench.fit, (effect,), np.zeros(2))
+    x = bench.fit.stack.tables[0].conditions["displacement"]
+    ranks = (np.arange(len(x)) - (len(x) - 1) / 2) / np.std(np.arange(len(x)))
+    assert (np.diff(x) > 0).all()
+    kernel = np.exp(-(np.subtract.outer(ranks, ranks) ** 2) / (2 * 0.8**2))
+    change = 0.2 * effect.cubic * x**3
+    wrong = bench.fit.white(bench.fit.white(np.outer(change, change) * kernel).T)
+    assert log_det == pytest.approx(0.5 * np.linalg.slogdet(np.eye(len(x)) + wrong)[1], abs=0.05)
+
+
+def test_the_error_of_a_law_is_that_of_the_fitted_size_wherever_the_fit_began(tmp_path):
+    """From a start far too large a fit would be free to be wrong by a large error, and its evidence not its own."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 4e5 * x**3)
+    near, far = (fitted_from(bench, (Wrong(),), bench.null.x, np.array([z])) for z in (0.3, 4.0))
+    assert far.fit.z == pytest.approx(near.fit.z, abs=0.05)
+    assert far.log_det == pytest.approx(near.log_det, abs=0.1)
+    assert far.log_evidence == pytest.approx(near.log_evidence, abs=0.2)
+    start = with_law_error(bench.fit, (Wrong().at([4.0]),), bench.null.x)[1]
+    assert start > far.log_det + 2.0, "the start was indeed far"
+
+
+def test_an_exact_law_has_no_error(bench):
+    assert with_law_error(bench.fit, (Hardening().at([1.0]),), np.zeros(2)) == (bench.fit, 0.0)
+
+
+# ---- base models that answer by an expansion -------------------------------------------------------------------------
+
+
+class Expansion(SpringModel):
+    """Right only at the stiffness it is expanded about: off by the square of the distance from it."""
+
+    about = 1050.0
+
+    def respond(self, design, kind, conditions):
+        wrong = 1 + 30 * (design.stiffness / self.about - 1) ** 2
+        return {"force": wrong * design.stiffness * conditions["displacement"]}
+
+    def recentred(self, design):
+        moved = Expansion()
+        moved.about = design.stiffness
+        return moved
+
+    is_expansion = True
+
+
+def test_a_fit_ends_where_the_expansion_is_exact(bench):
+    expansion = replace(bench.fit.predictor, model=replace(bench.fit.predictor.model, base=Expansion()))
+    problem = replace(bench.fit, predictor=expansion)
+    rough = fitted(problem, (), np.zeros(2), np.zeros(0))
+    sharp = sharpened(problem, rough)[1]
+    assert abs(rough.log_evidence - bench.null.log_evidence) > 3 * SHARP
+    assert sharp.log_evidence == pytest.approx(bench.null.log_evidence, abs=SHARP)
+    assert sharp.x == pytest.approx(bench.null.x, abs=0.15)
+    effect = alone(bench, Hardening)
+    assert exact(effect) is effect  # nothing to do for a model that is exact everywhere
+
+
+# ---- promises --------------------------------------------------------------------------------------------------------
+
+
+def test_what_a_pulled_tolerance_would_give_back_is_promised(tmp_path):
+    """A spring 10 % too soft, drawn to 1 %: all that the effect gains is the pull; no channel fits badly."""
+    bench = sure_of_noise(tmp_path, stiffness=900.0)
+    null = null_of(bench)
+    assert abs(null.fit.x[0]) > 6 and np.mean(null.fit.residual**2) < 1.5
+    soft = alone(bench, LIBRARY["soft_spring"])
+    gain = soft.log_evidence - null.log_evidence
+    assert gain > 15
+    campaign = replace(null, problem=replace(null.problem, dof=np.full(1, 30.0)))
+    assert student_gain(campaign, gain) == pytest.approx(gain, abs=1.0)
+
+
+def test_a_gain_of_misfit_is_less_where_the_noise_is_not_known_for_sure(tmp_path):
+    """Of the whole excess the likelihood with few degrees of freedom gains its own difference, no more."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 2e6 * x**3)
+    null = replace(null_of(bench), problem=replace(bench.fit, dof=np.full(1, 10.0)))
+    squares, sizes = bench.fit.squares(bench.null.residual), bench.fit.sizes
+    most = misfit(squares, np.full(1, 10.0), sizes) - misfit(sizes, np.full(1, 10.0), sizes)
+    pulls = 0.5 * bench.null.x @ bench.null.x
+    assert 0 < student_gain(null, 1e6) == pytest.approx(most + pulls)
+    assert student_gain(null, 1e6) < 0.5 * (squares - sizes).sum()
+
+
+# ---- grids -----------------------------------------------------------------------------------------------------------
+
+
+def test_tangents_do_not_reach_over_places_without_an_answer():
+    """A change z^2 along one axis, unknown above z = 1.5: the slope at the last place is that to its neighbour."""
+
+    def change(effect):
+        z = effect.parameters_z
+        if z > 1.5:
+            raise WorkbenchError("no steady state")
+        return np.array([z**2])
+
+    class Half(Bump):
+        def at(self, z):
+            found = super().at(z)
+            object.__setattr__(found, "parameters_z", float(z[0]))
+            return found
+
+    found = signature(Half(), change)
+    last = int(np.max(np.flatnonzero(np.isfinite(found.log_prior))))
+    z = found.z[:, 0]
+    assert found.tangents[0, 0, last] == pytest.approx(z[last] + z[last - 1])
+    assert np.allclose(found.tangents[0, 0, 1:last], 2 * z[1:last]) and not found.tangents[0, 0, last + 2 :].any()
+
+
+def test_the_prior_of_a_grid_is_that_of_its_cells():
+    found = signature(Bump(), lambda effect: np.array([effect.size]))
+    assert float(logsumexp(found.log_prior)) == pytest.approx(0.0, abs=1e-12)
+    edge = found.z[0, 0] - found.width / 2
+    inside = student.cdf(-edge, TAILS) - student.cdf(edge, TAILS)
+    middle = student.cdf(found.width / 2, TAILS) - student.cdf(-found.width / 2, TAILS)
+    assert np.exp(found.log_prior[4]) == pytest.approx(middle / inside)
+
+
+def test_an_effect_with_too_many_parameters_is_said():
+    with pytest.raises(WorkbenchError, match="one to 4 parameters, found 5"):
+        grid(5)
+
+
+# ---- the search ------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Cosine(Bump):
+    """One of several waves, none of which the others can imitate."""
+
+    waves = 3.0
+
+    def on_response(self, response, conditions, kind, design):
+        wave = np.cos(self.waves * 300 * conditions["displacement"])
+        return {**response, "force": response["force"] + self.size * wave}
+
+
+WAVES = {
+    f"wave{k}": type(f"Wave{k}", (Cosine,), {"waves": float(k), "name": classmethod(lambda cls: f"wave{cls.waves:g}")})
+    for k in range(2, 8)
+}
+
+
+@pytest.mark.parametrize("truth", [(2, 5, 7), (3, 4, 6, 7)])
+def test_three_and_four_effects_at_once_are_found_by_fits(tmp_path, truth):
+    hidden = lambda x: sum(0.25 * np.cos(300 * k * x) for k in truth)  # noqa: E731
+    search = searched(sure_of_noise(tmp_path, extra=hidden), WAVES)
+    wanted = frozenset(f"wave{k}" for k in truth)
+    assert search.ranked[0] == wanted
+    assert search.posterior.all_of(tuple(frozenset((n,)) for n in wanted)) > 0.9
+    assert all(abs(effect.size - 0.25) < 0.1 for effect in search.fitted[wanted].effects)
+
+
+def test_what_leads_is_weighed_against_itself_without_each_of_its_effects(tmp_path):
+    """A search that knows nothing and a pair only, where one of the pair was hidden alone."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    signatures = signatures_of(bench, (WAVES["wave2"](), WAVES["wave5"]()))
+    pair = fitted_from(bench, (WAVES["wave2"](), WAVES["wave5"]()), bench.null.x, np.array([0.8, 0.1]))
+    none, both, one = frozenset(), frozenset(WAVES).intersection(signatures.names), frozenset(("wave2",))
+    search = Search(bench, signatures, beliefs_of(WAVES, signatures.names), (), {none: null_of(bench), both: pair})
+    assert search.ranked[0] == both
+    less_one(search, lambda words: None)
+    assert search.ranked[0] == one and set(search.fitted) == {none, one, frozenset(("wave5",)), both}
+    straight = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.5]))
+    assert search.log_evidence(one) == pytest.approx(straight.log_evidence, abs=1e-2)
+
+
+def test_probabilities_of_a_search_add_up_to_one(bench):
+    found = searched(bench, LIBRARY).posterior
+    assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)
+    assert found.nothing + found.none_of_these <= 1.0
+
+
+def test_a_fit_that_has_no_answer_is_left_out_and_said(bench):
+    class Stuck(Bump):
+        def on_response(self, response, conditions, kind, design):
+            if self.size not in {Stuck().at(z).size for z in grid(1)[0]} | {0.0}:
+                raise WorkbenchError("no steady state")
+            return super().on_response(response, conditions, kind, design)
+
+    search = searched(bench, LIBRARY | {"stuck": Stuck})
+    assert search.failed["stuck"] == "no steady state" and frozenset(("stuck",)) not in search.fitted
+    assert frozenset(("stuck",)) not in search.posterior.alone
+
+
+def test_the_residual_that_is_explained_is_carried_back_to_the_drawing(bench):
+    """Linear in its nuisances, the residual at zero of them is what the drawing itself leaves."""
+    assert np.allclose(at_zero(null_of(bench)), bench.fit.residual(np.zeros(2)), atol=1e-6)
+    assert seen(shapes_of(bench.fit.stack, bench.fit.white), bench.null.jacobian, at_zero(null_of(bench)))

@@ -1,0 +1,122 @@
+"""Hand-made probabilities and the one verdict that each allows; every number printed is that of its sentence."""
+
+import numpy as np
+import pytest
+
+from workbench.explain.diagnosis import _with_sealed
+from workbench.explain.explore import Beliefs, Posterior, posterior
+from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
+from workbench.findings import Sealed
+
+SURE = Thresholds(sure=0.95, quiet=0.5, can_tell=True)
+BLIND = Thresholds(sure=0.95, quiet=0.5, can_tell=False)
+
+
+def p(alone, beside=None):
+    """Sets written as "a+b", nothing as ""; beside: the same with an unknown function."""
+    sets = [
+        {frozenset(filter(None, names.split("+"))): share for names, share in part.items()}
+        for part in (alone, beside or {})
+    ]
+    assert sum(sets[0].values()) + sum(sets[1].values()) == pytest.approx(1.0)
+    return Posterior(*sets)
+
+
+CASES = {
+    "one name": (p({"a": 0.96, "": 0.02, "b": 0.02}), SURE, ("effect", ("a",), 0.96)),
+    "in every explanation": (p({"a": 0.5, "a+b": 0.3, "a+c": 0.2}), SURE, ("effect", ("a",), 1.0)),
+    "one of two": (p({"a": 0.6, "b": 0.38, "": 0.02}), SURE, ("group", ("a", "b"), 0.98)),
+    "one of four": (p({"a": 0.3, "b": 0.26, "c": 0.22, "d": 0.2, "": 0.02}), SURE, ("group", tuple("abcd"), 0.98)),
+    "one of five": (p({"a": 0.2, "b": 0.2, "c": 0.2, "d": 0.2, "e": 0.2}), SURE, ("cannot_tell", (), 1.0)),
+    "two": (p({"a+b": 0.97, "a": 0.03}), SURE, ("pair", ("a", "b"), 0.97)),
+    "three": (p({"a+b+c": 0.96, "a+b": 0.04}), SURE, ("several", ("a", "b", "c"), 0.96)),
+    "four": (p({"a+b+c+d": 0.99, "": 0.01}), SURE, ("several", ("a", "b", "c", "d"), 0.99)),
+    "two, one doubtful": (p({"a+b": 0.6, "a+c": 0.4}), SURE, ("partial", ("a",), 1.0)),
+    "a name, and more": (p({"a": 0.04}, {"a": 0.96}), SURE, ("partial", ("a",), 1.0)),
+    "no name, and more": (p({"": 0.1, "a": 0.1}, {"": 0.7, "a": 0.1}), SURE, ("none_of_these", (), 0.8)),
+    "something": (p({"": 0.1, "a": 0.5}, {"": 0.4}), SURE, ("cannot_tell", (), 0.9)),
+    "nothing": (p({"": 0.9, "a": 0.1}), SURE, ("nothing_missing", (), 0.93)),
+    "nothing, of the blind": (p({"": 0.9, "a": 0.1}), BLIND, ("cannot_tell", (), 0.9)),
+    "a name by the blind": (p({"a": 0.99, "": 0.01}), BLIND, ("cannot_tell", (), 0.99)),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_verdict(name):
+    given, thresholds, expected = CASES[name]
+    found = verdict(given, thresholds, plainly_nothing=0.93)
+    assert (found.kind, found.names, found.probability) == (*expected[:2], pytest.approx(expected[2]))
+
+
+def test_what_a_doubtful_member_of_a_pair_may_be_is_said():
+    found = verdict(CASES["two, one doubtful"][0], SURE, 0.0)
+    assert found.alternatives == {"b": ("c",)}
+
+
+def test_two_doubtful_members_are_groups_and_no_name_stands_alone():
+    found = verdict(p({"a+b": 0.5, "c+b": 0.2, "a+d": 0.2, "c+d": 0.1}), SURE, 0.0)
+    assert (found.kind, set(found.names)) == ("group", {"a", "c"})
+    assert found.alternatives == {"b": ("d",)} and found.probability == pytest.approx(1.0)
+
+
+def test_something_unknown_lends_no_probability_to_a_name():
+    found = verdict(p({"a": 0.5, "": 0.02}, {"": 0.48}), SURE, 0.0)
+    assert found.names == () and found.kind == "cannot_tell"
+
+
+def random_posterior(random):
+    names = "abcdef"
+    sets = {frozenset(n for n in names if random.random() < 0.3) for _ in range(12)}
+    shares = random.dirichlet(np.full(2 * len(sets), random.choice([0.05, 0.3])))
+    return Posterior(dict(zip(sets, shares)), dict(zip(sets, shares[len(sets) :])))
+
+
+def test_no_name_is_printed_below_the_threshold_whatever_the_probabilities():
+    random, kinds = np.random.default_rng(3), set()
+    for _ in range(400):
+        given = random_posterior(random)
+        found = verdict(given, SURE, given.nothing)
+        kinds.add(found.kind)
+        if found.kind in ("effect", "pair", "several", "partial"):
+            assert all(given.of(name) >= 0.95 - 1e-9 for name in found.names)
+        if found.names:
+            assert 0.95 - 1e-9 <= found.probability <= 1.0
+            assert given.nothing <= 0.05 + 1e-9
+    assert kinds >= {"effect", "group", "pair", "several", "partial", "none_of_these", "cannot_tell"}
+
+
+def test_groups_do_not_share_a_member_and_hold_together():
+    random = np.random.default_rng(4)
+    for _ in range(200):
+        given = random_posterior(random)
+        groups = printed(given, 0.9)
+        assert sum(map(len, groups)) == len(frozenset().union(*groups))
+        assert not groups or given.all_of(groups) >= 0.9
+
+
+def test_sealed_rows_that_disagree_make_nothing_missing_impossible():
+    nothing = Verdict("nothing_missing", (), 0.97, {})
+    agree, disagree = (Sealed(20, 2.0, q, "speeds", q > 1e-3) for q in (0.3, 1e-9))
+    assert _with_sealed(nothing, agree) is nothing and _with_sealed(nothing, None) is nothing
+    found = _with_sealed(nothing, disagree)
+    assert found.kind == "none_of_these" and found.probability == pytest.approx(1.0)
+    named = Verdict("effect", ("a",), 0.97, {})
+    assert _with_sealed(named, disagree) is named
+
+
+def test_probabilities_from_evidences_by_hand():
+    """Odds: base rates of a tenth each, an unknown function 0.12 to 0.88, ten nats for a."""
+    odds = np.log(1 / 9)
+    beliefs = Beliefs({"a": odds, "b": odds}, frozenset())
+    none, a, both = frozenset(), frozenset("a"), frozenset("ab")
+    found = posterior({none: 0.0, a: 10.0, both: 10.0}, {none: 8.0}, beliefs)
+    weights = np.array([1.0, np.exp(10) / 9, np.exp(10) / 81, np.exp(8) * 0.12 / 0.88])
+    shares = weights / weights.sum()
+    assert [found.nothing, found.alone[a], found.alone[both], found.none_of_these] == pytest.approx(list(shares))
+    assert found.of("a") == pytest.approx(shares[1] + shares[2]) and found.of("b") == pytest.approx(shares[2])
+    assert found.any_of(both) == pytest.approx(found.of("a")) and found.leading == a
+
+
+def test_rounding_carries_no_probability_beyond_one():
+    found = Posterior({frozenset((f"n{k}", "a")): 0.1 for k in range(10)} | {frozenset("a"): 1e-15}, {})
+    assert sum(found.alone.values()) <= 1.0 + 1e-14 and found.of("a") <= 1.0 and found.any_of(frozenset("a")) <= 1.0

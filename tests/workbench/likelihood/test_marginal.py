@@ -1,0 +1,70 @@
+"""The low-rank likelihood against the dense multivariate normal it stands for, on random small problems."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from workbench.likelihood.marginal import Catalogue, Term
+
+ROWS = 13
+
+
+def problem(seed):
+    """A background of two columns, terms of one, two and three, and two residuals."""
+    random = np.random.default_rng(seed)
+    draw = lambda *shape: random.standard_normal(shape)  # noqa: E731
+    terms = tuple(Term(f"e{k}", draw(ROWS), draw(ROWS, k), 0.0) for k in (1, 2, 3, 1))
+    return Catalogue(draw(ROWS, 2), terms), 3 * draw(ROWS, 2)
+
+
+def dense(catalogue, chosen, residual):
+    """ln p of the residual by the covariance of the whole, over that of the same rows of white noise at zero."""
+    terms = [catalogue.terms[t] for t in chosen]
+    columns = np.hstack([catalogue.background, *(t.columns for t in terms)])
+    mean = sum((t.shift for t in terms), np.zeros(ROWS))
+    covariance = np.eye(ROWS) + columns @ columns.T
+    return multivariate_normal(mean, covariance).logpdf(residual) + 0.5 * ROWS * np.log(2 * np.pi)
+
+
+@pytest.mark.parametrize("chosen", [(), (1,), (0, 2), (3, 1, 0), (0, 1, 2, 3)])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_likelihood_of_any_set_is_that_of_its_covariance(seed, chosen):
+    catalogue, residuals = problem(seed)
+    found = catalogue.given(chosen, catalogue.readings(residuals)[1]).log_marginal
+    assert found == pytest.approx(dense(catalogue, chosen, residuals[:, 1]), abs=1e-9)
+
+
+@pytest.mark.parametrize("chosen", [(), (1,), (3, 2)])
+def test_the_gain_of_one_term_more_is_a_difference_of_likelihoods(chosen):
+    catalogue, residuals = problem(7)
+    gains = catalogue.given(chosen, catalogue.readings(residuals)[0]).gains()
+    for t in set(range(4)) - set(chosen):
+        more = dense(catalogue, (*chosen, t), residuals[:, 0]) - dense(catalogue, chosen, residuals[:, 0])
+        assert gains[t] == pytest.approx(more, abs=1e-9)
+
+
+def test_first_gains_of_many_residuals_are_the_gains_of_each():
+    catalogue, residuals = problem(3)
+    readings = catalogue.readings(residuals)
+    each = np.column_stack([catalogue.given((), r).gains() for r in readings])
+    assert np.allclose(catalogue.first_gains(readings), each, atol=1e-10)
+    assert each[2, 0] == pytest.approx(dense(catalogue, (2,), residuals[:, 0]) - dense(catalogue, (), residuals[:, 0]))
+
+
+def test_weights_are_those_of_ridge_regression():
+    catalogue, residuals = problem(5)
+    chosen = (2, 0)
+    terms = [catalogue.terms[t] for t in chosen]
+    x = np.hstack([catalogue.background, *(t.columns for t in terms)])
+    left = residuals[:, 0] - terms[0].shift - terms[1].shift
+    augmented = np.vstack([x, np.eye(x.shape[1])])
+    ridge = np.linalg.lstsq(augmented, np.r_[left, np.zeros(x.shape[1])], rcond=None)[0]
+    found = catalogue.given(chosen, catalogue.readings(residuals)[0]).weights
+    assert np.allclose(found, ridge, atol=1e-10)
+
+
+def test_a_background_of_nothing_is_no_hindrance():
+    catalogue, residuals = problem(1)
+    bare = Catalogue(np.zeros((ROWS, 0)), catalogue.terms)
+    found = bare.given((1,), bare.readings(residuals)[0]).log_marginal
+    assert found == pytest.approx(dense(bare, (1,), residuals[:, 0]), abs=1e-9)

@@ -1,0 +1,169 @@
+"""Noise that was put in is found again, and the whitener undoes exactly the covariance it is meant for."""
+
+import numpy as np
+import pytest
+
+from tests.workbench.likelihood.tables import table
+from tests.workbench.toy_bench import LIBRARY, SpringModel, written
+from workbench.data.campaign import read_campaign
+from workbench.data.stack import stacked, thinned
+from workbench.likelihood.bench import bench_of
+from workbench.likelihood.noise import ChannelNoise, LawError, Noise, Whitener, matched_rows, measured_noise, whitener
+from workbench.models.model import Model
+
+
+def bench(folder):
+    campaign = read_campaign(folder)
+    return bench_of(Model(SpringModel(), SpringModel().design(campaign.device)), campaign, LIBRARY)
+
+
+@pytest.mark.parametrize("repeats", [2, 3])
+@pytest.mark.parametrize("scale, rho", [(1.0, 0.0), (1.7, 0.5), (0.6, 0.3)])
+def test_size_and_correlation_are_found(tmp_path, scale, rho, repeats):
+    found = bench(written(tmp_path, n=1300, scale=scale, rho=rho, seed=3, repeats=repeats)).noise.channels[0]
+    assert found.scale == pytest.approx(scale, rel=0.06)  # three standard errors of 1300 correlated differences
+    assert found.rho == pytest.approx(rho, abs=0.08)
+
+
+def test_a_wrong_model_does_not_look_like_noise(tmp_path):
+    quiet = bench(written(tmp_path / "a", n=400)).noise.channels[0]
+    wrong = bench(written(tmp_path / "b", n=400, extra=lambda x: 50 * np.sin(3000 * x))).noise.channels[0]
+    assert wrong.scale == pytest.approx(quiet.scale, rel=1e-5)  # readings are written to 1e-6
+
+
+def test_a_wild_reading_counts_less_and_leaves_the_size_alone(tmp_path):
+    folder = written(tmp_path, n=400)
+    clean = bench(folder).noise.channels[0]
+    lines = (folder / "pull.csv").read_text().splitlines()
+    repeat, x, force = lines[50].split(",")
+    lines[50] = f"{repeat},{x},{float(force) + 2.0}"  # 40 standard deviations
+    (folder / "pull.csv").write_text("\n".join(lines))
+    noise = bench(folder).noise
+    assert noise.channels[0].scale == pytest.approx(clean.scale, rel=0.02)
+    assert noise.inflation[49] > 8 and noise.channels[0].wild >= 1
+
+
+def test_coarse_steps_of_a_converter_do_not_make_noise_vanish(tmp_path):
+    folder = written(tmp_path, n=300, repeats=3, scale=0.8)
+    lines = (folder / "pull.csv").read_text().splitlines()
+    parts = [line.split(",") for line in lines[1:]]
+    coarse = [f"{r},{x},{round(float(f) / 0.1) * 0.1:.3f}" for r, x, f in parts]
+    (folder / "pull.csv").write_text("\n".join([lines[0], *coarse]))
+    assert bench(folder).noise.channels[0].scale == pytest.approx(np.hypot(0.8, 0.1 / np.sqrt(12) / 0.05), rel=0.1)
+
+
+def test_whitening_makes_ar1_noise_white_exactly():
+    n, rho, sigma = 6, 0.6, np.linspace(1, 3, 6)
+    white = Whitener(sigma, np.r_[0.0, np.full(n - 1, rho)])
+    covariance = np.outer(sigma, sigma) * rho ** np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    operator = white(np.eye(n))
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(n), atol=1e-12)
+
+
+def test_the_error_of_a_law_is_whitened_exactly():
+    random = np.random.default_rng(1)
+    wrong = random.standard_normal((7, 3))
+    directions, size, _ = np.linalg.svd(wrong, full_matrices=False)
+    law = LawError(slice(0, 7), directions, size)
+    operator = law.apply(np.eye(7))
+    covariance = np.eye(7) + wrong @ wrong.T
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(7), atol=1e-12)
+    assert law.half_log_det == pytest.approx(0.5 * np.linalg.slogdet(covariance)[1], rel=1e-12)
+
+
+def test_repeats_are_matched_by_their_conditions_when_rows_are_lost(tmp_path):
+    folder = written(tmp_path, n=50)
+    lines = (folder / "pull.csv").read_text().splitlines()
+    (folder / "pull.csv").write_text("\n".join(lines[:10] + lines[12:]))  # two rows of the first repeat are gone
+    table = read_campaign(folder).tables[0]
+    stations = matched_rows(table)
+    x = table.conditions["displacement"]
+    assert len(stations) >= 48 and np.allclose(x[stations[:, 0]], x[stations[:, 1]], atol=1e-12)
+
+
+def test_thinning_does_not_keep_step_with_a_cycle(tmp_path):
+    table = read_campaign(written(tmp_path, n=5000)).tables[0]
+    few = thinned(table, 200)
+    assert few.rows <= 200
+    x = few.conditions["displacement"]
+    rows = np.searchsorted(table.conditions["displacement"][:5000], x[few.repeat == 0])
+    assert len(np.unique(rows % 5)) == 5
+    assert np.array_equal(x[few.repeat == 0], x[few.repeat == 1])  # repeats can still be compared
+
+
+# ---- scans, lost rows, logged temperatures ---------------------------------------------------------------------------
+
+
+def scans(offset=0.0, slope=0.0, rho=0.0, repeats=40, rows=60, seed=0):
+    """One channel of a model that answers zero; every repeat is a scan with an offset and a slope of its own."""
+    random = np.random.default_rng(seed)
+    error = random.standard_normal((repeats, rows))
+    for k in range(1, rows):
+        error[:, k] = rho * error[:, k - 1] + np.sqrt(1 - rho**2) * error[:, k]
+    error += offset * random.standard_normal((repeats, 1))
+    error += slope * random.standard_normal((repeats, 1)) * np.linspace(-0.5, 0.5, rows)
+    number = np.repeat(np.arange(repeats), rows)
+    place = np.tile(np.linspace(0, 1, rows), repeats)
+    return stacked([table({"force": 0.2 * error.ravel()}, 0.2, number, number, displacement=place)])
+
+
+def noise_of(stack):
+    return measured_noise(stack, np.zeros(stack.size))
+
+
+@pytest.mark.parametrize("offset, slope", [(2.0, 0.0), (0.0, 3.0), (1.0, 2.0)])
+def test_what_a_scan_as_a_whole_is_off_by_is_found(offset, slope):
+    found = noise_of(scans(offset, slope)).channels[0]
+    common = np.sqrt((offset**2 + slope**2 / 12) / 2)  # of shapes of rms 1, a slope of one through a scan has 1/12
+    assert found.scans == pytest.approx(common, rel=0.25)
+    assert found.scale == pytest.approx(1.0, rel=0.05) and abs(found.rho) < 0.05
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5])
+def test_neighbours_that_go_together_are_no_remounting(rho):
+    found = noise_of(scans(rho=rho)).channels[0]
+    assert found.rho == pytest.approx(rho, abs=0.06)
+    assert found.scans < 0.15
+
+
+def test_whitening_knows_that_scans_are_off_as_a_whole():
+    """Two scans, covariance by hand: independent noise, and an offset and a slope for each."""
+    stack = scans(repeats=2, rows=7)
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0, 0.8),), np.ones(14))
+    operator = whitener(stack, noise)(np.eye(14))
+    t = np.linspace(-0.5, 0.5, 7)
+    one = np.eye(7) + 0.8**2 * (1 + np.outer(t, t) / np.mean(t**2))
+    covariance = 0.3**2 * np.kron(np.eye(2), one)
+    assert np.allclose(operator @ covariance @ operator.T, np.eye(14), atol=1e-10)
+
+
+def resistances(lost=(), seed=0):
+    """A damper at three shunts, one of them open, both ways; its temperature was logged, not set. Noise 1.8 N."""
+    random = np.random.default_rng(seed)
+    speed, shunt = (v.ravel() for v in np.meshgrid(np.linspace(-0.4, 0.4, 16), [0.3, 1.0, 1e6]))
+    repeat = np.repeat([0, 1, 2], len(speed))
+    speed, shunt = np.tile(speed, 3), np.tile(shunt, 3)
+    force = 3600 * speed / (1.2 + shunt) + 20 * speed
+    warm = 24 + 0.3 * random.standard_normal(len(speed))
+    keep = ~np.isin(np.arange(len(speed)), lost)
+    columns = {"velocity": speed[keep], "shunt": shunt[keep], "winding_T": warm[keep]}
+    read = (force + 1.8 * random.standard_normal(len(speed)))[keep]
+    return table({"force": read}, 1.8, repeat[keep], kind="damping_velocity", **columns), force[keep]
+
+
+@pytest.mark.parametrize("lost", [(), (5,), (5, 60, 61)])
+def test_a_lost_row_and_a_logged_temperature_do_not_inflate_the_noise(lost):
+    """Rows matched to the wrong station would show forces that differ by hundreds of newtons."""
+    one, _ = resistances(lost)
+    stack = stacked([one])
+    found = noise_of(stack).channels[0]  # of the readings themselves: no model levels the stations
+    assert 1.8 * found.scale == pytest.approx(1.8, rel=0.2)
+    assert found.pairs >= 2 * (48 - len(lost))
+
+
+def test_an_open_circuit_leaves_the_other_shunts_apart():
+    """1e6 ohm stands for open; 0.3 and 1 ohm stay two places, also where rows are lost."""
+    one, _ = resistances(lost=(48 + 7,))  # of the second repeat, at 0.3 ohm
+    stations = matched_rows(one)
+    shunts = one.conditions["shunt"][stations]
+    assert (shunts == shunts[:, :1]).all() and set(shunts[:, 0]) == {0.3, 1.0, 1e6}

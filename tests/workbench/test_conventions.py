@@ -1,0 +1,226 @@
+"""Ordinary mistakes of a laboratory are named as what they are, and a right campaign gets no convention."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.virtual_benches import damper_bench, dq_bench
+from benchmarks.virtual_benches.hiding import hide
+from benchmarks.virtual_benches.mistakes import MISTAKES, mistaken
+from tests.workbench.models.machine_case import drawn
+from workbench.data.campaign import read_campaign
+from workbench.data.conventions import NAMES, applied, fixes_of, section_text, with_conventions
+from workbench.data.table import Campaign, Response, Table
+from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
+from workbench.models.bases import nominal_model
+from workbench.models.machine.model import MachineBench
+from workbench.models.model import Model
+
+CATALOGUES = {"damper": damper_bench.CATALOGUE, "dq": dq_bench.CATALOGUE}
+HIDDEN = {"damper": ("single", ("coulomb_friction",)), "dq": ("single", ("friction_torque",))}
+SEED = 88005
+
+
+@pytest.fixture(scope="module")
+def right(tmp_path_factory) -> dict[str, Path]:
+    """Campaigns with a hidden friction and no mistake."""
+    folder = tmp_path_factory.mktemp("right")
+    return {
+        bench: hide(CATALOGUES[bench], group, SEED, names)[0].write(folder / bench)
+        for bench, (group, names) in HIDDEN.items()
+    }
+
+
+def settled(folder):
+    campaign = read_campaign(folder)
+    return settle(nominal_model(campaign), campaign, {})
+
+
+@pytest.mark.parametrize(
+    "bench, mistake", [pytest.param(b, m, id=f"{b}: {m.words}") for b in ("damper", "dq") for m in MISTAKES[b]]
+)
+def test_a_mistake_is_named(bench, mistake, right, tmp_path):
+    found = settled(mistaken(mistake, right[bench], tmp_path / "wrong"))
+    assert mistake.names[0] in found.names and set(found.names) <= set(mistake.names)
+
+
+@pytest.mark.parametrize("bench", CATALOGUES)
+def test_what_is_settled_may_be_written_down(bench, right, tmp_path):
+    """With the text in campaign.toml the campaign is read as repaired, and nothing is left to settle."""
+    folder = mistaken(MISTAKES[bench][0], right[bench], tmp_path / "wrong")
+    found = settled(folder)
+    with (folder / "campaign.toml").open("a", encoding="utf-8") as file:
+        file.write("\n" + found.fix)
+    again = read_campaign(folder)
+    for one, other in zip(again.tables, found.campaign.tables):
+        for name, response in one.responses.items():
+            np.testing.assert_allclose(response.values, other.responses[name].values, rtol=1e-9)
+    assert settle(nominal_model(again), again, {}).are_right
+
+
+@pytest.mark.parametrize("bench", CATALOGUES)
+@pytest.mark.parametrize("group, seed", [("null", 3), ("single", 4), ("single", 5), ("pair", 6)])
+def test_a_right_campaign_gets_none(bench, group, seed, tmp_path):
+    found = settled(hide(CATALOGUES[bench], group, 88100 + seed)[0].write(tmp_path / "right"))
+    assert found.are_right and found.fix == ""
+
+
+# ---- the machine, on a campaign of its own model --------------------------------------------------------------------
+
+DEVICE = {"slots": 12, "poles": 10}
+ANGLE = np.linspace(0, 2 * np.pi, 160, endpoint=False)
+
+
+@pytest.fixture(scope="module")
+def machine() -> Model:
+    """Fields of the drawing are solved once."""
+    base = MachineBench(cache=None).anywhere(drawn())
+
+    class Kept(type(base)):
+        def anywhere(self, design):
+            return self
+
+    return Model(Kept(base.surrogate, base.other), drawn())
+
+
+def emf_campaign(machine: Model, change=lambda table: table) -> Campaign:
+    zero = np.zeros(len(ANGLE), dtype=int)
+    table = Table("back_emf", "emf.csv", {"angle_mech": ANGLE, "speed": np.full(len(ANGLE), 100.0)}, {}, zero, zero,
+                  zero.astype(bool), condition_units={"angle_mech": "rad", "speed": "rad_per_s"})  # fmt: skip
+    names = ("v_a", "v_b", "v_c")
+    asked = replace(table, responses=dict.fromkeys(names))
+    answers = machine.answers(asked)
+    noise = np.random.default_rng(2).standard_normal((3, len(ANGLE))) * 0.01
+    weak = {n: 0.97 * answers[n] + e for n, e in zip(names, noise)}
+    responses = {n: Response(n, v, np.full(len(ANGLE), 0.01), "V") for n, v in weak.items()}
+    return Campaign("m", ".", DEVICE, (change(replace(table, responses=responses)),), (), (), 1, {})
+
+
+def with_voltages(change):
+    def of(table):
+        values = change(*(table.responses[n].values for n in ("v_a", "v_b", "v_c")))
+        found = {n: replace(r, values=v) for (n, r), v in zip(table.responses.items(), values)}
+        return replace(table, responses=found)
+
+    return of
+
+
+def with_angle(change):
+    return lambda table: replace(table, conditions={**table.conditions, "angle_mech": change(ANGLE)})
+
+
+@pytest.mark.parametrize(
+    "change, names",
+    [
+        (with_voltages(lambda a, b, c: (b, c, a)), ("swapped_phases", "angle_zero")),
+        (with_voltages(lambda a, b, c: (a, c, b)), ("swapped_phases",)),
+        (with_voltages(lambda a, b, c: (a, -b, c)), ("inverted_phase",)),
+        (with_voltages(lambda a, b, c: (2 * a, 2 * b, 2 * c)), ("unit_factor",)),
+        (with_voltages(lambda a, b, c: (a - b, b - c, c - a)), ("line_or_phase",)),
+        (with_angle(lambda angle: -angle), ("angle_direction",)),
+        (with_angle(lambda angle: angle * 180 / np.pi), ("unit_factor",)),
+        (with_angle(lambda angle: 5 * angle), ("electrical_or_mechanical",)),
+        (with_angle(lambda angle: angle + 0.25), ("angle_zero",)),
+    ],
+)
+def test_the_angle_and_the_phases_of_a_machine(machine, change, names):
+    found = settle(machine, emf_campaign(machine, change), {})
+    assert found.names[0] == names[0] and set(found.names) <= set(names)
+
+
+def test_a_right_machine_gets_none(machine):
+    assert settle(machine, emf_campaign(machine), {}).are_right
+
+
+# ---- the section of campaign.toml -----------------------------------------------------------------------------------
+
+
+def a_table() -> Campaign:
+    rows = np.arange(6.0)
+    zero = np.zeros(6, dtype=int)
+    responses = {n: Response(n, k + rows, np.ones(6), "mV", 1e-3) for k, n in enumerate(("v_a", "v_b", "v_c"))}
+    conditions = {"angle_mech": 0.1 * rows, "speed": 10 + rows}
+    table = Table("back_emf", "a.csv", conditions, responses, zero, zero, zero.astype(bool),
+                  condition_units={"angle_mech": "deg", "speed": "rpm"})  # fmt: skip
+    return Campaign("a", ".", DEVICE, (table,), (), (), 1, {})
+
+
+def read(entry):
+    return with_conventions(replace(a_table(), conventions={"a.csv": entry})).tables[0]
+
+
+def test_the_vocabulary():
+    before = a_table().tables[0]
+    v = {n: r.values for n, r in before.responses.items()}
+    rotated = read({"swap": [["v_a_mV", "v_b", "v_c"]]})
+    assert np.array_equal(rotated.responses["v_b"].values, v["v_a"])
+    assert np.array_equal(rotated.responses["v_a"].values, v["v_c"])
+    assert np.array_equal(read({"invert": ["v_a"]}).responses["v_a"].values, -v["v_a"])
+    doubled = read({"factor": {"v_a": 2.0}}).responses["v_a"]
+    assert np.array_equal(doubled.values, 2 * v["v_a"]) and np.all(doubled.random == 2.0)
+    np.testing.assert_allclose(read({"offset": {"v_a_mV": 500.0}}).responses["v_a"].values, v["v_a"] - 0.5)
+    np.testing.assert_allclose(read({"angle": "electrical"}).conditions["angle_mech"], 0.02 * np.arange(6))
+    turned = read({"angle_direction": -1, "angle_zero_deg": 180.0})
+    np.testing.assert_allclose(turned.conditions["angle_mech"], -0.1 * np.arange(6) - np.pi)
+    assert np.array_equal(turned.conditions["speed"], -before.conditions["speed"])
+    late = read({"shift": {"v_a": 1}})
+    assert late.rows == 5 and np.array_equal(late.responses["v_a"].values, v["v_a"][1:])
+    assert set(read({"voltages": "line"}).responses) == {"v_ab", "v_bc", "v_ca"}
+    assert set(read({"ignore": ["v_b"]}).responses) == {"v_a", "v_c"}
+    assert read({"leave_out": {"v_a_mV": 2000.0}}).rows == 5
+
+
+@pytest.mark.parametrize(
+    "entry, words",
+    [
+        ({"turn": 1}, "is not known"),
+        ({"invert": ["v_x"]}, "no column 'v_x'"),
+        ({"factor": {"v_a": "two"}}, "a number is needed"),
+        ({"factor": {"v_a": 0}}, "leaves nothing"),
+        ({"swap": [["v_a", "v_a"]]}, "two different columns"),
+        ({"swap": 3}, "cannot be read"),
+        ({"angle": "grads"}, "is not known here"),
+        ({"angle_direction": 2}, "-1 for clockwise"),
+        ({"shift": {"v_a": 9}}, "whole number of rows"),
+        ({"voltages": "delta"}, 'only "line"'),
+        ({"ignore": ["v_a", "v_b", "v_c"]}, "leaves no reading"),
+        ("invert", "write a table of keys"),
+    ],
+)
+def test_what_cannot_be_read_is_one_sentence(entry, words):
+    with pytest.raises(WorkbenchError, match=words):
+        read(entry)
+
+
+def test_a_file_that_is_not_there():
+    with pytest.raises(WorkbenchError, match="no file of this campaign"):
+        with_conventions(replace(a_table(), conventions={"b.csv": {}}))
+
+
+def test_line_voltages_are_answered(machine):
+    """A table with columns v_ab, v_bc, v_ca needs no convention."""
+    campaign = emf_campaign(machine)
+    line = {"v_ab": ("v_a", "v_b"), "v_bc": ("v_b", "v_c"), "v_ca": ("v_c", "v_a")}
+    table = campaign.tables[0]
+    responses = {
+        n: Response(n, table.responses[p].values - table.responses[m].values, np.full(len(ANGLE), 0.015), "V")
+        for n, (p, m) in line.items()
+    }
+    wired = replace(campaign, tables=(replace(table, responses=responses),))
+    assert settle(machine, wired, {}).are_right
+
+
+def test_every_name_is_documented():
+    named = {name for bench in MISTAKES.values() for mistake in bench for name in mistake.names}
+    assert named <= set(NAMES)
+
+
+def test_the_text_names_what_was_found():
+    campaign = a_table()
+    entry = {"swap": [["v_a", "v_b"]], "factor": {"v_c": 0.5}, "angle": "electrical"}
+    fixes = fixes_of(replace(campaign, conventions={"a.csv": entry}))
+    assert section_text({"a.csv": entry}).startswith('[conventions]\n"a.csv" = {')
+    assert len(applied(campaign, fixes).tables) == 1 and len(fixes) == 3

@@ -1,0 +1,249 @@
+"""Sets of effects that explain readings, by linear algebra alone: every effect beside nothing, then every other effect
+beside each of the sets that lead, up to four at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import fsum, log, log1p
+
+import numpy as np
+from scipy.special import logsumexp
+
+from effects.base import Effect
+from workbench.believed import MOST, UNKNOWN_RATE
+from workbench.likelihood.marginal import Catalogue, Readings
+
+LEADERS = (1, 8, 6, 4)  # sets of none, one, two and three effects that are looked at with one effect more
+
+
+@dataclass(frozen=True)
+class Beliefs:
+    """Prior shares, from the base rates of the effects. excluded: pairs of which one is a special case of the other"""
+
+    log_odds: Mapping[str, float]
+    excluded: frozenset[frozenset[str]]
+
+    @property
+    def log_nothing(self) -> float:
+        """ln prior of the campaign that hides nothing, up to what all explanations share: the odds count from it."""
+        return 0.0
+
+    @property
+    def log_unknown(self) -> float:
+        """ln odds of an unknown function."""
+        return log(UNKNOWN_RATE) - log1p(-UNKNOWN_RATE)
+
+    def log_prior(self, names: frozenset[str]) -> float:
+        """ln odds of a set of effects over nothing."""
+        return fsum(self.log_odds[name] for name in names)  # the same in whatever order a set has
+
+    def may_join(self, name: str, names: frozenset[str]) -> bool:
+        return name not in names and not any(frozenset((name, other)) in self.excluded for other in names)
+
+
+def beliefs_of(library: Mapping[str, type[Effect]], names: Iterator[str] | tuple[str, ...]) -> Beliefs:
+    """The prior shares of effects of a library."""
+    chosen = tuple(names)
+    odds = {name: log(library[name].base_rate) - log1p(-library[name].base_rate) for name in chosen}
+    pairs = {frozenset((name, other)) for name in chosen for other in library[name].contains if other != name}
+    return Beliefs(odds, frozenset(pairs))
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A set of effects by linear algebra.
+
+    terms: numbers of the terms it is made of;  gain: ln p over nothing, forms and places averaged [nats]
+    forms: of that, what the other forms of the effects than those of the terms make [nats]
+    """
+
+    names: frozenset[str]
+    terms: tuple[int, ...]
+    gain: float
+    forms: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Extension:
+    """One effect more. gain: ln p it adds, forms and places averaged [nats];  term: number of its most probable term
+
+    forms: ln p of all forms over that of the form of the term alone [nats], at least minus ln of their number
+    """
+
+    name: str
+    gain: float
+    term: int
+    forms: float
+
+
+@dataclass(frozen=True, eq=False)
+class Names:
+    """Which terms of a catalogue belong to which effect; those of one effect stand together."""
+
+    catalogue: Catalogue
+
+    @cached_property
+    def order(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(term.name for term in self.catalogue.terms))
+
+    @cached_property
+    def starts(self) -> np.ndarray:
+        names = [term.name for term in self.catalogue.terms]
+        return np.array([names.index(name) for name in self.order], dtype=int)
+
+    @cached_property
+    def priors(self) -> np.ndarray:
+        return np.array([term.log_prior for term in self.catalogue.terms])
+
+    def extensions(self, gains: np.ndarray) -> list[Extension]:
+        """Every effect beside an explanation. gains: of all terms (terms,) [nats]"""
+        if not self.order:
+            return []
+        scores = gains + self.priors
+        sums = np.logaddexp.reduceat(scores, self.starts)
+        ends = [*self.starts[1:], len(scores)]
+        best = [start + int(np.argmax(scores[start:end])) for start, end in zip(self.starts, ends)]
+        forms = [float(s) - self._of_form(scores, b) for s, b in zip(sums, best)]
+        return [Extension(name, float(s), b, f) for name, s, b, f in zip(self.order, sums, best, forms)]
+
+    def _of_form(self, scores: np.ndarray, best: int) -> float:
+        """ln p of the form of a term if it were the only one."""
+        first, last = self.ranges[self.forms[best]]
+        return float(np.logaddexp.reduce(scores[first:last])) - self.of_forms[self.forms[best]]
+
+    @cached_property
+    def ranges(self) -> list[tuple[int, int]]:
+        """First and one past the last term of every form."""
+        edges = np.flatnonzero(np.diff(self.forms, prepend=-1, append=-1))
+        return [(int(a), int(b)) for a, b in zip(edges, edges[1:])]
+
+    @cached_property
+    def of_forms(self) -> list[float]:
+        """ln prior share of every form."""
+        return [float(np.logaddexp.reduce(self.priors[a:b])) for a, b in self.ranges]
+
+    @cached_property
+    def forms(self) -> np.ndarray:
+        """Number of the form that every term is of."""
+        keys = [(term.name, term.variant) for term in self.catalogue.terms]
+        numbers = {key: k for k, key in enumerate(dict.fromkeys(keys))}
+        return np.array([numbers[key] for key in keys])
+
+
+def explored(
+    names: Names,
+    readings: Readings,
+    beliefs: Beliefs,
+    already: frozenset[str] = frozenset(),
+    most: int = MOST,
+    first: np.ndarray | None = None,
+    beam: tuple[int, ...] = LEADERS,
+) -> dict[frozenset[str], Explanation]:
+    """Sets of effects that were looked at, those without any first.
+
+    already: effects that the background has;  most: effects at once, those included
+    first: gains of all terms beside nothing, where they are known (terms,) [nats]
+    beam: sets of none, one, two ... effects that are looked at with one effect more
+    """
+    found = {frozenset[str](): Explanation(frozenset(), (), 0.0)}
+    edge = [found[frozenset()]]
+    for depth in range(most - len(already)):
+        leaders = sorted(edge, key=lambda e: -(e.gain + beliefs.log_prior(e.names)))[: beam[depth]]
+        edge = []
+        for leader in leaders:
+            known = first is not None and not leader.terms
+            gains = first if known else names.catalogue.given(leader.terms, readings).gains()
+            for extension in names.extensions(gains):
+                if not beliefs.may_join(extension.name, leader.names | already):
+                    continue
+                one_more = leader.names | {extension.name}
+                gain = leader.gain + extension.gain
+                if one_more not in found or found[one_more].gain < gain:
+                    forms = leader.forms + extension.forms
+                    found[one_more] = Explanation(one_more, leader.terms + (extension.term,), gain, forms)
+                    edge.append(found[one_more])
+    return found
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Probabilities of all explanations: of sets of effects alone, and of the same beside an unknown function.
+
+    They add up to one. What is printed is one of ``nothing``, ``of``, ``any_of``, ``all_of``, ``remains``.
+    """
+
+    alone: Mapping[frozenset[str], float]
+    beside: Mapping[frozenset[str], float]
+
+    @property
+    def nothing(self) -> float:
+        """P(no effect and no unknown function)."""
+        return self.alone.get(frozenset(), 0.0)
+
+    @property
+    def remains(self) -> float:
+        """P(something is there that no effect of the library is), with or without effects."""
+        return _share(self.beside.values())
+
+    @property
+    def none_of_these(self) -> float:
+        """P(an unknown function and no effect of the library)."""
+        return self.beside.get(frozenset(), 0.0)
+
+    @cached_property
+    def sets(self) -> dict[frozenset[str], float]:
+        """Probability of every set of effects, whatever else is there."""
+        found = dict(self.alone)
+        for names, p in self.beside.items():
+            found[names] = found.get(names, 0.0) + p
+        return found
+
+    def of(self, name: str) -> float:
+        """P(the effect is there)."""
+        return min(self._each.get(name, 0.0), 1.0)
+
+    @cached_property
+    def _each(self) -> dict[str, float]:
+        found: dict[str, float] = {}
+        for names, p in self.sets.items():
+            for name in names:
+                found[name] = found.get(name, 0.0) + p
+        return found
+
+    def any_of(self, names: frozenset[str]) -> float:
+        """P(at least one of the effects is there)."""
+        return _share(p for have, p in self.sets.items() if have & names)
+
+    def all_of(self, groups: tuple[frozenset[str], ...]) -> float:
+        """P(at least one effect of every group is there)."""
+        return _share(p for have, p in self.sets.items() if all(have & group for group in groups))
+
+    @property
+    def leading(self) -> frozenset[str]:
+        """The most probable set of effects."""
+        return max(self.sets, key=lambda names: (self.sets[names], -len(names), sorted(names)), default=frozenset())
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """All effects, most probable first."""
+        return tuple(sorted(sorted(self._each), key=lambda name: -self.of(name)))
+
+
+def _share(shares: Iterable[float]) -> float:
+    """Their sum, which rounding must not carry beyond one."""
+    return min(sum(shares), 1.0)
+
+
+def posterior(
+    alone: Mapping[frozenset[str], float], beside: Mapping[frozenset[str], float], beliefs: Beliefs
+) -> Posterior:
+    """Probabilities from ln evidences, on one scale, of sets alone and beside an unknown function."""
+    logs = [v + beliefs.log_prior(n) for n, v in alone.items()]
+    more = [v + beliefs.log_prior(n) + beliefs.log_unknown for n, v in beside.items()]
+    total = logsumexp(logs + more)
+    return Posterior(
+        {n: float(np.exp(v - total)) for n, v in zip(alone, logs)},
+        {n: float(np.exp(v - total)) for n, v in zip(beside, more)},
+    )

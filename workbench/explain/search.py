@@ -1,0 +1,305 @@
+"""The search for what is missing: linear algebra promises, fits of the model itself decide, best first.
+
+Sets of up to four effects are looked at beside every set that was fitted, at its own slopes and with the errors of its
+laws. A set is fitted when what it promises is within reach of the best that was fitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from heapq import heappop, heappush
+from math import log
+
+import numpy as np
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.believed import MOST
+from workbench.errors import WorkbenchError
+from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, beliefs_of, explored, posterior
+from workbench.explain.hypotheses import (
+    Beside,
+    Hypothesis,
+    at_zero,
+    beside_unknown,
+    exact,
+    fitted_from,
+    null_of,
+)
+from workbench.likelihood.bench import Bench
+from workbench.likelihood.fit import FAR, misfit
+from workbench.likelihood.marginal import Readings
+from workbench.likelihood.signatures import Signatures, candidates, signatures_of
+from workbench.likelihood.unknown import Shape, shapes_of
+
+FITS = 40  # fits of sets of effects at most
+LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
+REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
+SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
+EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
+BESIDE = 4  # sets that are looked at beside an unknown function
+
+Progress = Callable[[str], None]
+Set = frozenset[str]
+
+
+@dataclass(order=True)
+class Promise:
+    """A set that could be fitted, by linear algebra beside a fit. order: minus ln of its promised posterior"""
+
+    order: float
+    label: str
+    parent: Hypothesis = field(compare=False)
+    names: Names = field(compare=False)
+    readings: Readings = field(compare=False)
+    found: Explanation = field(compare=False)
+
+    @property
+    def every(self) -> Set:
+        return self.parent.names | self.found.names
+
+    def start(self, signatures: Signatures) -> tuple[tuple[Effect, ...], np.ndarray, np.ndarray]:
+        """Null effects, nuisances and parameters where a fit of it begins."""
+        fit, m = self.parent.fit, len(self.parent.fit.x)
+        weights = self.names.catalogue.given(self.found.terms, self.readings).weights
+        effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
+        place = self.names.catalogue.background.shape[1]
+        for term in (self.names.catalogue.terms[t] for t in self.found.terms):
+            signature = signatures.found[term.name][term.variant]
+            count = len(parameters_of(signature.effect))
+            effects.append(signature.effect)
+            z.append(signature.at(term.place, np.clip(weights[place : place + count], -2.0, 2.0)))
+            place += count
+        return tuple(effects), np.clip(weights[:m], -FAR, FAR), np.concatenate(z)
+
+
+@dataclass(eq=False)
+class Search:
+    """All that was tried. fitted: by set of names;  forms: what other forms of the effects add to ln evidence
+
+    guessed: ln evidence of sets that promised too little to be fitted;  beside: sets beside an unknown function
+    guessed_beside: ln evidence of such sets that were not fitted
+    """
+
+    bench: Bench
+    signatures: Signatures
+    beliefs: Beliefs
+    shapes: tuple[Shape, ...]
+    fitted: dict[Set, Hypothesis]
+    forms: dict[Set, float] = field(default_factory=dict)
+    guessed: dict[Set, float] = field(default_factory=dict)
+    beside: dict[Set, Beside] = field(default_factory=dict)
+    guessed_beside: dict[Set, float] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)
+
+    def log_evidence(self, names: Set) -> float:
+        """Of a set that was fitted, all its forms together [nats]."""
+        return self.fitted[names].log_evidence + self.forms.get(names, 0.0)
+
+    def log_posterior(self, names: Set) -> float:
+        """Up to what all share [nats]."""
+        return self.log_evidence(names) + self.beliefs.log_prior(names)
+
+    @property
+    def ranked(self) -> list[Set]:
+        """Sets that were fitted, most probable first."""
+        return sorted(self.fitted, key=lambda names: -self.log_posterior(names))
+
+    @property
+    def unknown(self) -> np.ndarray:
+        """Expected unknown function beside nothing, of the uncertainty of the rows to fit (n,); zero where none is
+        seen."""
+        out = np.zeros(self.bench.fit.stack.size)
+        found = self.beside.get(frozenset())
+        for s, function in zip(found.leading, found.functions) if found is not None else ():
+            out[s.shape.rows] += function
+        return out / self.bench.fit.white.sigma
+
+    @property
+    def posterior(self) -> Posterior:
+        """Probabilities of everything that was fitted or guessed."""
+        alone = {**self.guessed, **{names: self.log_evidence(names) for names in self.fitted}}
+        beside = {n: b.log_evidence + self.forms.get(n, 0.0) for n, b in self.beside.items()}
+        return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
+
+
+def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None) -> Search:
+    """Tries every effect of a library, alone and with others, and unknown functions."""
+    signatures = signatures_of(bench, candidates(bench, library), progress)
+    beliefs = beliefs_of(library, signatures.names)
+    shapes = shapes_of(bench.fit.stack, bench.fit.white)
+    search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
+    _best_first(search, progress)
+    less_one(search, progress)
+    _exactly(search, progress)
+    _beside_unknown(search, progress)
+    return search
+
+
+def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypothesis:
+    """The fit of the one effect that the signatures are of.
+
+    Raises:
+        WorkbenchError: the model has no answer with it.
+    """
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench)})
+    heap: list[Promise] = []
+    _expand(search, search.fitted[frozenset()], heap)
+    if not (heap and _fit(search, heap[0])):
+        raise WorkbenchError(next(iter(search.failed.values()), "no answer"))
+    _exactly(search, lambda words: None)
+    return search.fitted[heap[0].every]
+
+
+def _best_first(search: Search, progress: Progress) -> None:
+    heap: list[Promise] = []
+    _expand(search, search.fitted[frozenset()], heap)
+    while heap and len(search.fitted) <= FITS:
+        promise = heappop(heap)
+        if promise.every in search.fitted or _label(promise.every) in search.failed:
+            continue
+        within = -promise.order >= search.log_posterior(search.ranked[0]) - REACH
+        if not within and len(search.fitted) > LEAST_FITS:
+            break
+        progress("fitting " + promise.label)
+        if _fit(search, promise) and len(promise.every) < MOST:
+            _expand(search, search.fitted[promise.every], heap)
+
+
+def less_one(search: Search, progress: Progress) -> None:
+    """What leads is weighed against itself without each of its effects, fitted from where it ended: a promise beside
+    a null whose tolerances were pulled far may have hidden them. Until such a leader is found."""
+    tried: set[Set] = set()
+    while (leader := search.ranked[0]) not in tried:
+        tried.add(leader)
+        for names in (leader - {name} for name in sorted(leader)):
+            if names not in search.fitted:
+                progress("fitting " + _label(names))
+                _fit_part(search, search.fitted[leader], names)
+
+
+def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
+    """Fits some of the effects of a fit, from where it ended; only the forms that it has count."""
+    parts, place = [], 0
+    for effect in whole.fit.effects:
+        count = len(parameters_of(effect))
+        parts.append((effect, whole.fit.z[place : place + count]))
+        place += count
+    kept = [(effect, z) for effect, z in parts if effect.name() in names]
+    try:
+        found = fitted_from(search.bench, [e for e, _ in kept], whole.fit.x, np.concatenate([z for _, z in kept]))
+    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
+        search.failed[_label(names)] = str(error)
+        return
+    search.fitted[names] = found
+    search.forms[names] = -sum(log(len(search.signatures.found[name])) for name in sorted(names))
+    search.guessed.pop(names, None)
+
+
+def _label(names: Set) -> str:
+    return " with ".join(sorted(names))
+
+
+def _fit(search: Search, promise: Promise) -> bool:
+    """Fits a set; False where the model has no answer. A guess of it is replaced."""
+    every = promise.every
+    try:
+        found = fitted_from(search.bench, *promise.start(search.signatures))
+    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
+        search.failed[promise.label] = str(error)
+        search.guessed.pop(every, None)
+        return False
+    search.fitted[every] = found
+    search.forms[every] = search.forms.get(promise.parent.names, 0.0) + promise.found.forms
+    search.guessed.pop(every, None)
+    return True
+
+
+def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
+    """Promises of one or two effects more beside a fit."""
+    have = hypothesis.names
+    names = Names(search.signatures.catalogue(hypothesis.fit.jacobian, hypothesis.problem.white, have))
+    readings = names.catalogue.readings(at_zero(hypothesis)[:, None])[0]
+    for found in explored(names, readings, search.beliefs, have, min(len(have) + 2, MOST)).values():
+        every = have | found.names
+        if not found.names or every in search.fitted:
+            continue
+        gain = student_gain(hypothesis, found.gain)
+        estimate = search.log_evidence(have) + gain
+        promised = estimate + SLACK * max(gain, 0.0) + search.beliefs.log_prior(every)
+        search.guessed[every] = max(search.guessed.get(every, -np.inf), estimate)
+        heappush(heap, Promise(-promised, _label(every), hypothesis, names, readings, found))
+
+
+def student_gain(hypothesis: Hypothesis, gain: float) -> float:
+    """A Gaussian gain of ln p in the likelihood of the fits [nats]: what pulled tolerances cost comes back as it is,
+    the rest is taken from the channels that fit worst."""
+    problem, x = hypothesis.problem, hypothesis.fit.x
+    squares, sizes = problem.squares(hypothesis.fit.residual), problem.sizes
+    excess = np.maximum(squares - sizes, 0.0)
+    pulls = 0.5 * float(x @ x)
+    left = gain - pulls
+    if left <= 0 or excess.sum() == 0:
+        return gain
+    fall = np.minimum(2 * left * excess / excess.sum(), excess)
+    return pulls + min(left, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
+
+
+def _exactly(search: Search, progress: Progress) -> None:
+    """The leaders again with a base model that is exact where they ended, until the leader is one of these."""
+    done: set[Set] = {frozenset()}
+    for _ in range(EXACT):
+        leader = next((names for names in search.ranked[:2] if names not in done), None)
+        if leader is None or not search.bench.model.base.is_expansion:
+            break
+        progress("field solutions for " + _label(leader))
+        search.fitted[leader] = exact(search.fitted[leader])
+        done.add(leader)
+
+
+def _beside_unknown(search: Search, progress: Progress) -> None:
+    """Unknown functions beside nothing and beside the leaders, and effects beside the best of these."""
+    progress("unknown functions")
+    for names in dict.fromkeys([*search.ranked[:BESIDE], frozenset()]):
+        found = beside_unknown(search.fitted[names], search.shapes)
+        if found is not None:
+            search.beside[names] = found
+    if not search.beside:
+        return
+    heap: list[Promise] = []
+    _effects_beside(search, search.beside[frozenset()], heap)
+    leader = max(search.beside, key=lambda n: search.beside[n].log_evidence + search.beliefs.log_prior(n))
+    if leader:
+        _effects_beside(search, search.beside[leader], heap)
+    for promise in [heappop(heap) for _ in range(min(BESIDE, len(heap)))]:
+        _fit_beside(search, promise)
+
+
+def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None:
+    """What one effect more would gain beside an unknown function."""
+    hypothesis = beside.hypothesis
+    have = hypothesis.names
+    if len(have) == MOST:
+        return
+    background = np.hstack([hypothesis.fit.jacobian, beside.columns()])
+    names = Names(search.signatures.catalogue(background, hypothesis.problem.white, have))
+    readings = names.catalogue.readings(at_zero(hypothesis)[:, None])[0]
+    for found in explored(names, readings, search.beliefs, have, len(have) + 1).values():
+        every = have | found.names
+        if found.names and every not in search.beside:
+            gain = beside.log_evidence + search.forms.get(have, 0.0) + student_gain(hypothesis, found.gain)
+            search.guessed_beside[every] = max(gain, search.guessed_beside.get(every, -np.inf))
+            order = -(gain + search.beliefs.log_prior(every))
+            heappush(heap, Promise(order, _label(every), hypothesis, names, readings, found))
+
+
+def _fit_beside(search: Search, promise: Promise) -> None:
+    """A set beside an unknown function, fitted where the set was not."""
+    every = promise.every
+    if every in search.beside or (every not in search.fitted and not _fit(search, promise)):
+        return
+    found = beside_unknown(search.fitted[every], search.shapes)
+    if found is not None:
+        search.beside[every] = found
+        search.guessed_beside.pop(every, None)

@@ -1,0 +1,362 @@
+"""A device as it is known from elsewhere, applied to new readings: nothing of it is fitted again.
+
+    reading = f(p, c) + e,   p ~ N(p_file, covariance of the file),   c ~ N(0, 1) calibrations of the new instruments
+
+Only c moves, to its most probable value with p where it is. With derivatives A over p (in its standard deviations) and
+B over c, both over the noise, that is linear in the readings:
+
+    c = K (r + B c_0),   K = (1 + B^T B)^-1 B^T
+
+so that a prediction errs by (A - B K A) p from what is not known exactly, by B (1 + B^T B)^-1 B^T from the calibration,
+by what the model left unexplained where it was learned, and the reading by its noise. What an error of p does that a
+calibration can do as well is taken up by the calibration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.data.stack import Channel, Stack, rows_of, stacked
+from workbench.data.table import Table
+from workbench.errors import WorkbenchError
+from workbench.ledger.learned import FittedInput, Learned, LearnedRange
+from workbench.likelihood.bench import CONDITION_STEP
+from workbench.likelihood.noise import Noise, Whitener, measured_noise, whitener
+from workbench.likelihood.nuisance import Nuisance
+from workbench.likelihood.predictor import STEP
+from workbench.models.model import Model
+
+ROUNDS = 6  # of finding the calibrations; gains and offsets act almost linearly, two or three are needed
+SETTLED = 0.01  # standard deviations by which a calibration still moves
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """nominal: the device as drawn, without effects, its base ready for the rows that are asked
+
+    inputs, effects: as known;  weights: of the shapes of the model's own numerical error
+    covariance: of shifts of inputs, parameters of effects (k of them together), then weights, SI (k + L, k + L)
+    ranges: where it was learned, with what was left unexplained there
+    """
+
+    nominal: Model
+    inputs: tuple[FittedInput, ...]
+    effects: tuple[Effect, ...]
+    weights: np.ndarray
+    covariance: np.ndarray
+    ranges: tuple[LearnedRange, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Numbers that the model is made of, k."""
+        return len(self.inputs) + sum(len(parameters_of(effect)) for effect in self.effects)
+
+    def model_at(self, step: np.ndarray) -> Model:
+        """The model with inputs and parameters of effects moved by a step from what is known, SI (k,)."""
+        design = self.nominal.design
+        for x, move in zip(self.inputs, step):
+            z = (x.shift + move) / x.tolerance.sigma
+            design = self.nominal.base.with_tolerance(design, x.tolerance, z) if z else design
+        return replace(self.nominal, design=design, effects=self._moved(step[len(self.inputs) :]))
+
+    def _moved(self, step: np.ndarray) -> tuple[Effect, ...]:
+        moved, place = [], 0
+        for effect in self.effects:
+            names = list(parameters_of(effect))
+            values = {name: getattr(effect, name) + step[place + k] for k, name in enumerate(names)}
+            moved.append(replace(effect, **values) if any(step[place : place + len(names)]) else effect)
+            place += len(names)
+        return tuple(moved)
+
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """A small step of each number, on the side that its bounds allow, SI (k,)."""
+        steps = STEP * np.sqrt(np.diag(self.covariance)[: self.size])
+        bounds = [(getattr(e, n), p) for e in self.effects for n, p in parameters_of(e).items()]
+        for k, (value, p) in enumerate(bounds, len(self.inputs)):
+            steps[k] *= 1.0 if value + steps[k] <= p.high else -1.0
+        return steps
+
+    def with_weights(self, count: int) -> Known:
+        """The same with at least so many weights, those that nothing is known of as uncertain as before anything."""
+        new = max(count - len(self.weights), 0)
+        covariance = block_diag(self.covariance, np.eye(new)) if new else self.covariance
+        return replace(self, weights=np.append(self.weights, np.zeros(new)), covariance=covariance)
+
+    def unexplained(self, kind: str, response: str) -> float:
+        """Rms residual beyond the noise to expect of a response, SI: what was left where it was learned; for a kind
+        that was not, the most of all kinds with that response."""
+        same = [r for r in self.ranges if r.response == response]
+        return max((r.unexplained for r in [r for r in same if r.kind == kind] or same), default=0.0)
+
+    def exact(self) -> Known:
+        """The same with a base that is exact at this device, for one that answers by an expansion."""
+        if not self.nominal.base.is_expansion:
+            return self
+        design = self.model_at(np.zeros(self.size)).design_as_built
+        return replace(self, nominal=replace(self.nominal, base=self.nominal.base.recentred(design)))
+
+
+def corrected(learned: Learned, nominal: Model) -> Known:
+    """The device with all that a model file knows of it."""
+    own = np.r_[: len(learned.inputs), len(learned.inputs) + len(learned.calibrations) : len(learned.names)]
+    covariance = learned.covariance[np.ix_(own, own)]
+    ranges = learned.source.ranges if learned.source else ()
+    return Known(nominal, learned.inputs, learned.effects, np.array(learned.weights), covariance, ranges)
+
+
+def as_drawn(learned: Learned, nominal: Model) -> Known:
+    """The device as drawn: inputs at their nominal values, as uncertain as they were declared, no effects."""
+    inputs = tuple(replace(x, shift=0.0) for x in learned.inputs)
+    return Known(nominal, inputs, (), np.zeros(0), np.diag([x.tolerance.sigma**2 for x in inputs]))
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Of every row of a stack; NaN where the model has no steady state (n,).
+
+    reading: most probable;  sd: standard deviation of reading minus prediction;  whitened: residual over its noise, of
+    size and correlation as measured from repeats
+    calibration: of the new instruments, standard normal numbers (m,)
+    """
+
+    stack: Stack
+    reading: np.ndarray
+    sd: np.ndarray
+    whitened: np.ndarray
+    calibration: np.ndarray
+
+    def on(self, stack: Stack, kept: np.ndarray) -> Prediction:
+        """The same for a stack of which only some rows were predicted (n,)."""
+        reading, sd, whitened = (_filled(kept, values) for values in (self.reading, self.sd, self.whitened))
+        return Prediction(stack, reading, sd, whitened, self.calibration)
+
+
+def predicted(known: Known, calibrations: Sequence[Nuisance], tables: Sequence[Table]) -> Prediction:
+    """What a known device should show in some tables, the instruments' own calibration found from them."""
+    stack, c = stacked(tables), np.zeros(len(calibrations))
+    shapes = _numerical(known.nominal, stack)
+    asked = _Asked(known.with_weights(shapes.shape[1]), tuple(calibrations))
+    masks = _whole_rows(stack, np.isfinite(readings(asked.model_at(np.zeros(known.size), c), stack)))
+    part = _part(stack, masks)
+    around = asked.around(part, c)
+    for _ in range(ROUNDS):
+        c, before = around.calibrated(c), c
+        around = asked.around(part, c)
+        if np.abs(c - before).max(initial=0.0) < SETTLED:
+            break
+    return around.prediction(c).on(stack, _kept(stack, masks))
+
+
+def _whole_rows(stack: Stack, answered: np.ndarray) -> list[np.ndarray]:
+    """Mask of the rows of each table in which all channels have an answer."""
+    masks = [np.ones(table.rows, dtype=bool) for table in stack.tables]
+    for channel in stack.channels:
+        masks[channel.table] &= answered[channel.rows]
+    return masks
+
+
+def _kept(stack: Stack, masks: Sequence[np.ndarray]) -> np.ndarray:
+    """The masks of tables for the rows of the stack (n,)."""
+    return np.concatenate([masks[c.table] for c in stack.channels])
+
+
+def _part(stack: Stack, masks: Sequence[np.ndarray]) -> Stack:
+    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, masks)])
+    return replace(part, u=stack.u[_kept(stack, masks)])
+
+
+def _filled(kept: np.ndarray, values: np.ndarray) -> np.ndarray:
+    whole = np.full(len(kept), np.nan)
+    whole[kept] = values
+    return whole
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A known device at the new instruments."""
+
+    known: Known
+    calibrations: tuple[Nuisance, ...]
+
+    def model_at(self, step: np.ndarray, c: np.ndarray) -> Model:
+        model = self.known.model_at(step)
+        for nuisance, z in zip(self.calibrations, c):
+            model = nuisance.apply(model, z)
+        return model
+
+    def around(self, stack: Stack, c: np.ndarray) -> _Around:
+        """The prediction at some calibration, with its derivatives."""
+        none, shapes = np.zeros(self.known.size), self._shapes(stack)
+        base = readings(self.model_at(none, c), stack)
+        at_p = lambda move: readings(self.model_at(move, c), stack)  # noqa: E731
+        at_c = lambda move: readings(self.model_at(none, c + move), stack)  # noqa: E731
+        over_p = [_slope(at_p, base, direction, s) for direction, s in zip(np.eye(len(none)), self.known.steps)]
+        over_c = [_slope(at_c, base, direction, STEP) for direction in np.eye(len(c))]
+        u = _with_conditions(self.model_at(none, c), stack, base)
+        p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
+        left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
+        unexplained = np.repeat(left, [c.size for c in stack.channels])
+        columns = np.column_stack([p, *over_c])
+        return _Around(replace(stack, u=u), base + shapes @ self.known.weights, columns, len(c), unexplained)
+
+    def _shapes(self, stack: Stack) -> np.ndarray:
+        found = _numerical(self.known.nominal, stack)
+        return np.column_stack([found, np.zeros((stack.size, len(self.known.weights) - found.shape[1]))])
+
+
+@dataclass(frozen=True, eq=False)
+class _Around:
+    """Prediction at some calibration and its derivatives over standard normal numbers: those of what is known, its
+    numerical error among them, then the m calibrations."""
+
+    stack: Stack
+    base: np.ndarray
+    columns: np.ndarray
+    m: int
+    unexplained: np.ndarray
+
+    @cached_property
+    def answered(self) -> np.ndarray:
+        """True where the model has an answer, there and a small step away (n,)."""
+        return np.isfinite(self.base) & np.isfinite(self.columns).all(axis=1) & np.isfinite(self.stack.u)
+
+    @cached_property
+    def rows(self) -> list[np.ndarray]:
+        """Mask of the rows of each table that are used."""
+        return _whole_rows(self.stack, self.answered)
+
+    @cached_property
+    def kept(self) -> np.ndarray:
+        return _kept(self.stack, self.rows)
+
+    @cached_property
+    def part(self) -> Stack:
+        return _part(self.stack, self.rows)
+
+    @cached_property
+    def noise(self) -> Noise:
+        return measured_noise(self.part, self.base[self.kept])
+
+    @cached_property
+    def white(self) -> Whitener:
+        return whitener(self.part, self.noise)
+
+    @cached_property
+    def noise_variance(self) -> np.ndarray:
+        """Of a reading: its own, and what its scan as a whole may be off by (n,)."""
+        of_scans = [2 * c.scans**2 for c in self.noise.channels]  # an offset and a slope, each of rms 1
+        return self.white.sigma**2 * (1 + np.repeat(of_scans, [c.size for c in self.part.channels]))
+
+    @cached_property
+    def residual(self) -> np.ndarray:
+        return self.part.y - self.base[self.kept]
+
+    @cached_property
+    def split(self) -> tuple[np.ndarray, np.ndarray]:
+        """A of what is known (n, k) and B of the calibrations (n, m)."""
+        columns = self.columns[self.kept]
+        return columns[:, : columns.shape[1] - self.m], columns[:, columns.shape[1] - self.m :]
+
+    @cached_property
+    def posterior(self) -> np.ndarray:
+        """Covariance of the calibrations given the readings (m, m)."""
+        over_c = self.white(self.split[1])
+        return np.linalg.inv(np.eye(self.m) + over_c.T @ over_c)
+
+    def calibrated(self, c: np.ndarray) -> np.ndarray:
+        """The most probable calibrations; c: where the derivatives were taken (m,)."""
+        over_c = self.white(self.split[1])
+        return self.posterior @ over_c.T @ (self.white(self.residual) + over_c @ c)
+
+    def prediction(self, c: np.ndarray) -> Prediction:
+        over_p, over_c = self.split
+        taken_up = self.posterior @ self.white(over_c).T @ self.white(over_p)
+        left = over_p - over_c @ taken_up
+        of_calibration = ((over_c @ self.posterior) * over_c).sum(axis=1)
+        variance = (left**2).sum(axis=1) + of_calibration + self.unexplained[self.kept] ** 2 + self.noise_variance
+        whole = Prediction(self.part, self.base[self.kept], np.sqrt(variance), self.white(self.residual), c)
+        return whole.on(self.stack, self.kept)
+
+
+def _root(covariance: np.ndarray) -> np.ndarray:
+    """R of covariance = R R^T, also where it is singular (k, k)."""
+    variance, vectors = np.linalg.eigh(covariance / _outer(covariance))
+    sd = np.sqrt(np.diag(_outer(covariance)))
+    return sd[:, None] * vectors * np.sqrt(np.maximum(variance, 0.0))
+
+
+def _outer(covariance: np.ndarray) -> np.ndarray:
+    """Products of standard deviations, 1 where there is none: SI numbers differ by many powers of ten."""
+    sd = np.sqrt(np.diag(covariance))
+    sd = np.where(sd > 0, sd, 1.0)
+    return np.outer(sd, sd)
+
+
+def _slope(at: Callable[[Any], np.ndarray], base: np.ndarray, direction: Any, step: float) -> np.ndarray:
+    """d readings / d number by a step to one side, to the other where there is no answer; zero for a step of zero."""
+    if step == 0.0:
+        return np.zeros_like(base)
+    slope = (at(step * direction) - base) / step
+    missing = ~np.isfinite(slope)
+    if missing.any():
+        slope[missing] = ((base - at(-step * direction)) / step)[missing]
+    return slope
+
+
+def readings(model: Model, stack: Stack) -> np.ndarray:
+    """Readings of a stack; NaN where the model has no steady state (n,)."""
+    return stack.vector([_answers(model, table) for table in stack.tables])
+
+
+def _answers(model: Model, table: Table) -> Mapping[str, np.ndarray]:
+    """Response columns, the rows without an answer found by halves."""
+    try:
+        return model.answers(table)
+    except WorkbenchError:
+        if table.rows == 1:
+            return {name: np.array([np.nan]) for name in table.responses}
+    middle = table.rows // 2
+    halves = [_answers(model, rows_of(table, part)) for part in (slice(None, middle), slice(middle, None))]
+    return {name: np.concatenate([half[name] for half in halves]) for name in table.responses}
+
+
+def _with_conditions(model: Model, stack: Stack, base: np.ndarray) -> np.ndarray:
+    """u of every row with the uncertainty of its conditions, through the slope of this model (n,)."""
+    variance = stack.u**2
+    for number, table in enumerate(stack.tables):
+        channels = [c for c in stack.channels if c.table == number and c.size]
+        for name, u in table.condition_random.items() if channels else ():
+            at = lambda h: _stacked_answers(model, _moved(table, name, h), channels)  # noqa: B023, E731
+            step = CONDITION_STEP * (np.ptp(table.conditions[name]) or 1.0)
+            slopes = _slope(at, np.concatenate([base[c.rows] for c in channels]), 1.0, step)
+            for channel, slope in zip(channels, np.split(slopes, len(channels))):
+                variance[channel.rows] += (slope * u) ** 2
+    return np.sqrt(variance)
+
+
+def _stacked_answers(model: Model, table: Table, channels: Sequence[Channel]) -> np.ndarray:
+    answers = _answers(model, table)
+    return np.concatenate([answers[c.response] for c in channels])
+
+
+def _moved(table: Table, name: str, step: float) -> Table:
+    return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
+
+
+def _numerical(model: Model, stack: Stack) -> np.ndarray:
+    """Shapes of the base model's own error, each with a standard normal weight shared by all tables (n, L)."""
+    shapes = [model.base.numerical(model.design, table) for table in stack.tables]
+    columns = np.zeros((stack.size, max(map(len, shapes), default=0)))
+    for channel in stack.channels:
+        for k, shape in enumerate(shapes[channel.table]):
+            columns[channel.rows, k] = shape.get(channel.response, 0.0)
+    return columns

@@ -1,0 +1,162 @@
+"""One low-rank Gaussian likelihood: readings explained by terms with standard normal weights.
+
+    r = background w_0 + sum over terms of (shift + columns w) + noise,   w, noise ~ N(0, 1)   (all whitened)
+
+The background is in every explanation: declared tolerances and instruments, the numerical error of the model, an
+unknown function where one is believed in. Terms are effects at a place of their size. With the weights integrated out
+
+    ln p(r) = -1/2 (|r'|^2 - b^T A^-1 b + ln det A),   r' = r - shifts,  A = 1 + X^T X,  b = X^T r'
+
+All of it is read from the products of all columns with one another, so that one more explanation costs microseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """An effect at one place of its size, whitened.
+
+    name: of the effect;  shift: what it adds there (n,);  columns: how that changes with its weights (n, k)
+    log_prior: ln of the prior share of the place among all terms of the name [1]
+    variant, place: numbers of the form of the effect and of the place on its grid
+    """
+
+    name: str
+    shift: np.ndarray
+    columns: np.ndarray
+    log_prior: float
+    variant: int = 0
+    place: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """What the likelihood needs of residuals. on: products with all columns of a catalogue (Q,);  square: |r|^2"""
+
+    on: np.ndarray
+    square: float
+
+
+@dataclass(frozen=True, eq=False)
+class Catalogue:
+    """All terms that an explanation may be made of, beside a background (n, m) that is in every one."""
+
+    background: np.ndarray
+    terms: tuple[Term, ...]
+
+    @cached_property
+    def _columns(self) -> np.ndarray:
+        """Background, then of every term its shift and its columns (n, Q)."""
+        parts = [np.column_stack([term.shift, term.columns]) for term in self.terms]
+        return np.hstack([self.background, *parts])
+
+    @cached_property
+    def first(self) -> np.ndarray:
+        """Place of the shift of every term among the columns, and one past the last (terms + 1,)."""
+        sizes = [1 + term.columns.shape[1] for term in self.terms]
+        return self.background.shape[1] + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+
+    @cached_property
+    def gram(self) -> np.ndarray:
+        """Products of all columns (Q, Q)."""
+        return self._columns.T @ self._columns
+
+    def readings(self, residuals: np.ndarray) -> list[Readings]:
+        """Of whitened residuals (n, R)."""
+        products = self._columns.T @ residuals
+        squares = np.sum(residuals**2, axis=0)
+        return [Readings(products[:, k], float(squares[k])) for k in range(residuals.shape[1])]
+
+    def first_gains(self, readings: Sequence[Readings]) -> np.ndarray:
+        """ln p that each term gains where nothing else is in the explanation, for many readings (terms, R) [nats]."""
+        bare = self.given((), readings[0])
+        on = np.column_stack([r.on for r in readings])
+        taken, own = bare.taken_of(on)
+        out = np.empty((len(self.terms), len(readings)))
+        for size, which in self.by_size.items():
+            out[which] = bare.gains_of(which, size, taken, on, own)
+        return out
+
+    def given(self, chosen: Sequence[int], readings: Readings) -> Given:
+        """The likelihood with the terms of these numbers in the explanation."""
+        inside = [np.arange(self.background.shape[1])]
+        inside += [np.arange(self.first[t] + 1, self.first[t + 1]) for t in chosen]
+        return Given(self, np.concatenate(inside), self.first[list(chosen)].astype(int), readings)
+
+    @cached_property
+    def by_size(self) -> dict[int, np.ndarray]:
+        """Numbers of the terms by how many columns they have."""
+        sizes = np.diff(self.first) - 1
+        return {int(k): np.flatnonzero(sizes == k) for k in np.unique(sizes)}
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """An explanation beside some readings. inside: places of its columns;  shifts: places of its shifts"""
+
+    catalogue: Catalogue
+    inside: np.ndarray
+    shifts: np.ndarray
+    readings: Readings
+
+    @cached_property
+    def _root(self) -> np.ndarray:
+        g = self.catalogue.gram[np.ix_(self.inside, self.inside)]
+        return np.linalg.cholesky(np.eye(len(g)) + g)
+
+    @cached_property
+    def _left(self) -> np.ndarray:
+        """Products of all columns with the residual less the shifts (Q,)."""
+        return self.readings.on - self.catalogue.gram[:, self.shifts].sum(axis=1)
+
+    @cached_property
+    def _taken(self) -> tuple[np.ndarray, np.ndarray]:
+        taken, own = self.taken_of(self._left[:, None])
+        return taken, own[:, 0]
+
+    def taken_of(self, on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the columns inside take of every column (q, Q), and of residuals (q, R).
+
+        on: products of all columns with the residuals (Q, R)
+        """
+        turned = np.linalg.inv(self._root)
+        return turned @ self.catalogue.gram[self.inside], turned @ on[self.inside]
+
+    @property
+    def log_marginal(self) -> float:
+        """ln p of the readings, up to what all explanations share [nats]."""
+        gram, shifts = self.catalogue.gram, self.shifts
+        square = self.readings.square - 2 * self.readings.on[shifts].sum() + gram[np.ix_(shifts, shifts)].sum()
+        taken = self._taken[1]
+        return float(-0.5 * (square - taken @ taken) - np.log(np.diagonal(self._root)).sum())
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Expected weights of the columns inside, the background first (q,)."""
+        return np.linalg.solve(self._root.T, self._taken[1])
+
+    def gains(self) -> np.ndarray:
+        """ln p that each term of the catalogue would gain if it were added [nats] (terms,)."""
+        out = np.empty(len(self.catalogue.terms))
+        taken, own = self._taken
+        for size, which in self.catalogue.by_size.items():
+            out[which] = self.gains_of(which, size, taken, self._left[:, None], own[:, None])[:, 0]
+        return out
+
+    def gains_of(self, which: np.ndarray, size: int, taken: np.ndarray, on: np.ndarray, own: np.ndarray) -> np.ndarray:
+        """Of terms with the same number of columns, for residuals as ``taken_of`` has them (t, R) [nats]."""
+        places = self.catalogue.first[which][:, None] + np.arange(1 + size)
+        beside = taken[:, places].transpose(1, 2, 0)  # (t, 1 + k, q)
+        gram = self.catalogue.gram[places[:, :, None], places[:, None, :]] - beside @ beside.transpose(0, 2, 1)
+        left = on[places] - beside @ own  # (t, 1 + k, R)
+        root = np.linalg.cholesky(np.eye(size) + gram[:, 1:, 1:])
+        moved = np.linalg.solve(root, left[:, 1:] - gram[:, 1:, :1])
+        spread = np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
+        return left[:, 0] - 0.5 * gram[:, 0, :1] + 0.5 * np.sum(moved**2, axis=1) - spread[:, None]

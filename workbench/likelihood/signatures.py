@@ -1,0 +1,189 @@
+"""What every effect would do to the readings, on a grid over the sizes that are believed possible.
+
+One set of signatures serves the search, the simulated campaigns, the detection limits and the short list of shapes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import product
+from math import log
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import t as student
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.believed import TAILS
+from workbench.errors import WorkbenchError
+from workbench.likelihood.bench import Bench
+from workbench.likelihood.marginal import Catalogue, Term
+from workbench.likelihood.noise import Whitener
+
+# cells an axis and half-width of the grid [standard deviations] by number of parameters
+_GRIDS = {1: (9, 4.5), 2: (5, 3.5), 3: (4, 3.0), 4: (3, 2.4)}
+_BELL = 1 / np.sqrt(2 * np.pi)  # standard deviation over width of a bell as high as the box it stands for
+UNSEEN = 0.05  # length of a whitened signature below which an effect does nothing to these data
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """One effect (variant) on its grid.
+
+    z: grid points (K, k);  change: of the readings, SI (n, K);  tangents: d change / dz (k, n, K)
+    log_prior: ln of the prior mass of each cell (K,);  width: of a cell along each axis
+    """
+
+    effect: Effect
+    z: np.ndarray
+    change: np.ndarray
+    tangents: np.ndarray
+    log_prior: np.ndarray
+    width: float
+
+    @property
+    def name(self) -> str:
+        return self.effect.name()
+
+    def terms(self, white: Whitener, variant: int, share: float) -> Iterable[Term]:
+        """A term for every place of the grid that has an answer. share: ln of the prior of this variant"""
+        s = white(self.change)
+        tangents = np.stack([white(t) for t in self.tangents]) * (_BELL * self.width)
+        for k in np.flatnonzero(np.isfinite(self.log_prior)):
+            yield Term(self.name, s[:, k], tangents[:, :, k].T, float(self.log_prior[k]) + share, variant, int(k))
+
+    def at(self, place: int, weights: np.ndarray) -> np.ndarray:
+        """z (k,) of a place of the grid moved by the weights of its columns."""
+        return self.z[place] + _BELL * self.width * weights
+
+
+def grid(k: int) -> tuple[np.ndarray, float, tuple[int, ...]]:
+    """Grid points (K, k), width of a cell and shape of the grid for k parameters.
+
+    Raises:
+        WorkbenchError: more parameters than a grid can hold.
+    """
+    if k not in _GRIDS:
+        raise WorkbenchError(
+            f"an effect must have one to {max(_GRIDS)} parameters, found {k}: fix some or split it in two"
+        )
+    cells, half = _GRIDS[k]
+    width = 2 * half / cells
+    axis = -half + width * (np.arange(cells) + 0.5)
+    return np.array(list(product(axis, repeat=k))), width, (cells,) * k
+
+
+def signature(effect: Effect, change: Callable[[Effect], np.ndarray]) -> Signature:
+    """The signature of an effect; ``change(effect)`` is the change of the readings, SI (n,)."""
+    k = len(parameters_of(effect))
+    z, width, shape = grid(k)
+    changes, possible = _changes(effect, z, change)
+    tangents = np.array([_tangent(changes, possible, shape, a, width) for a in range(k)])
+    masses = np.log(student.cdf(z + width / 2, TAILS) - student.cdf(z - width / 2, TAILS)).sum(axis=1)
+    masses = np.where(possible, masses, -np.inf)
+    return Signature(effect, z, changes, tangents, masses - logsumexp(masses), width)
+
+
+def _tangent(s: np.ndarray, possible: np.ndarray, shape: tuple[int, ...], axis: int, width: float) -> np.ndarray:
+    """ds/dz along one axis (n, K): the mean slope to the neighbours, of those only that have an answer."""
+    on_grid = np.moveaxis(s.reshape((len(s),) + shape), 1 + axis, -1)
+    known = np.moveaxis(possible.reshape(shape), axis, -1)
+    both = known[..., 1:] & known[..., :-1]
+    slopes, total = np.where(both, np.diff(on_grid, axis=-1) / width, 0.0), np.zeros_like(on_grid)
+    count = np.zeros(known.shape)
+    for side in (slice(None, -1), slice(1, None)):
+        total[..., side] += slopes
+        count[..., side] += both
+    return np.moveaxis(total / np.maximum(count, 1.0), -1, 1 + axis).reshape(s.shape)
+
+
+def _changes(effect: Effect, z: np.ndarray, change: Callable[[Effect], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Changes (n, K), and where the model has an answer (K,); at least one place must have one."""
+    found: list[np.ndarray | None] = []
+    error: WorkbenchError | None = None
+    for point in z:
+        try:
+            found.append(change(effect.at(point)))
+        except WorkbenchError as no_answer:
+            found.append(None)
+            error = no_answer
+    possible = np.array([s is not None for s in found])
+    if error is not None and not possible.any():
+        raise error
+    nothing = np.zeros_like(next(s for s in found if s is not None))
+    return np.array([nothing if s is None else s for s in found]).T, possible
+
+
+@dataclass(frozen=True, eq=False)
+class Signatures:
+    """Of all effects that do something to the readings. failed: why others could not be had, by name"""
+
+    found: Mapping[str, tuple[Signature, ...]]
+    failed: Mapping[str, str]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(self.found)
+
+    def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
+        """The catalogue beside a background, of all effects but some."""
+        left = [name for name in self.found if name not in set(without)]
+        return Catalogue(background, tuple(term for name in left for term in self._terms(name, white)))
+
+    def _terms(self, name: str, white: Whitener) -> list[Term]:
+        variants = self.found[name]
+        return [t for k, s in enumerate(variants) for t in s.terms(white, k, -log(len(variants)))]
+
+
+def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = lambda words: None) -> Signatures:
+    """Signatures of effects (all their variants) about the centre of a bench."""
+    predictor, x = bench.fit.predictor, bench.centre.x
+    base = predictor.predict(x)
+    change = lambda effect: predictor.predict(x, (effect,)) - base  # noqa: E731
+    found: dict[str, list[Signature]] = {}
+    failed: dict[str, str] = {}
+    for effect in effects:
+        progress(f"signature of {effect.name()}")
+        try:
+            found.setdefault(effect.name(), []).append(signature(effect, change))
+        except (WorkbenchError, ArithmeticError, ValueError) as error:
+            failed[effect.name()] = str(error)
+    seen = {n: tuple(v) for n, v in found.items() if n not in failed and any(_is_seen(bench, s) for s in v)}
+    failed |= {n: "it changes nothing in these data" for n in found if n not in seen and n not in failed}
+    return Signatures(seen, failed)
+
+
+def _is_seen(bench: Bench, signature: Signature) -> bool:
+    return bool(np.sqrt(np.sum(bench.fit.white(signature.change) ** 2, axis=0)).max(initial=0.0) > UNSEEN)
+
+
+def candidates(bench: Bench, library: Mapping[str, type[Effect]]) -> tuple[Effect, ...]:
+    """Effects (all variants) that can act on the device and are not in the model yet."""
+    model = bench.model
+    have = {effect.name() for effect in model.effects}
+    within = {name for effect in model.effects for name in effect.contains}
+    return tuple(
+        variant
+        for name, cls in library.items()
+        if name not in have and name not in within and cls.can_act_on(model.design)
+        for variant in cls.variants(model.design)
+    )
+
+
+def nearest(bench: Bench, signatures: Signatures, count: int = 5) -> dict[str, float]:
+    """Effect -> largest cosine of what it does with the residual of the null, both freed of what tolerances explain."""
+    jacobian, white = bench.centre.jacobian, bench.fit.white
+    u, size, _ = np.linalg.svd(jacobian, full_matrices=False)
+    shrink = (1 - 1 / np.sqrt(1 + size**2))[:, None]
+    free = lambda v: v - u @ (shrink * (u.T @ v))  # noqa: E731
+    target = free(bench.residual[:, None])[:, 0]
+    found: dict[str, float] = {}
+    for name, variants in signatures.found.items():
+        shapes = free(np.hstack([white(s.change) for s in variants]))
+        lengths = np.linalg.norm(shapes, axis=0) * np.linalg.norm(target)
+        found[name] = float(np.max((target @ shapes) / np.where(lengths > 0, lengths, np.inf)))
+    return dict(sorted(found.items(), key=lambda item: -item[1])[:count])

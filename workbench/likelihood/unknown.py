@@ -1,0 +1,239 @@
+"""What no effect of the library is: an unknown function of the conditions in a channel, its size in the channel's unit.
+
+Two families stand for it: smooth functions (a Gaussian process of some length over the conditions, periodic in
+angles), and plain laws c |x|^p sign(x)^s of one condition x, which are what a missing law most often looks like.
+The size is a share of the rms reading of the channel, whatever the noise of its sensor is. Phases of one quantity
+have functions of their own of the same size and length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import log
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import rankdata
+
+from workbench.data.stack import Channel, Stack
+from workbench.data.table import Table
+from workbench.likelihood.noise import Whitener
+
+SIZES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)  # of the rms reading of the channel: six levels alike
+LENGTHS = (0.3, 0.8, 2.0)  # over which it changes, of the standard deviation of a condition
+TURNS = (0.1, 0.35, 1.2)  # the same for an angle over a revolution [rad]
+POWERS = (-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0)  # of plain laws
+LANDMARKS = 60  # shapes of a smooth function in one channel
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One kind of unknown function: what its rows have in common.
+
+    channels: names;  law: "smooth" or "power";  of: condition of a power law;  detail: length or power
+    rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
+    raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
+    """
+
+    channels: tuple[str, ...]
+    law: str
+    of: str
+    detail: float
+    rows: np.ndarray
+    columns: np.ndarray
+    raw: np.ndarray
+    log_prior: float
+
+    def words(self) -> str:
+        """For people."""
+        where = ", ".join(self.channels)
+        if self.law == "power":
+            return f"a law of {where} that goes with {self.of} to the power {self.detail:g}"
+        return f"a smooth function of the conditions in {where}"
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A shape beside an explanation. gains: ln p gained at each of SIZES, priors left out [nats]"""
+
+    shape: Shape
+    gains: np.ndarray
+
+    @property
+    def log_evidence(self) -> float:
+        """ln p gained with the size integrated out and the prior of the shape included [nats]."""
+        return float(logsumexp(self.gains)) - log(len(SIZES)) + self.shape.log_prior
+
+    @property
+    def size(self) -> float:
+        """The most probable of SIZES."""
+        return SIZES[int(np.argmax(self.gains))]
+
+    def columns(self, rows: int) -> np.ndarray:
+        """Whitened columns at that size for all rows (n, k)."""
+        out = np.zeros((rows, self.shape.columns.shape[1]))
+        out[self.shape.rows] = self.size * self.shape.columns
+        return out
+
+
+def shapes_of(stack: Stack, white: Whitener) -> tuple[Shape, ...]:
+    """Every unknown function that is thought of: half of the prior for smooth ones, half for plain laws."""
+    groups = _groups(stack)
+    found = [(law, shape) for group in groups for law, shape in _of_group(stack, white, group)]
+    counts = {law: sum(1 for kind, _ in found if kind == law) for law in ("smooth", "power")}
+    families = sum(1 for count in counts.values() if count)
+    return tuple(_with_prior(shape, -log(families * counts[law])) for law, shape in found)
+
+
+def _with_prior(shape: Shape, log_prior: float) -> Shape:
+    return Shape(shape.channels, shape.law, shape.of, shape.detail, shape.rows, shape.columns, shape.raw, log_prior)
+
+
+def _groups(stack: Stack) -> list[list[Channel]]:
+    """Channels of one table that are phases, or parts, of one quantity."""
+    found: dict[tuple[int, str], list[Channel]] = {}
+    for channel in stack.channels:
+        found.setdefault((channel.table, _quantity(channel.response)), []).append(channel)
+    return list(found.values())
+
+
+def _quantity(response: str) -> str:
+    if response in ("re", "im"):
+        return "complex"
+    stem, _, phase = response.rpartition("_")
+    return stem if stem and phase in ("a", "b", "c") else response
+
+
+def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterator[tuple[str, Shape]]:
+    table = stack.tables[group[0].table]
+    names = tuple(channel.name for channel in group)
+    rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
+    for length in range(len(LENGTHS)):
+        raw = _blocks([_rms(stack, c) * smooth(table, length) for c in group])
+        yield "smooth", Shape(names, "smooth", "", LENGTHS[length], rows, _whitened(stack, white, rows, raw), raw, 0.0)
+    for of, power, law in _laws(table):
+        raw = _blocks([_rms(stack, c) * law[:, None] for c in group])
+        yield "power", Shape(names, "power", of, power, rows, _whitened(stack, white, rows, raw), raw, 0.0)
+
+
+def _rms(stack: Stack, channel: Channel) -> float:
+    return float(np.sqrt(np.mean(stack.y[channel.rows] ** 2)))
+
+
+def _blocks(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Side by side, each in its own rows and columns."""
+    out = np.zeros((sum(len(p) for p in parts), sum(p.shape[1] for p in parts)))
+    row = column = 0
+    for part in parts:
+        out[row : row + len(part), column : column + part.shape[1]] = part
+        row, column = row + len(part), column + part.shape[1]
+    return out
+
+
+def _whitened(stack: Stack, white: Whitener, rows: np.ndarray, raw: np.ndarray) -> np.ndarray:
+    spread = np.zeros((stack.size, raw.shape[1]))
+    spread[rows] = raw
+    return white(spread)[rows]
+
+
+def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:
+    """(condition, power, law of rms 1 (n,)) of every condition that varies, odd where it has both signs."""
+    for name, x in table.conditions.items():
+        if np.ptp(x) == 0 or "angle" in name or name == "direction" or name.endswith("_T"):
+            continue
+        size = np.abs(x) / np.abs(x).max()
+        for power in POWERS:
+            if power < 0 and size.min() < 1e-3:
+                continue
+            law = np.sign(x) * size**power if x.min() < 0 else size**power
+            if np.ptp(law) > 0 or power == 0:
+                yield name, power, law / np.sqrt(np.mean(law**2))
+
+
+def smooth(table: Table, length: int) -> np.ndarray:
+    """Phi (n, q) with Phi Phi^T = exp(-d^2 / 2) as far as LANDMARKS reach (Nystroem); d: distance over the length."""
+    places = _places(table, length)
+    unique = np.unique(np.round(places, 6), axis=0)
+    marks = unique[:: max(1, -(-len(unique) // LANDMARKS))]
+    between = _kernel(marks, marks) + 1e-6 * np.eye(len(marks))
+    return np.linalg.solve(np.linalg.cholesky(between), _kernel(marks, places)).T
+
+
+def _places(table: Table, length: int) -> np.ndarray:
+    """Conditions over the length (n, d): an angle on its circle, others by their ranks with standard deviation 1."""
+    columns: list[np.ndarray] = []
+    for name, values in table.conditions.items():
+        if np.ptp(values) == 0:
+            continue
+        if "angle" in name:
+            columns += [np.cos(values) / TURNS[length], np.sin(values) / TURNS[length]]
+        else:
+            rank = rankdata(np.round(values, 12))
+            columns.append((rank - rank.mean()) / rank.std() / LENGTHS[length])
+    return np.array(columns).T if columns else np.zeros((table.rows, 1))
+
+
+def _kernel(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    square = np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2 * a @ b.T
+    return np.exp(-0.5 * np.maximum(square, 0.0))
+
+
+def seen(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarray) -> tuple[Seen, ...]:
+    """Every shape beside an explanation. background: its columns (n, m);  residual: whitened (n,)"""
+    root = np.linalg.cholesky(np.eye(background.shape[1]) + background.T @ background)
+    own = np.linalg.solve(root, background.T @ residual)
+    return tuple(Seen(shape, _gains(shape, background, residual, root, own)) for shape in shapes)
+
+
+def _gains(shape: Shape, background: np.ndarray, residual: np.ndarray, root: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """1/2 sum over the principal shapes of (a^2 c^2 / (1 + a^2 e) - ln(1 + a^2 e)) at every size a (sizes,)."""
+    x = shape.columns
+    beside = np.linalg.solve(root, background[shape.rows].T @ x)
+    energy, turn = np.linalg.eigh(x.T @ x - beside.T @ beside)
+    pull = turn.T @ (x.T @ residual[shape.rows] - beside.T @ own)
+    a2e = np.square(SIZES)[:, None] * np.maximum(energy, 0.0)
+    return 0.5 * np.sum(np.square(SIZES)[:, None] * pull**2 / (1 + a2e) - np.log1p(a2e), axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Shapes beside one background, made ready for many residuals. background: (n, m)"""
+
+    shapes: tuple[Shape, ...]
+    background: np.ndarray
+
+    @cached_property
+    def _root(self) -> np.ndarray:
+        return np.linalg.cholesky(np.eye(self.background.shape[1]) + self.background.T @ self.background)
+
+    @cached_property
+    def _principal(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Of every shape: energies (k,), turned columns (n_c, k) and what the background takes of them (m, k)."""
+        found = []
+        for shape in self.shapes:
+            beside = np.linalg.solve(self._root, self.background[shape.rows].T @ shape.columns)
+            energy, turn = np.linalg.eigh(shape.columns.T @ shape.columns - beside.T @ beside)
+            keep = energy > 1e-9 * max(energy.max(initial=0.0), 1e-300)
+            found.append((energy[keep], shape.columns @ turn[:, keep], beside @ turn[:, keep]))
+        return found
+
+    def log_evidences(self, residuals: np.ndarray) -> np.ndarray:
+        """ln p gained by an unknown function, shapes and sizes averaged over, for residuals (n, R): (R,) [nats]."""
+        own = np.linalg.solve(self._root, self.background.T @ residuals)
+        found = []
+        for shape, (energy, turned, beside) in zip(self.shapes, self._principal):
+            square = (turned.T @ residuals[shape.rows] - beside.T @ own) ** 2
+            for size in SIZES:
+                a2e = size**2 * energy
+                gain = 0.5 * ((size**2 / (1 + a2e)) @ square - np.log1p(a2e).sum())
+                found.append(gain + shape.log_prior - log(len(SIZES)))
+        return logsumexp(found, axis=0)
+
+
+def expected(seen_: Seen, background: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    """Expected unknown function at its most probable size, of the shape's rows, SI (n_c,)."""
+    x = np.hstack([background, seen_.columns(len(residual))])
+    weights = np.linalg.solve(np.eye(x.shape[1]) + x.T @ x, x.T @ residual)
+    return seen_.size * seen_.shape.raw @ weights[background.shape[1] :]

@@ -1,0 +1,1 @@
+"""A permanent-magnet machine behind gears and a linkage, as it is measured at its output."""

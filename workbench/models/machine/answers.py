@@ -1,0 +1,172 @@
+"""What the terminals and the torque cell of one machine see, from its surrogate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from math import hypot, pi, sqrt
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from effects.base import Columns
+from effects.machine_design import MachineAsBuilt
+from materials.conductor import COPPER
+from workbench.models.machine.spectra import averaged, evaluated, slope
+from workbench.models.machine.surrogate import Surrogate
+
+LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
+_PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
+_MAGNET_MEMORY = 61  # rows; a magnet warms over minutes, what its reading does from row to row is noise
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """Torque and phase flux linkages of one design at one temperature of its magnets."""
+
+    surrogate: Surrogate
+    design: MachineAsBuilt
+
+    @cached_property
+    def in_field(self) -> MachineAsBuilt:
+        """The design with what its field does not know as drawn, so that effects outside it find the same answers.
+
+        Of segments only the mean square of their angles counts for small angles: as of an even skew.
+        """
+        d, drawn = self.design, self.surrogate.nominal
+        names = ("phase_resistance", "lead_resistance", "end_winding_inductance", "dry_friction", "viscous_friction")
+        names += ("windage", "iron_loss", "iron_loss_factor", "undeclared_iron_loss", "cogging_of_mesh", "end_leakage")
+        names += ("rotor_turn", "segment_angles", "shorted_turns", "shorted_coil")
+        stepped = (angle * sqrt(n**2 - 1) for n, angle in enumerate(d.segment_angles, 2))
+        return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, *stepped))
+
+    @cached_property
+    def spectrum(self) -> np.ndarray:
+        """Of torque and phase flux linkages per metre over the revolution, skewed (4, orders)."""
+        found = self.surrogate.spectrum(self.in_field)
+        found[0] += (self.design.cogging_of_mesh - 1.0) * self.surrogate.no_load[0]
+        return self._along_the_length(found)
+
+    def _along_the_length(self, spectrum: np.ndarray) -> np.ndarray:
+        """The mean over skew and segments."""
+        found = averaged(spectrum, self.design.skew) if self.design.skew else spectrum
+        for segments, angle in enumerate(self.design.segment_angles, 2):
+            places = angle * (np.arange(segments) - (segments - 1) / 2)
+            found = found * np.cos(np.arange(spectrum.shape[1])[:, None] * places).mean(axis=1) if angle else found
+        return found
+
+    def _on_the_rotor(self, angle: np.ndarray) -> np.ndarray:
+        """Angle of the magnets' pattern for one that the encoder means."""
+        return angle - self.design.rotor_turn
+
+    @property
+    def kept(self) -> float:
+        """Share of the magnets' flux that goes through the winding."""
+        return 1.0 - self.design.end_leakage
+
+    def cogging(self, angle: np.ndarray) -> np.ndarray:
+        """Torque without current [Nm]; it goes with the square of the magnets' flux."""
+        return self.design.length * self.kept**2 * evaluated(self.spectrum[:1], self._on_the_rotor(angle))[0]
+
+    def flux_slopes(self, angle: np.ndarray) -> np.ndarray:
+        """d psi / d angle of the phases [Wb] (3, n)."""
+        return self.design.length * self.kept * evaluated(slope(self.spectrum[1:]), self._on_the_rotor(angle))
+
+    def magnet_linkage(self, angle: np.ndarray) -> np.ndarray:
+        """Flux linkages of the phases without current [Wb] (n, 3)."""
+        return self.design.length * self.kept * evaluated(self.spectrum[1:], self._on_the_rotor(angle)).T
+
+    @cached_property
+    def linkage_waves(self) -> np.ndarray:
+        """Complex amplitudes over the revolution of the phases' flux linkages [Wb] (3, orders)."""
+        back = np.exp(-1j * np.arange(self.spectrum.shape[1]) * self.design.rotor_turn)
+        return self.design.length * self.kept * self.spectrum[1:] * back
+
+    def tooth_wave(self, tooth: int) -> np.ndarray:
+        """Complex amplitudes of the flux of the magnets through a tooth [Wb] (orders,).
+
+        Its shape as drawn, its size in the proportion of the fundamental of the phases.
+        """
+        drawn = self.surrogate.nominal
+        now, then = (self._fundamental(design) for design in (replace(self.in_field, turns=drawn.turns), drawn))
+        return self.design.length * self.kept * self.surrogate.no_load[1 + tooth] * (now / then)
+
+    def _fundamental(self, design: MachineAsBuilt) -> float:
+        return float(np.abs(self.surrogate.spectrum(design)[1:, self.design.machine.pole_pairs]).mean())
+
+    def loaded_torque(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        """Torque [Nm]: cogging, and what magnets and currents make together, which goes with the magnets' flux."""
+        both = self.design.length * self._with_current(angle, currents)[:, 0]
+        alone = self.design.length * evaluated(self.spectrum[:1], self._on_the_rotor(angle))[0]
+        return self.kept * (both - alone) + self.kept**2 * alone
+
+    def _with_current(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        return self.surrogate.with_current(self.in_field, self._on_the_rotor(angle), currents)
+
+    def flux_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        """Flux linkages of the phases against those without current [Wb] (n, 3); the end winding adds L_end i."""
+        change = self._with_current(angle, currents) - self._with_current(angle, 0 * currents)
+        return self.design.length * change[:, 1:] + self.design.end_winding_inductance * currents
+
+    @cached_property
+    def inductances(self) -> np.ndarray:
+        """d psi of a phase / d i of another [H] (3, 3), end winding included: without current, over the rotor angle.
+
+        Self and mutual inductance per turn are taken alike for all phases, as they are over a whole period.
+        """
+        angle = load_angles(self.design)
+        columns = [self.flux_change(angle, np.tile(_PROBE * unit, (len(angle), 1))) for unit in np.eye(3)]
+        found = np.stack([column.mean(axis=0) / _PROBE for column in columns], axis=1)
+        turns = self.design.turns_of_phases
+        per_turn, own = found / np.outer(turns, turns), np.eye(3, dtype=bool)
+        return np.where(own, per_turn[own].mean(), per_turn[~own].mean()) * np.outer(turns, turns)
+
+    def resistances(self, at: Columns) -> np.ndarray:
+        """Of the phases with their leads (n, 3) [ohm]: R_20 (1 + alpha (T - 20 degC)) at winding_T."""
+        rows = len(next(iter(at.values())))
+        winding = at.get("winding_T", np.full(rows, COPPER.reference_temperature))
+        warm = 1.0 + COPPER.temperature_coefficient * (winding - COPPER.reference_temperature)
+        warm = warm * at.get("resistance_factor", 1.0)
+        return warm[:, None] * np.array(self.design.phase_resistance) + np.array(self.design.lead_resistance)
+
+
+def load_angles(design: MachineAsBuilt) -> np.ndarray:
+    """Rotor angles [rad] over a sixth of an electrical period, after which the phases change their places."""
+    return (np.arange(LOAD_ANGLES) + 0.5) * pi / (3 * design.machine.pole_pairs * LOAD_ANGLES)
+
+
+def at_magnet_temperatures(
+    answer: Callable[[Answers, Columns], Mapping[str, np.ndarray]],
+    surrogate: Surrogate,
+    design: MachineAsBuilt,
+    at: Columns,
+) -> Mapping[str, np.ndarray]:
+    """What a bench answers with the magnets of every row at their own temperature, where it was read.
+
+    The field is taken with the remanence of the coldest, the mean and the warmest row, and a parabola between them.
+    """
+    if "magnet_T" not in at:
+        return answer(Answers(surrogate, design), at)
+    temperature = _slow(np.ascontiguousarray(at["magnet_T"], dtype=float).tobytes())
+    nodes = np.unique([temperature.min(), (temperature.min() + temperature.max()) / 2, temperature.max()])
+    found = [answer(Answers(surrogate, _warm(design, node)), at) for node in nodes.tolist()]
+    weights = [_lagrange(nodes, k, temperature) for k in range(len(nodes))]
+    return {name: sum(w * one[name] for w, one in zip(weights, found)) for name in found[0]}
+
+
+def _warm(design: MachineAsBuilt, temperature: float) -> MachineAsBuilt:
+    magnet = design.magnet
+    factor = 1.0 + magnet.temperature_coefficient * (temperature - magnet.reference_temperature)
+    return design.with_magnet(remanence=magnet.remanence * max(factor, 0.0))
+
+
+def _lagrange(nodes: np.ndarray, k: int, x: np.ndarray) -> np.ndarray:
+    others = np.delete(nodes, k)
+    return np.prod([(x - other) / (nodes[k] - other) for other in others], axis=0) if len(others) else np.ones_like(x)
+
+
+@lru_cache(maxsize=16)
+def _slow(readings: bytes) -> np.ndarray:
+    """Running median of readings, given as the bytes of their array."""
+    return median_filter(np.frombuffer(readings), _MAGNET_MEMORY, mode="nearest")

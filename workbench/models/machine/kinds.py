@@ -1,0 +1,204 @@
+"""The kinds of measurement on the bench of a machine; ``model`` lists their columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from effects.base import Columns
+from effects.dq_design import DqMachine
+from effects.machine_design import MachineAsBuilt
+from units import DEGREE
+from workbench.data.table import Table
+from workbench.errors import WorkbenchError
+from workbench.models.dq.model import BASE as DQ
+from workbench.models.machine.answers import Answers, load_angles
+from workbench.models.machine.drag import lost_torque
+from workbench.models.machine.field import LoadedState
+
+PHASES = "abc"
+_ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
+_AROUND = round(2 * pi / _ANGLE_GRID)
+_TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
+
+Found = dict[str, np.ndarray]
+
+
+def _back_emf(answers: Answers, at: Columns) -> Found:
+    """v = speed * d psi/d angle."""
+    return _by_phase("v", answers.flux_slopes(at["angle_mech"]) * at["speed"])
+
+
+def _cogging(answers: Answers, at: Columns) -> Found:
+    return {"torque": answers.cogging(at["angle_mech"]) + lost_torque(answers, at)}
+
+
+def _locked_rotor(answers: Answers, at: Columns) -> Found:
+    return {"torque": answers.loaded_torque(at["angle_mech"], _currents(at)) + lost_torque(answers, at)}
+
+
+def _flux_linkage(answers: Answers, at: Columns) -> Found:
+    change = answers.flux_change(at["angle_mech"], _currents(at))
+    whole = change + answers.magnet_linkage(at["angle_mech"])
+    return _by_phase("dpsi", change.T) | _by_phase("psi", whole.T)
+
+
+def _inductance(answers: Answers, at: Columns) -> Found:
+    """l_x = dpsi_x / i_x, of the phases that carry current in every row."""
+    currents = _currents(at)
+    change = answers.flux_change(at["angle_mech"], currents)
+    return {f"l_{x}": change[:, k] / currents[:, k] for k, x in enumerate(PHASES) if np.all(currents[:, k] != 0.0)}
+
+
+def _phase_resistance(answers: Answers, at: Columns) -> Found:
+    return _by_phase("r", answers.resistances(at).T)
+
+
+def _drag(answers: Answers, at: Columns) -> Found:
+    return {"torque": lost_torque(answers, at)}
+
+
+def _short_circuit(answers: Answers, at: Columns) -> Found:
+    """Steady state of the fundamentals, terminals joined: R_x I_x + j w (L I + psi)_x = v for all x, sum of I = 0.
+
+    The shaft covers the copper loss, T = -sum R |I|^2/2/speed. Without the saturation that the current makes.
+    """
+    speed, resistances = at["speed"], answers.resistances(at)
+    _need_resistance(answers.design)
+    currents = _joined_terminals(answers, speed, resistances)
+    power = (resistances * np.abs(currents) ** 2).sum(axis=1) / 2
+    torque = -np.divide(power, speed, out=np.zeros_like(power), where=speed != 0.0)
+    each = np.abs(currents) / sqrt(2.0)
+    found = {"torque": torque + lost_torque(answers, at), "current": np.sqrt((each**2).mean(axis=1))}
+    return found | _by_phase("i", each.T)
+
+
+def _joined_terminals(answers: Answers, speed: np.ndarray, resistances: np.ndarray) -> np.ndarray:
+    """Complex amplitudes of the phase currents [A] (n, 3)."""
+    pairs = answers.design.machine.pole_pairs
+    omega = (pairs * speed)[:, None]
+    matrix = np.zeros((len(speed), 4, 4), dtype=complex)
+    matrix[:, :3, :3] = 1j * omega[:, :, None] * answers.inductances + resistances[:, :, None] * np.eye(3)
+    matrix[:, :3, 3], matrix[:, 3, :3] = -1.0, 1.0
+    driven = np.zeros((len(speed), 4, 1), dtype=complex)
+    driven[:, :3, 0] = -1j * omega * answers.linkage_waves[:, pairs]
+    return np.linalg.solve(matrix, driven)[:, :3, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Drag:
+    """What brakes the rotor, as a law of the dq machine."""
+
+    answers: Answers
+
+    def lost_torque(self, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
+        return -lost_torque(self.answers, {"speed": speed})
+
+
+def dq_machine(answers: Answers) -> DqMachine:
+    """The machine by its fundamental, means over phases and angles: what remains of it under load at speed.
+
+    Without saturation by its current; iron loss, friction and shorted turns brake the shaft.
+    """
+    waves = answers.linkage_waves[:, answers.design.machine.pole_pairs]
+    l_d, l_q = _rotor_frame(answers, waves / np.abs(waves))
+    _need_resistance(answers.design)
+    resistance = float(answers.resistances({"speed": np.zeros(1)}).mean())
+    psi_m = float(np.abs(waves).mean())
+    return DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, resistance).with_torque(_Drag(answers))
+
+
+def _rotor_frame(answers: Answers, axis: np.ndarray) -> tuple[float, float]:
+    """L_d and L_q [H]: flux linkage along the magnets' axis, and a quarter ahead, per current there."""
+    angle = load_angles(answers.design)
+    turn = np.exp(1j * answers.design.machine.pole_pairs * angle)[:, None] * axis
+    found = []
+    for unit in (turn.real, (1j * turn).real):
+        change = answers.flux_change(angle, 1e-3 * unit) / 1e-3
+        found.append(float(2 / 3 * (change * unit).sum(axis=1).mean()))
+    return found[0], found[1]
+
+
+def _by_its_fundamental(kind: str) -> Callable[[Answers, Columns], Found]:
+    def answer(answers: Answers, at: Columns) -> Found:
+        warm = answers.resistances(at).mean(axis=1)
+        machine = dq_machine(answers)
+        state = {name: values for name, values in at.items() if name not in ("winding_T", "magnet_T")}
+        return DQ.respond(machine, kind, state | {"resistance_factor": warm / machine.resistance})
+
+    return answer
+
+
+KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
+    "back_emf": _back_emf,
+    "cogging": _cogging,
+    "locked_rotor": _locked_rotor,
+    "flux_linkage": _flux_linkage,
+    "inductance": _inductance,
+    "phase_resistance": _phase_resistance,
+    "drag": _drag,
+    "short_circuit": _short_circuit,
+    "no_load": _by_its_fundamental("no_load"),
+    "dyno_map": _by_its_fundamental("dyno_map"),
+}
+_WITH_CURRENTS = ("locked_rotor", "flux_linkage", "inductance")
+_WITH_INDUCTANCE = ("short_circuit", "no_load", "dyno_map")
+
+
+def _need_resistance(design: MachineAsBuilt) -> None:
+    if not all(design.phase_resistance):
+        raise WorkbenchError("currents at speed need the resistance of the winding: give phase_resistance in [device]")
+
+
+def _by_phase(quantity: str, rows: np.ndarray) -> Found:
+    return {f"{quantity}_{x}": rows[k] for k, x in enumerate(PHASES)}
+
+
+def _currents(at: Columns) -> np.ndarray:
+    missing = [f"i_{x}" for x in PHASES if f"i_{x}" not in at]
+    if missing:
+        raise WorkbenchError(f"a loaded row needs the currents of all phases: the column {missing[0]} is missing")
+    return np.stack([at[f"i_{x}"] for x in PHASES], axis=1)
+
+
+# ---- loaded states -------------------------------------------------------------------------------------------------
+
+
+def loaded_states(design: MachineAsBuilt, tables: Sequence[Table]) -> tuple[LoadedState, ...]:
+    """States near all rows with currents, and the ones without that differences and inductances need, each once."""
+    found: dict[LoadedState, None] = {}
+    for table in tables:
+        found |= dict.fromkeys(_states_of(design, table))
+    if found:  # a bench with currents may be asked for a short circuit next
+        found |= dict.fromkeys(_of_inductance(design))
+    return tuple(found)
+
+
+def _of_inductance(design: MachineAsBuilt) -> list[LoadedState]:
+    return [LoadedState(_on_grid(angle), (0.0, 0.0, 0.0)) for angle in load_angles(design)]
+
+
+def _states_of(design: MachineAsBuilt, table: Table) -> list[LoadedState]:
+    if table.kind in _WITH_INDUCTANCE:
+        return _of_inductance(design)
+    if table.kind not in _WITH_CURRENTS:
+        return []
+    found = []
+    for angle, currents in zip(table.conditions["angle_mech"], _currents(table.conditions)):
+        a, b, c = map(_few_digits, currents)
+        found.append(LoadedState(_on_grid(angle), (a, b, c)))
+        if table.kind != "locked_rotor":
+            found.append(LoadedState(_on_grid(angle), (0.0, 0.0, 0.0)))
+    return found
+
+
+def _on_grid(angle: float) -> float:
+    return round(angle / _ANGLE_GRID) % _AROUND * _ANGLE_GRID
+
+
+def _few_digits(current: float) -> float:
+    two = float(f"{current:.1e}")
+    return two if abs(two - current) <= _TWO_DIGITS_WITHIN * abs(current) else float(f"{current:.2e}")
