@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import os
+import shutil
 from functools import cache
+from pathlib import Path
+from tempfile import gettempdir
 
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
@@ -16,6 +21,8 @@ from workbench.models.machine.surrogate import Surrogate
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
 PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
+SOLVED = Path(gettempdir()) / f"machine-case-{os.environ.get('PYTEST_XDIST_TESTRUNUID', os.getpid())}"
+atexit.register(shutil.rmtree, SOLVED, ignore_errors=True)  # until then all processes of a run share what is solved
 LOADED = LoadedState(0.1, (40.0, -20.0, -20.0))
 STATES = (LOADED, LoadedState(0.1, (0.0, 0.0, 0.0)), LoadedState(9 * DEGREE, (0.0, 0.0, 0.0)))  # those of inductances
 
@@ -35,7 +42,7 @@ def field(density: MeshDensity = COARSE) -> MachineField:
 
 @cache
 def builder() -> SurrogateBuilder:
-    return SurrogateBuilder(drawn(), PLAN)
+    return SurrogateBuilder(drawn(), PLAN, SOLVED)
 
 
 @cache

@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import COARSE, MIDDLE, drawn, field
-from workbench.models.machine.expansion import _no_load_derivatives
-from workbench.models.machine.field import LoadedState, idle, read_whole
+from workbench.models.machine.expansion import no_load_slopes
+from workbench.models.machine.field import LoadedState, idle, read
 
 PHASES = np.array([[(coil.phase == i) * coil.sign for coil in field().layout.coils] for i in range(3)])
 
@@ -41,7 +41,7 @@ def linkages(samples):
 )
 def test_revolution_from_its_window_is_what_is_solved_there(design, step):
     model = field().model(design, whole=True)
-    solved = read_whole(model.solve(idle(2 * np.pi * step / field().edges)))
+    solved = read(model.solve(idle(2 * np.pi * step / field().edges)))
     assert_allclose(field().no_load(design)[step], solved, rtol=1e-5, atol=1e-6)
 
 
@@ -100,7 +100,7 @@ def test_torque_per_ampere_is_voltage_per_speed():
 def test_derivative_for_another_magnet_is_that_of_its_own_solution():
     """Magnet 3 and slot 4 from the window of the regular machine, against a central difference of whole solutions."""
     fields = field(COARSE)
-    found = _no_load_derivatives(fields, ("both", "magnet", "slot"), lambda: None)
+    found = no_load_slopes(fields, ("both", "magnet", "slot"))
     for name, index, step in (("magnet_strengths", 3, 2e-3), ("opening_changes", 4, 4e-6), ("magnet_turns", 7, 1e-4)):
         start = getattr(drawn(), name)[index]
         ends = [fields.no_load(drawn().with_one(name, index, start + sign * step)) for sign in (1, -1)]

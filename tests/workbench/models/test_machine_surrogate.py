@@ -76,7 +76,7 @@ def test_with_current(name):
 
 def test_turns_current_and_angle_beside_a_solved_state():
     """Half a degree, 3 % more current, one phase 2 A off and half a turn missing, against its own field solution."""
-    fields = builder().loaded
+    fields = builder().fields.loaded
     design = drawn().without_turns(0, 0.5)
     angle, currents = STATES[0].angle + 0.0087, (41.2, -20.6, -18.6)
     state = replace(STATES[0], angle=angle, currents=currents)

@@ -33,6 +33,7 @@ import numpy as np
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
+from pipeline.pools import default_workers
 from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
@@ -56,12 +57,13 @@ _ON_A_MESH = ("back_emf", "cogging", "locked_rotor", "flux_linkage", "inductance
 class MachineBench(BaseModel):
     """The bench model of a machine. ``prepared`` makes one that answers at once for the rows of some tables.
 
-    plan: meshes;  cache: folder for field solutions, None for none
+    plan: meshes;  cache: folder for field solutions, None for none;  workers: processes that solve them
     surrogate: that answers;  about_drawing: where that is about another design, the one that it was made from
     """
 
     plan: MeshPlan = MeshPlan()
     cache: Path | None = CACHE
+    workers: int = field(default_factory=default_workers)
     surrogate: Surrogate | RoughSurrogate | None = None
     builder: SurrogateBuilder | None = None
     about_drawing: Surrogate | None = None
@@ -90,7 +92,7 @@ class MachineBench(BaseModel):
         self, design: MachineAsBuilt, tables: Sequence[Table], progress: Callable[[str], None] | None = None
     ) -> MachineBench:
         """The same bench with its surrogate about ``design`` for the loaded rows of the tables."""
-        builder = SurrogateBuilder(design, self.plan, self.cache)
+        builder = SurrogateBuilder(design, self.plan, self.cache, workers=self.workers)
         built = builder.build(loaded_states(design, tables), progress)
         return replace(self, surrogate=built, builder=builder, about_drawing=built)
 

@@ -241,7 +241,8 @@ class Terms:
         for part, rows in parts:
             weights = part.weights(p)
             if weights is not None:
-                total = total + np.tensordot(weights, rows, 1)
+                used = np.flatnonzero(weights)
+                total += np.einsum("t,tqn->qn", weights[used], rows[used])
         return total
 
     def each(self, form: Callable[[np.ndarray], np.ndarray]) -> Terms:
