@@ -28,7 +28,8 @@ from benchmarks.virtual_benches.mistakes import MISTAKES, Mistake, mistaken
 from benchmarks.virtual_benches.ngsolve_bench import hide as hide_in_field
 from effects.library import library
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import Pool, PooledWorkers, Processes
+from pipeline.pools import PooledWorkers
+from processes import Pool, Processes
 from workbench.data.campaign import read_campaign
 
 TUNING_START, SCORED_START = 10000, 0  # first seeds

@@ -33,7 +33,8 @@ from benchmarks.blind_figure import confusion_figure, reliability_figure
 from benchmarks.blind_metrics import Metric, by_kind, least_error, score, statements
 from benchmarks.this_machine import machine_name
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import Interrupted, Pool, PooledWorkers, Processes
+from pipeline.pools import Interrupted, PooledWorkers
+from processes import Pool, Processes
 
 PROJECT = Path(__file__).resolve().parent.parent
 RESULTS = PROJECT / "results" / "reference" / "blind_score"

@@ -13,7 +13,8 @@ from tempfile import TemporaryDirectory
 from optimisation.sweep import sweep_stage
 from pipeline.checkpoint import Checkpoint
 from pipeline.codec import digest
-from pipeline.pools import DaskCluster, Pool, PooledWorkers, Processes
+from pipeline.pools import DaskCluster, PooledWorkers
+from processes import Pool, Processes
 from study.inputs_field import field_case, saturation_limit, sweep_grid
 from study.read import read_study
 

@@ -41,7 +41,8 @@ from optimisation.gradient_optimum import find_optimum_by_gradients
 from optimisation.sweep import SweepBlock, blocks_of, solve_block
 from optimisation.torque import QuickMeanTorque
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import PooledWorkers, Processes
+from pipeline.pools import PooledWorkers
+from processes import Processes
 from study.inputs_field import field_case, saturation_limit, sweep_grid
 from study.read import read_study
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE

@@ -23,8 +23,9 @@ from pipeline.closure import code_digest, packages_of
 from pipeline.codec import digest
 from pipeline.graph import Export, Function, Graph, Source, Stage, Step, View, parameters, takes_workers
 from pipeline.modules import PROJECT
-from pipeline.pools import Pool, PooledWorkers, TaskError
+from pipeline.pools import PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
+from processes import Pool
 from study.errors import StudyError
 from study.schema import Study
 

@@ -23,11 +23,12 @@ from pipeline.closure import packages_of
 from pipeline.graph import Graph
 from pipeline.learning import learned_from
 from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
-from pipeline.pools import DaskCluster, Pool, Processes
+from pipeline.pools import DaskCluster
 from pipeline.results import Results, results_of
 from pipeline.run import Failure, Missing, Run, git_commit
 from pipeline.sentences import EXIT_FAILED, sentences
 from pipeline.stages import graph_of, graph_of_second_design
+from processes import Pool, Processes
 from study.errors import StudyError
 from study.read import read_study
 from study.schema import Study

@@ -12,6 +12,7 @@ ALLOWED = {
     "units": set(),
     "tasks": set(),
     "disk": set(),
+    "processes": set(),
     "materials": set(),
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
@@ -28,7 +29,7 @@ ALLOWED = {
     "report": {*_DESIGN, "figures"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "report", "effects", "workbench"},
 }
-BOTTOM = {"units", "tasks", "disk"}
+BOTTOM = {"units", "tasks", "disk", "processes"}
 
 
 def modules():

@@ -21,7 +21,7 @@ from benchmarks.blind_metrics import (
     statements,
 )
 from benchmarks.blind_score import Code, case_of, cases_of, table_of
-from pipeline.pools import Processes
+from processes import Processes
 
 
 # The design's table of exact binomial tests: the claim holds when so many cases of so many are right.

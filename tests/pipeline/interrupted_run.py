@@ -7,8 +7,9 @@ from pathlib import Path
 from worker_tasks import slow_square
 
 from pipeline.checkpoint import Checkpoint
-from pipeline.pools import PooledWorkers, Processes
+from pipeline.pools import PooledWorkers
 from pipeline.sentences import sentences
+from processes import Processes
 
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever starts the tests may have told them to ignore it

@@ -2,7 +2,7 @@
 
 from concurrent.futures import Future
 
-from pipeline.pools import Pool
+from processes import Pool
 
 
 class Here(Pool):

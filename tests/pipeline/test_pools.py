@@ -11,7 +11,8 @@ import pytest
 
 from pipeline.checkpoint import Checkpoint
 from pipeline.modules import PROJECT
-from pipeline.pools import DaskCluster, PooledWorkers, Processes, TaskError
+from pipeline.pools import DaskCluster, PooledWorkers, TaskError
+from processes import Processes
 
 HERE = Path(__file__).parent
 EXIT_INTERRUPTED = 130

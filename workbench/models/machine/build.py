@@ -20,7 +20,7 @@ from disk import write_atomically
 from effects.machine_design import MachineAsBuilt
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
-from pipeline.pools import LostWorker, Processes
+from processes import LostWorker, Processes
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.pieces import (
     DEFAULT_PLAN,

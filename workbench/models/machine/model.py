@@ -33,7 +33,7 @@ import numpy as np
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
-from pipeline.pools import default_workers
+from processes import default_workers
 from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
