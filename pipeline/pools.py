@@ -19,7 +19,7 @@ from typing import Any
 from tqdm import tqdm
 
 from pipeline.checkpoint import Checkpoint
-from processes import LostWorker, Pool, Result, Task, default_workers
+from processes import ONE_THREAD, LostWorker, Pool, Result, Task, default_workers
 
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
 SCHEDULER_TIMEOUT = "20s"  # to find a dask scheduler
