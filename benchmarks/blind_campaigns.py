@@ -19,7 +19,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+import pandas as pd
+
 from benchmarks.foreign import Left, left_by_library
+from benchmarks.inverse_crime import committed
 from benchmarks.virtual_benches.case import GROUPS, VISIBLE, Answer, Bench
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
@@ -31,6 +34,7 @@ from pipeline.checkpoint import Checkpoint
 from pipeline.pools import PooledWorkers
 from processes import Pool, Processes
 from workbench.data.campaign import read_campaign
+from workbench.data.column_units import split_unit
 
 TUNING_START, SCORED_START = 10000, 0  # first seeds
 LUMPED = {"damper": DAMPER, "dq": DQ}
@@ -68,7 +72,7 @@ def wanted(bench: str, count: int, scored: bool, groups: Iterable[str] = GROUPS)
 
 
 def write_campaign(task: Mapping[str, object]) -> dict:
-    """One campaign into its folder; the answer as plain values. task: fields of ``Wanted`` and ``folder``"""
+    """One campaign into its folder; the answer as plain values. task: fields of ``Wanted``, ``folder`` and ``crime``"""
     asked = Wanted(**{key: task[key] for key in ("bench", "group", "number", "scored")})
     folder = Path(str(task["folder"])) / asked.bench / asked.name
     made, answer = _foreign(asked) if asked.group == "outside" and asked.bench in LUMPED else _made(asked)
@@ -79,7 +83,20 @@ def write_campaign(task: Mapping[str, object]) -> dict:
         answer = _with_mistake(made, answer, asked, folder)
     else:
         made.write(folder)
-    return asdict(answer)
+    return asdict(_committed(folder, answer) if task["crime"] else answer)
+
+
+def _committed(folder: Path, answer: Answer) -> Answer:
+    """The campaign with readings of the workbench's own model, sizes of its priors and its noise: ``inverse_crime``."""
+    campaign = read_campaign(folder)
+    crime, answer = committed(campaign, library(), tuple(answer.effects), answer)
+    for table in crime.tables:
+        frame = pd.read_csv(folder / table.file).dropna()
+        for column in frame.columns:
+            if (name := split_unit(column)[0]) in table.responses:
+                frame[column] = table.responses[name].values
+        frame.to_csv(folder / table.file, index=False)
+    return answer
 
 
 def _made(asked: Wanted) -> tuple[Bench, Answer]:
@@ -131,24 +148,27 @@ def _can_be_made(mistake: Mistake, made: Bench) -> bool:
     )
 
 
-def write_campaigns(folder: Path, asked: Iterable[Wanted], pool: Pool) -> None:
-    """All campaigns with their answers and hashes; campaigns that are there are kept."""
+def write_campaigns(folder: Path, asked: Iterable[Wanted], pool: Pool, crime: bool = False) -> None:
+    """All campaigns with their answers and hashes; those that are there are kept. crime: see ``inverse_crime``"""
     asked = list(asked)
-    tasks = {f"{one.bench} {one.name}": {**asdict(one), "folder": str(folder)} for one in asked}
-    folder.mkdir(parents=True, exist_ok=True)
-    workers = PooledWorkers("blind campaigns", pool, lambda what: Checkpoint(folder / MADE, fingerprint()))
-    made = workers.map("campaigns", write_campaign, tasks)
-    for bench in {one.bench for one in asked}:
-        answers = {one.name: made[f"{bench} {one.name}"] for one in asked if one.bench == bench}
-        (folder / bench / ANSWERS).write_text(json.dumps(answers, indent=1, sort_keys=True), encoding="utf-8")
+    for bench in dict.fromkeys(one.bench for one in asked):
+        _write_bench(folder, bench, [one for one in asked if one.bench == bench], pool, crime)
     (folder / HASHES).write_text(json.dumps(hashes(folder), indent=1), encoding="utf-8")
 
 
-def fingerprint() -> str:
-    """SHA-256 of everything that makes a campaign, and of the library that says what is outside of it."""
+def _write_bench(folder: Path, bench: str, asked: list[Wanted], pool: Pool, crime: bool) -> None:
+    tasks = {one.name: {**asdict(one), "folder": str(folder), "crime": crime} for one in asked}
+    done = Checkpoint(folder / bench / MADE, fingerprint(bench))
+    made = PooledWorkers(f"{bench} campaigns", pool, lambda what: done).map("campaigns", write_campaign, tasks)
+    (folder / bench / ANSWERS).write_text(json.dumps(made, indent=1, sort_keys=True), encoding="utf-8")
+
+
+def fingerprint(bench: str) -> str:
+    """SHA-256 of everything that makes a campaign of a bench, and of the library that says what is outside of it."""
     here = Path(__file__).parent
     folders = (here / "virtual_benches", here.parent / "effects")
-    files = sorted(path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".npz"))
+    kinds = (".py", ".npz") if bench == "machine" else (".py",)
+    files = sorted(path for folder in folders for path in folder.rglob("*") if path.suffix in kinds)
     files += [Path(__file__), here / "foreign.py"]
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
@@ -172,6 +192,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--score", type=int, metavar="N", help="so many campaigns of a bench for the score")
     parser.add_argument("--bench", action="append", choices=BENCHES, help="only this bench")
     parser.add_argument("--group", action="append", choices=GROUPS, help="only this group")
+    parser.add_argument(
+        "--crime", action="store_true", help="readings by the workbench's own model: how much better that looks"
+    )
     parser.add_argument("--jobs", type=int, help="processes; as many as there are cores where it is not given")
     chosen = parser.parse_args(arguments)
     if (chosen.tune is None) == (chosen.score is None):
@@ -179,7 +202,7 @@ def main(arguments: list[str] | None = None) -> None:
     count, scored = (chosen.tune or chosen.score), chosen.score is not None
     benches = chosen.bench or BENCHES
     asked = [one for bench in benches for one in wanted(bench, count, scored, chosen.group or GROUPS)]
-    write_campaigns(chosen.folder, asked, Processes(chosen.jobs))
+    write_campaigns(chosen.folder, asked, Processes(chosen.jobs), chosen.crime)
     print(f"{len(asked)} campaigns in {chosen.folder}")
 
 

@@ -1,0 +1,117 @@
+"""The machine bench whose truth NGSolve solved: it agrees with the field model, and knows nothing of it."""
+
+import ast
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.virtual_benches import ngsolve_bench, truths
+from benchmarks.virtual_benches.instruments import Noise
+from benchmarks.virtual_benches.machine_hidden import EFFECTS, OUTSIDE, Solved, drawn, sensitivities
+from benchmarks.virtual_benches.ngsolve_bench import Eye, Reading, evaluated, machines, readings_of, truth
+from benchmarks.virtual_benches.truths import DEGREE, DRAWINGS, TWELVE_TEN, AsBuilt, coil_turns, revolution, window
+from geometry.half_cell import MeshDensity
+from geometry.winding import star_of_slots
+from workbench.models.machine.field import LoadedState, MachineField
+from workbench.models.machine.model import MachineBench
+
+DRAWING = "sense-12-10-drawing"
+
+
+@pytest.fixture(scope="module")
+def field():
+    """The project's own field of the machine as drawn."""
+    return MachineField(MachineBench(cache=None).design(TWELVE_TEN.device), MeshDensity(gap_edges=360))
+
+
+@pytest.fixture(scope="module")
+def machine():
+    return next(m for m in machines("sense") if m.name == DRAWING)
+
+
+def test_both_codes_agree_without_current(field):
+    samples = field.no_load(field.nominal).T
+    ours = np.fft.rfft(truths.phases_of(TWELVE_TEN, AsBuilt(), samples), axis=1) * 2 / samples.shape[1]
+    theirs = truth(DRAWING).spectrum
+    assert np.abs(theirs[1:, 5]) == pytest.approx(np.abs(ours[1:, 5]), rel=5e-4), "fundamental of the flux linkage"
+    assert np.angle(theirs[1:, 5] / ours[1:, 5]) == pytest.approx(0.0, abs=1e-3)
+    assert theirs[0, 60] == pytest.approx(ours[0, 60], abs=0.03 * abs(ours[0, 60])), "cogging"
+
+
+def test_both_codes_agree_with_current(field):
+    states = TWELVE_TEN.states()
+    picked = [0, 6, 12, 15]
+    loaded = field.loaded(field.nominal, [LoadedState(states[k][0] * DEGREE, states[k][1]) for k in picked])
+    ours = truths.phases_of(TWELVE_TEN, AsBuilt(), loaded.T)
+    theirs = truth(DRAWING)
+    alone = evaluated(theirs.spectrum[:1], np.array([states[k][0] for k in picked]) * DEGREE)[0]
+    assert theirs.torque[picked] + alone == pytest.approx(ours[0], abs=2e-3 * np.abs(ours[0]).max())
+    assert theirs.linkage[:, picked] == pytest.approx(ours[1:], abs=1.5e-3 * np.abs(ours[1:]).max())
+
+
+def test_the_truth_shares_nothing_with_the_field_model():
+    for name in ("ngsolve_machine", "truths", "machine_hidden", "ngsolve_bench"):
+        tree = ast.walk(ast.parse((Path(ngsolve_bench.__file__).parent / f"{name}.py").read_text(encoding="utf-8")))
+        found = {n.module.split(".")[0] for n in tree if isinstance(n, ast.ImportFrom) and n.module}
+        assert not found & {"effects", "workbench", "magnetostatics", "geometry", "materials"}, name
+
+
+@pytest.mark.parametrize("drawing", DRAWINGS.values(), ids=DRAWINGS)
+def test_coils_are_those_of_the_project(drawing):
+    coils = star_of_slots(drawing.slots, drawing.poles // 2).coils
+    assert drawing.phases == tuple(c.phase for c in coils) and drawing.signs == tuple(c.sign for c in coils)
+
+
+def test_a_revolution_follows_from_the_window_of_its_symmetry():
+    """A wave that turns with the rotor, seen by twelve coils: any window gives the same revolution."""
+    angle = 2 * np.pi * np.arange(360) / 360
+    coils = [np.cos(5 * (angle - k * np.pi / 6)) for k in range(12)]
+    whole = np.stack([np.sin(60 * angle), *coils])
+    for built in (
+        AsBuilt(),
+        AsBuilt(weak={1: 0.1}),
+        AsBuilt(openings={2: 1e-4}),
+        AsBuilt(weak={1: 0.1}, plugs={0: 9.0}),
+    ):
+        part = whole[:, : window(TWELVE_TEN, built)]
+        assert revolution(TWELVE_TEN, built, part) == pytest.approx(whole, abs=1e-9)
+    assert [window(TWELVE_TEN, b) for b in (AsBuilt(), AsBuilt(rotor_shift=(1e-5, 0.0)))] == [6, 30]
+
+
+def test_tolerances_add_up_and_machines_are_read_back():
+    assert (AsBuilt(remanence=0.1) + AsBuilt(remanence=-0.1)).remanence == pytest.approx(-0.01)
+    assert (AsBuilt(weak={1: 0.1}) + AsBuilt(weak={2: 0.2})).weak == {1: 0.1, 2: 0.2}
+    turns = coil_turns(TWELVE_TEN, AsBuilt(turns={3: 1.5}, phase_turns={0: 0.02}))
+    assert turns[3] == 5.5 and turns[0] == pytest.approx(7.14) and turns[4] == 7
+    for machine in drawn("tune") + sensitivities():
+        assert Solved.from_plain(json.loads(json.dumps(machine.as_plain()))) == machine
+
+
+def test_tuning_and_score_hide_different_machines_and_kinds():
+    tune, score = drawn("tune"), drawn("score")
+    assert not {json.dumps(m.as_plain()["built"]) for m in tune} & {json.dumps(m.as_plain()["built"]) for m in score}
+    kinds = [{name for m in many for name in m.outside} for many in (tune, score)]
+    assert kinds[0] | kinds[1] == set(OUTSIDE) and not kinds[0] & kinds[1]
+    assert all({e for m in many for e in m.effects} == set(EFFECTS) for many in (tune, score))
+
+
+def test_instruments_do_what_their_names_say(machine):
+    read = lambda **how: readings_of(TWELVE_TEN, machine, truth(DRAWING), Reading(**how))  # noqa: E731
+    sound, rubbing, leaking = read(), read(bearing_friction=0.01), read(end_leakage=0.1)
+    direction = ngsolve_bench.layouts(TWELVE_TEN)[1].conditions["direction"]
+    assert rubbing[1]["torque_Nm"] - sound[1]["torque_Nm"] == pytest.approx(-0.01 * direction)
+    assert leaking[0]["v_a_V"] == pytest.approx(0.9 * sound[0]["v_a_V"])
+    assert leaking[3]["dpsi_a_Vs"] == pytest.approx(sound[3]["dpsi_a_Vs"]), "the magnets have no part in it"
+    louder = read(voltage_gain=0.02)
+    assert louder[3]["dpsi_b_Vs"] == pytest.approx(1.02 * sound[3]["dpsi_b_Vs"]), "flux is integrated voltage"
+    assert np.ptp(read(resistance=(0.01, 0.0, 0.0))[4]["r_a_mohm"] / sound[4]["r_a_mohm"]) < 1e-12
+
+
+def test_what_is_declared_cannot_be_seen_and_friction_can():
+    eye = Eye(TWELVE_TEN, Noise(1.0, 0.2, 0.1, 0.5, remount=0.5))
+    base = eye.plain(Reading())
+    assert eye.chi2(eye.plain(Reading(voltage_gain=0.002)) - base) < 1.1, "one standard deviation"
+    assert eye.chi2(eye.tolerances[:, 0]) < 1.1
+    assert eye.chi2(eye.plain(Reading(bearing_friction=0.01)) - base) > 1000
