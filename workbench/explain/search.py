@@ -38,6 +38,7 @@ LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was tho
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
+KEPT = 40  # promises beside one fit that are followed up
 BESIDE = 4  # sets that are looked at beside an unknown function
 
 Progress = Callable[[str], None]
@@ -46,32 +47,49 @@ Set = frozenset[str]
 
 @dataclass(order=True)
 class Promise:
-    """A set that could be fitted, by linear algebra beside a fit. order: minus ln of its promised posterior"""
+    """A set that could be fitted, by linear algebra beside a fit. order: minus ln of its promised posterior
+
+    effects, x, z: null effects, nuisances and parameters where a fit of it begins
+    forms: what other forms of its effects add to ln evidence [nats]
+    """
 
     order: float
     label: str
-    parent: Hypothesis = field(compare=False)
-    names: Names = field(compare=False)
-    readings: Readings = field(compare=False)
-    found: Explanation = field(compare=False)
+    every: Set = field(compare=False)
+    effects: tuple[Effect, ...] = field(compare=False)
+    x: np.ndarray = field(compare=False)
+    z: np.ndarray = field(compare=False)
+    forms: float = field(compare=False)
 
-    @property
-    def every(self) -> Set:
-        return self.parent.names | self.found.names
 
-    def start(self, signatures: Signatures) -> tuple[tuple[Effect, ...], np.ndarray, np.ndarray]:
-        """Null effects, nuisances and parameters where a fit of it begins."""
+@dataclass(frozen=True, eq=False)
+class Additions:
+    """What may be added beside a fit. The products of all columns are let go of when the promises are made."""
+
+    search: Search
+    parent: Hypothesis
+    names: Names
+    readings: Readings
+
+    def promises(self, found: Mapping[Set, tuple[Explanation, float]]) -> list[Promise]:
+        """Of sets with ln of their promised posterior; the best few."""
+        leading = sorted(found, key=lambda every: (-found[every][1], _label(every)))[:KEPT]
+        return [self._promise(every, *found[every]) for every in leading]
+
+    def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
-        weights = self.names.catalogue.given(self.found.terms, self.readings).weights
+        weights = self.names.catalogue.given(found.terms, self.readings).weights
         effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
         place = self.names.catalogue.background.shape[1]
-        for term in (self.names.catalogue.terms[t] for t in self.found.terms):
-            signature = signatures.found[term.name][term.variant]
+        for term in (self.names.catalogue.terms[t] for t in found.terms):
+            signature = self.search.signatures.found[term.name][term.variant]
             count = len(parameters_of(signature.effect))
             effects.append(signature.effect)
             z.append(signature.at(term.place, np.clip(weights[place : place + count], -2.0, 2.0)))
             place += count
-        return tuple(effects), np.clip(weights[:m], -FAR, FAR), np.concatenate(z)
+        forms = self.search.forms.get(self.parent.names, 0.0) + found.forms
+        x = np.clip(weights[:m], -FAR, FAR)
+        return Promise(-promised, _label(every), every, tuple(effects), x, np.concatenate(z), forms)
 
 
 @dataclass(eq=False)
@@ -205,13 +223,13 @@ def _fit(search: Search, promise: Promise) -> bool:
     """Fits a set; False where the model has no answer. A guess of it is replaced."""
     every = promise.every
     try:
-        found = fitted_from(search.bench, *promise.start(search.signatures))
+        found = fitted_from(search.bench, promise.effects, promise.x, promise.z)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
         search.failed[promise.label] = str(error)
         search.guessed.pop(every, None)
         return False
     search.fitted[every] = found
-    search.forms[every] = search.forms.get(promise.parent.names, 0.0) + promise.found.forms
+    search.forms[every] = promise.forms
     search.guessed.pop(every, None)
     return True
 
@@ -219,17 +237,23 @@ def _fit(search: Search, promise: Promise) -> bool:
 def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     """Promises of one or two effects more beside a fit."""
     have = hypothesis.names
-    names = Names(search.signatures.catalogue(hypothesis.fit.jacobian, hypothesis.problem.white, have))
-    readings = names.catalogue.readings(at_zero(hypothesis)[:, None])[0]
-    for found in explored(names, readings, search.beliefs, have, min(len(have) + 2, MOST)).values():
-        every = have | found.names
-        if not found.names or every in search.fitted:
+    added = _additions(search, hypothesis, hypothesis.fit.jacobian)
+    sets = explored(added.names, added.readings, search.beliefs, have, min(len(have) + 2, MOST))
+    promised: dict[Set, tuple[Explanation, float]] = {}
+    for every, found in ((have | found.names, found) for found in sets.values() if found.names):
+        if every in search.fitted:
             continue
         gain = student_gain(hypothesis, found.gain)
         estimate = search.log_evidence(have) + gain
-        promised = estimate + SLACK * max(gain, 0.0) + search.beliefs.log_prior(every)
         search.guessed[every] = max(search.guessed.get(every, -np.inf), estimate)
-        heappush(heap, Promise(-promised, _label(every), hypothesis, names, readings, found))
+        promised[every] = found, estimate + SLACK * max(gain, 0.0) + search.beliefs.log_prior(every)
+    for promise in added.promises(promised):
+        heappush(heap, promise)
+
+
+def _additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
+    names = Names(search.signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
+    return Additions(search, hypothesis, names, names.catalogue.readings(at_zero(hypothesis)[:, None])[0])
 
 
 def student_gain(hypothesis: Hypothesis, gain: float) -> float:
@@ -282,16 +306,16 @@ def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None
     have = hypothesis.names
     if len(have) == MOST:
         return
-    background = np.hstack([hypothesis.fit.jacobian, beside.columns()])
-    names = Names(search.signatures.catalogue(background, hypothesis.problem.white, have))
-    readings = names.catalogue.readings(at_zero(hypothesis)[:, None])[0]
-    for found in explored(names, readings, search.beliefs, have, len(have) + 1).values():
+    added = _additions(search, hypothesis, np.hstack([hypothesis.fit.jacobian, beside.columns()]))
+    promised: dict[Set, tuple[Explanation, float]] = {}
+    for found in explored(added.names, added.readings, search.beliefs, have, len(have) + 1).values():
         every = have | found.names
         if found.names and every not in search.beside:
             gain = beside.log_evidence + search.forms.get(have, 0.0) + student_gain(hypothesis, found.gain)
             search.guessed_beside[every] = max(gain, search.guessed_beside.get(every, -np.inf))
-            order = -(gain + search.beliefs.log_prior(every))
-            heappush(heap, Promise(order, _label(every), hypothesis, names, readings, found))
+            promised[every] = found, gain + search.beliefs.log_prior(every)
+    for promise in added.promises(promised):
+        heappush(heap, promise)
 
 
 def _fit_beside(search: Search, promise: Promise) -> None:
