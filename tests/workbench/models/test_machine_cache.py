@@ -49,8 +49,8 @@ def test_a_malformed_file_counts_as_absent_and_is_replaced(store, spoil):
 def test_states_are_kept_one_by_one(tmp_path):
     """A second campaign with one more state solves that one; the rows come in the order that is asked for."""
     store, more = Store(tmp_path), LoadedState(0.4, (1.0, 2.0, -3.0))
-    first = store.load(LoadedCoils(), STATES)
-    assert first.missing == STATES
+    first = store.load(LoadedCoils(), STATES[:2])
+    assert first.missing == STATES[:2]
     store.save(first, {"slope coil[0]": np.array([[1.0], [2.0]])})
     second = store.load(LoadedCoils(), (more, STATES[1]))
     assert second.missing == (more,)
