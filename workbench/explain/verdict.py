@@ -38,9 +38,14 @@ class Thresholds:
 
 
 def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Verdict:
-    """Exactly one verdict. plainly_nothing: P(nothing that these data would show plainly)"""
+    """Exactly one verdict. Where an unknown function is there for sure no name is printed beside it: an effect may be
+    what its shape lacks of the true law.
+
+    plainly_nothing: P(nothing that these data would show plainly)
+    """
     sure, can_tell = thresholds.sure, thresholds.can_tell
-    if p.nothing < thresholds.quiet and can_tell and (groups := printed(p, sure)):
+    named = p.nothing < thresholds.quiet and can_tell and p.remains < sure
+    if named and (groups := printed(p, sure)):
         return _of_groups(p, groups)
     something = 1.0 - p.nothing
     if p.nothing >= thresholds.quiet:

@@ -9,7 +9,7 @@ have functions of their own of the same size and length.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import log
 
@@ -25,6 +25,7 @@ SIZES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)  # of the rms reading of the channe
 LENGTHS = (0.3, 0.8, 2.0)  # over which it changes, of the standard deviation of a condition
 TURNS = (0.1, 0.35, 1.2)  # the same for an angle over a revolution [rad]
 POWERS = (-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0)  # of plain laws
+PLACES = 6  # of a condition, from which a function of it alone is more than a few numbers
 LANDMARKS = 60  # shapes of a smooth function in one channel
 
 
@@ -32,7 +33,7 @@ LANDMARKS = 60  # shapes of a smooth function in one channel
 class Shape:
     """One kind of unknown function: what its rows have in common.
 
-    channels: names;  law: "smooth" or "power";  of: condition of a power law;  detail: length or power
+    channels: names;  law: "smooth", "along" (one condition) or "power";  of: that condition;  detail: length or power
     rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
     raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
     """
@@ -49,6 +50,8 @@ class Shape:
     def words(self) -> str:
         """For people."""
         where = ", ".join(self.channels)
+        if self.law == "along":
+            return f"a smooth function of {self.of} in {where}"
         if self.law == "power":
             return f"a law of {where} that goes with {self.of} to the power {self.detail:g}"
         return f"a smooth function of the conditions in {where}"
@@ -79,10 +82,11 @@ class Seen:
 
 
 def shapes_of(stack: Stack, white: Whitener) -> tuple[Shape, ...]:
-    """Every unknown function that is thought of: half of the prior for smooth ones, half for plain laws."""
+    """Every unknown function that is thought of: equal shares of the prior for smooth functions of all conditions, for
+    smooth functions of one of them, and for plain laws."""
     groups = _groups(stack)
     found = [(law, shape) for group in groups for law, shape in _of_group(stack, white, group)]
-    counts = {law: sum(1 for kind, _ in found if kind == law) for law in ("smooth", "power")}
+    counts = {law: sum(1 for kind, _ in found if kind == law) for law in ("smooth", "along", "power")}
     families = sum(1 for count in counts.values() if count)
     return tuple(_with_prior(shape, -log(families * counts[law])) for law, shape in found)
 
@@ -113,6 +117,12 @@ def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterat
     for length in range(len(LENGTHS)):
         raw = _blocks([_rms(stack, c) * smooth(table, length) for c in group])
         yield "smooth", Shape(names, "smooth", "", LENGTHS[length], rows, _whitened(stack, white, rows, raw), raw, 0.0)
+    for of in _alone(table):
+        only = replace(table, conditions={of: table.conditions[of]})
+        for length in range(len(LENGTHS)):
+            raw = _blocks([_rms(stack, c) * smooth(only, length) for c in group])
+            white_columns = _whitened(stack, white, rows, raw)
+            yield "along", Shape(names, "along", of, LENGTHS[length], rows, white_columns, raw, 0.0)
     for of, power, law in _laws(table):
         raw = _blocks([_rms(stack, c) * law[:, None] for c in group])
         yield "power", Shape(names, "power", of, power, rows, _whitened(stack, white, rows, raw), raw, 0.0)
@@ -136,6 +146,12 @@ def _whitened(stack: Stack, white: Whitener, rows: np.ndarray, raw: np.ndarray) 
     spread = np.zeros((stack.size, raw.shape[1]))
     spread[rows] = raw
     return white(spread)[rows]
+
+
+def _alone(table: Table) -> list[str]:
+    """Conditions beside others that have enough places for a function of them alone."""
+    varying = [name for name, values in table.conditions.items() if np.ptp(values) > 0 and name != "direction"]
+    return [name for name in varying if len(varying) > 1 and len(np.unique(table.conditions[name])) >= PLACES]
 
 
 def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:
