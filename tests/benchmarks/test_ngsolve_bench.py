@@ -104,6 +104,10 @@ def test_instruments_do_what_their_names_say():
     assert np.ptp(read(resistance=(0.01, 0.0, 0.0))[4]["r_a_mohm"] / sound[4]["r_a_mohm"]) < 1e-12
 
 
+ALL_SOLVED = all((ngsolve_bench.SOLVED / f"{machine.name}.npz").exists() for machine in sensitivities())
+
+
+@pytest.mark.skipif(not ALL_SOLVED, reason="not all machines are solved: python -m benchmarks.ngsolve_truths")
 def test_what_is_declared_cannot_be_seen_and_friction_can():
     eye = Eye(TWELVE_TEN, Noise(1.0, 0.2, 0.1, 0.5, remount=0.5))
     base = eye.plain(Reading())
