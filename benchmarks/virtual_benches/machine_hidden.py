@@ -139,12 +139,9 @@ def as_toleranced(z: Mapping[str, float]) -> AsBuilt:
 
 # ---- which machines are solved ---------------------------------------------------------------------------------------
 
-SENSITIVITIES = {
-    "remanence": 2.0,
-    "airgap_mm": 2.0,
-    "current_gain": 4.0,
-    "encoder_zero_deg": 4.0,
-}  # standard deviations
+# Tolerances and instruments that the field feels, with the standard deviations at which the machine as drawn is solved
+# on either side; from the three a square law follows.
+MOVED = {"remanence": 2.0, "airgap_mm": 2.0, "current_gain": 4.0, "encoder_zero_deg": 4.0}
 BASES = {"tune": 2, "score": 5}  # machines with nothing in them, of each drawing
 OF_EACH = {"tune": 1, "score": 2}  # machines with each effect; drawings take turns
 OUTSIDE_OF_EACH = {"tune": 2, "score": 5}
@@ -195,10 +192,11 @@ def _made(
 
 
 def sensitivities() -> list[Solved]:
-    """Machines as drawn, and with one tolerance or instrument moved."""
+    """Machines as drawn, and with one tolerance or instrument moved to either side."""
     found = []
     for drawing in DRAWINGS:
         found.append(Solved(f"sense-{drawing}-drawing", drawing, AsBuilt()))
-        for name, size in SENSITIVITIES.items():
-            found.append(Solved(f"sense-{drawing}-{name}", drawing, as_toleranced({name: size}), z={name: size}))
+        for name, size in MOVED.items():
+            for word, z in (("up", size), ("down", -size)):
+                found.append(Solved(f"sense-{drawing}-{name}-{word}", drawing, as_toleranced({name: z}), z={name: z}))
     return found

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -18,10 +18,11 @@ import numpy as np
 from benchmarks.virtual_benches.case import GROUPS, Answer, Bench, Series
 from benchmarks.virtual_benches.hiding import FREE, OUTSIDE, SEVERAL, SMALL, Layout, Setup, log_uniform, measured, white
 from benchmarks.virtual_benches.instruments import Noise, scan_shapes
-from benchmarks.virtual_benches.machine_hidden import SENSITIVITIES, SYSTEMATIC, TOLERANCE, Solved
+from benchmarks.virtual_benches.machine_hidden import MOVED, SYSTEMATIC, TOLERANCE, Solved, as_toleranced
 from benchmarks.virtual_benches.truths import (
     DEGREE,
     DRAWINGS,
+    AsBuilt,
     Drawing,
     Truth,
     coil_turns,
@@ -42,6 +43,8 @@ PHASE_SCATTER = 0.004  # relative, of the resistance of a phase
 FRICTION = (0.005, 0.025)  # Nm, of two sealed ball bearings
 RECORDER = (60.0, 120.0)  # order of the revolution that half of the recorders pass by half
 REPEATS = 3
+STEP = 0.1  # standard deviations, of differences
+MESH = 0.01  # relative, by which the cogging of good meshes of two codes differs
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,7 @@ class Reading:
     length: float = 0.0  # relative
     resistance: tuple[float, float, float] = (0.0, 0.0, 0.0)  # relative
     recorder: float = np.inf
+    mesh: float = 0.0  # cogging that a mesh makes too much, relative; of no machine
     # outside the library
     uneven_friction: float = 0.0  # changing once a revolution [Nm]
     heated: float = 0.0  # the resistance beyond its straight line at 80 K above 20 degC, relative
@@ -106,6 +110,27 @@ def truth(name: str, folder: Path = SOLVED) -> Truth:
         return truth_of(DRAWINGS[machine.drawing], machine.built, arrays)
 
 
+def toleranced(drawing: Drawing, z: Mapping[str, float]) -> Truth:
+    """The machine as drawn with tolerances and instruments at so many standard deviations, by the square law through
+    three solutions each; a turned encoder shifts what is known of the whole revolution by its angle."""
+    base = truth(f"sense-{drawing.name}-drawing")
+    spectrum, torque, linkage = base.spectrum, base.torque, base.linkage
+    for name, size in MOVED.items():
+        up, down = (truth(f"sense-{drawing.name}-{name}-{word}") for word in ("up", "down"))
+        share = z.get(name, 0.0) / size
+        torque = torque + _square_law(share, base.torque, up.torque, down.torque)
+        linkage = linkage + _square_law(share, base.linkage, up.linkage, down.linkage)
+        if name != "encoder_zero_deg":
+            spectrum = spectrum + _square_law(share, base.spectrum, up.spectrum, down.spectrum)
+    order = np.arange(spectrum.shape[1])
+    return Truth(spectrum * np.exp(1j * order * as_toleranced(z).turned), torque, linkage)
+
+
+def _square_law(share: float, here: np.ndarray, up: np.ndarray, down: np.ndarray) -> np.ndarray:
+    """The change from ``here`` at a share of the way to ``up``, negative towards ``down``."""
+    return share * (up - down) / 2 + share**2 * ((up + down) / 2 - here)
+
+
 def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Sum over orders n of Re(c_n exp(i n angle)) of spectra (k, orders) at angles (m,) [rad]: (k, m)."""
     return (spectrum @ np.exp(1j * np.arange(spectrum.shape[1])[:, None] * angle)).real
@@ -147,7 +172,7 @@ def _with_currents(states: Sequence[tuple[float, tuple[float, float, float]]]) -
     return {"angle_mech_deg": angles} | {f"i_{x}_A": currents[:, k] for k, x in enumerate("abc")}
 
 
-def readings_of(drawing: Drawing, machine: Solved, found: Truth, reading: Reading) -> list[dict[str, np.ndarray]]:
+def readings_of(drawing: Drawing, built: AsBuilt, found: Truth, reading: Reading) -> list[dict[str, np.ndarray]]:
     """Responses of every table, one repeat, free of random error."""
     length = drawing.length("active_length") * (1 + reading.length)
     kept, locked = 1 - reading.end_leakage, len(drawing.locked_angles) * len(drawing.locked_currents)
@@ -163,7 +188,7 @@ def readings_of(drawing: Drawing, machine: Solved, found: Truth, reading: Readin
         {"torque_Nm": _cell(reading, idle)},
         {"torque_Nm": _cell(reading, held)},
         {f"dpsi_{x}_Vs": length * changes[k] * (1 + reading.voltage_gain) for k, x in enumerate("abc")},
-        _resistances(drawing, machine, reading),
+        _resistances(drawing, built, reading),
     ]
 
 
@@ -177,7 +202,7 @@ def _voltages(found: Truth, reading: Reading, angle, direction, length: float) -
 
 
 def _cogging(found: Truth, reading: Reading, angle, direction, length: float) -> np.ndarray:
-    torque = length * evaluated(found.spectrum[:1], angle)[0] + reading.belt * np.sin(3 * angle)
+    torque = length * (1 + reading.mesh) * evaluated(found.spectrum[:1], angle)[0] + reading.belt * np.sin(3 * angle)
     braking = reading.bearing_friction + reading.uneven_friction * np.cos(angle) + reading.ringing * np.sin(23 * angle)
     return torque - direction * braking
 
@@ -188,10 +213,10 @@ def _cell(reading: Reading, torque: np.ndarray) -> np.ndarray:
     return bent * (1 + reading.torque_gain) + reading.torque_offset
 
 
-def _resistances(drawing: Drawing, machine: Solved, reading: Reading) -> dict[str, np.ndarray]:
+def _resistances(drawing: Drawing, built: AsBuilt, reading: Reading) -> dict[str, np.ndarray]:
     above = WINDING - 20.0
     warm = 1 + COPPER * above + reading.heated * (above / 80.0) ** 2
-    nominal, turns = float(drawing.device["phase_resistance_mohm_20degC"]), coil_turns(drawing, machine.built)
+    nominal, turns = float(drawing.device["phase_resistance_mohm_20degC"]), coil_turns(drawing, built)
     whole = float(drawing.device["turns_per_coil"]) * drawing.slots / 3
     wound = [sum(n for n, phase in zip(turns, drawing.phases) if phase == k) / whole for k in range(3)]
     return {f"r_{x}_mohm": nominal * wound[k] * (1 + reading.resistance[k]) * warm for k, x in enumerate("abc")}
@@ -202,13 +227,18 @@ def _resistances(drawing: Drawing, machine: Solved, reading: Reading) -> dict[st
 
 @dataclass(frozen=True, eq=False)
 class Eye:
-    """How far something stands out of noise, tolerances, instruments and scatter of mounting."""
+    """How far something stands out of noise, tolerances, instruments and scatter of mounting.
+
+    z: where tolerances and instruments of the machine are, in standard deviations
+    """
 
     drawing: Drawing
     noise: Noise
+    z: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def weight(self) -> float:
+        """Of the fitted repeats and of the true size of the noise, on a reading over its declared uncertainty."""
         return np.sqrt(REPEATS - 1) / self.noise.scale
 
     def stacked(self, tables: Sequence[Mapping[str, np.ndarray]]) -> np.ndarray:
@@ -220,36 +250,35 @@ class Eye:
         ]
         return np.concatenate(parts)
 
-    def plain(self, reading: Reading) -> np.ndarray:
-        """The machine as drawn, read so."""
-        return self.stacked(self._tables("drawing", reading))
+    def plain(self, reading: Reading, moved: Mapping[str, float] | None = None) -> np.ndarray:
+        """The machine with nothing in it, read so. moved: further standard deviations of tolerances"""
+        return self.stacked(self.tables(reading, moved))
 
-    def _tables(self, name: str, reading: Reading) -> list[dict[str, np.ndarray]]:
-        name = f"sense-{self.drawing.name}-{name}"
-        machine = next(m for m in machines("sense") if m.name == name)
-        return readings_of(self.drawing, machine, truth(name), reading)
+    def tables(self, reading: Reading, moved: Mapping[str, float] | None = None) -> list[dict[str, np.ndarray]]:
+        """As ``readings_of``, of the machine with nothing in it."""
+        z = {name: self.z.get(name, 0.0) + (moved or {}).get(name, 0.0) for name in MOVED}
+        return readings_of(self.drawing, AsBuilt(), toleranced(self.drawing, z), reading)
 
     @cached_property
     def tolerances(self) -> np.ndarray:
-        """One standard deviation of everything declared, of the phases' resistances and of mounting (n, columns)."""
+        """One standard deviation of everything declared, of the phases' resistances, of the cogging that a mesh leaves
+        uncertain, and of mounting (n, columns)."""
         base = self.plain(Reading())
-        in_field = [(self.stacked(self._tables(n, Reading())) - base) / size for n, size in SENSITIVITIES.items()]
+        in_field = [(self.plain(Reading(), {n: STEP}) - base) / STEP for n in MOVED]
         small = {
             "length": TOLERANCE["active_length_mm"],
             "voltage_gain": SYSTEMATIC["voltage_gain"][1],
             "torque_gain": SYSTEMATIC["torque_gain"][1],
             "torque_offset": SYSTEMATIC["torque_offset_Nm"][1],
+            "mesh": MESH,
         }
         read = [self.plain(Reading(**{name: size})) - base for name, size in small.items()]
-        phases = [
-            self.plain(Reading(resistance=tuple(PHASE_SCATTER * (k == j) for j in range(3)))) - base for k in range(3)
-        ]
+        scatter = [Reading(resistance=tuple(PHASE_SCATTER * (k == j) for j in range(3))) for k in range(3)]
+        phases = [self.plain(reading) - base for reading in scatter]
         return np.stack([*in_field, *read, *phases, *self._mounting()], axis=1)
 
     def _mounting(self) -> list[np.ndarray]:
-        columns = [
-            layout.declared(table) for layout, table in zip(layouts(self.drawing), self._tables("drawing", Reading()))
-        ]
+        columns = [layout.declared(table) for layout, table in zip(layouts(self.drawing), self.tables(Reading()))]
         sizes = [u for table in columns for u in table.values()]
         found, n, row = [], sum(map(len, sizes)), 0
         for u in sizes if self.noise.remount else ():
@@ -283,7 +312,7 @@ def hide(group: str, seed: int, which: str) -> tuple[Bench, Answer]:
     rng = np.random.default_rng([seed, GROUPS.index(group), sum(b"machine")])
     machine, added, strange = _choice(group, seed, which, rng)
     drawing, noise = DRAWINGS[machine.drawing], Noise.drawn(rng)
-    eye, reading = Eye(drawing, noise), _instruments(rng)
+    eye, reading = Eye(drawing, noise, machine.z), _instruments(rng)
     sizes = {name: _size(*EFFECTS[name], rng) for name in added}
     for name, size in sizes.items():
         reading = replace(reading, **{name: getattr(reading, name) + size})
@@ -352,14 +381,11 @@ class _Case:
 
     def read(self, reading: Reading | None = None) -> np.ndarray:
         found = truth(self.machine.name)
-        return self.eye.stacked(readings_of(self.eye.drawing, self.machine, found, reading or self.reading))
+        return self.eye.stacked(readings_of(self.eye.drawing, self.machine.built, found, reading or self.reading))
 
     def in_the_field(self) -> np.ndarray:
         """What the machine does beyond its tolerances."""
-        z = self.machine.z
-        moved = sum(self.eye.tolerances[:, k] * z.get(name, 0.0) for k, name in enumerate(SENSITIVITIES))
-        wound = replace(self.reading, resistance=(0.0,) * 3)
-        return self.read(wound) - self.eye.plain(wound) - moved
+        return self.read() - self.eye.plain(self.reading)
 
     def seen(self, name: str, effects: Mapping[str, float]) -> float:
         """chi2 of one effect beyond everything declared and beyond the others at any size."""
@@ -414,15 +440,14 @@ class _Case:
 def imitations(eye: Eye) -> Iterator[np.ndarray]:
     """What every solved effect of the field does to back-EMF and cogging, at every magnet or slot where it may sit
     (n,); zero in the other tables."""
-    drawn = next(m for m in machines("sense") if m.name == f"sense-{eye.drawing.name}-drawing")
-    there = readings_of(eye.drawing, drawn, truth(drawn.name), Reading())
-    for which in ("tune", "score"):
-        for machine in machines(which):
-            if machine.drawing == eye.drawing.name and len(machine.effects) == 1:
-                for spectrum in elsewhere(machine):
-                    moved = replace(truth(drawn.name), spectrum=spectrum)
-                    idle = readings_of(eye.drawing, machine, moved, Reading())[:2]
-                    yield eye.stacked([*idle, *there[2:]]) - eye.stacked(there)
+    for machine in (*machines("tune"), *machines("score")):
+        if machine.drawing == eye.drawing.name and len(machine.effects) == 1:
+            its = Eye(eye.drawing, eye.noise, machine.z)
+            there = its.tables(Reading())
+            for spectrum in elsewhere(machine):
+                found = replace(toleranced(eye.drawing, machine.z), spectrum=spectrum)
+                idle = readings_of(eye.drawing, machine.built, found, Reading())[:2]
+                yield eye.stacked([*idle, *there[2:]]) - eye.stacked(there)
 
 
 def elsewhere(machine: Solved, folder: Path = SOLVED) -> Iterator[np.ndarray]:
@@ -462,7 +487,7 @@ class _Answers:
 
 def _written(eye: Eye, machine: Solved, reading: Reading, name: str, rng: np.random.Generator) -> Bench:
     drawing = eye.drawing
-    tables = readings_of(drawing, machine, truth(machine.name), reading)
+    tables = readings_of(drawing, machine.built, truth(machine.name), reading)
     setup = Setup(drawing.device, TOLERANCE, SYSTEMATIC, layouts(drawing), None, REPEATS)
     bench = measured(_Answers(tables), setup, None, eye.noise, name, rng)
     return replace(bench, tables=tuple(_as_logged(table, rng) for table in bench.tables))

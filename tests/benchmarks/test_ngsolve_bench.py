@@ -10,7 +10,7 @@ import pytest
 from benchmarks.virtual_benches import ngsolve_bench, truths
 from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_hidden import EFFECTS, OUTSIDE, Solved, drawn, sensitivities
-from benchmarks.virtual_benches.ngsolve_bench import Eye, Reading, evaluated, machines, readings_of, truth
+from benchmarks.virtual_benches.ngsolve_bench import Eye, Reading, evaluated, readings_of, truth
 from benchmarks.virtual_benches.truths import DEGREE, DRAWINGS, TWELVE_TEN, AsBuilt, coil_turns, revolution, window
 from geometry.half_cell import MeshDensity
 from geometry.winding import star_of_slots
@@ -24,11 +24,6 @@ DRAWING = "sense-12-10-drawing"
 def field():
     """The project's own field of the machine as drawn."""
     return MachineField(MachineBench(cache=None).design(TWELVE_TEN.device), MeshDensity(gap_edges=360))
-
-
-@pytest.fixture(scope="module")
-def machine():
-    return next(m for m in machines("sense") if m.name == DRAWING)
 
 
 def test_both_codes_agree_without_current(field):
@@ -97,8 +92,8 @@ def test_tuning_and_score_hide_different_machines_and_kinds():
     assert all({e for m in many for e in m.effects} == set(EFFECTS) for many in (tune, score))
 
 
-def test_instruments_do_what_their_names_say(machine):
-    read = lambda **how: readings_of(TWELVE_TEN, machine, truth(DRAWING), Reading(**how))  # noqa: E731
+def test_instruments_do_what_their_names_say():
+    read = lambda **how: readings_of(TWELVE_TEN, AsBuilt(), truth(DRAWING), Reading(**how))  # noqa: E731
     sound, rubbing, leaking = read(), read(bearing_friction=0.01), read(end_leakage=0.1)
     direction = ngsolve_bench.layouts(TWELVE_TEN)[1].conditions["direction"]
     assert rubbing[1]["torque_Nm"] - sound[1]["torque_Nm"] == pytest.approx(-0.01 * direction)
@@ -109,6 +104,10 @@ def test_instruments_do_what_their_names_say(machine):
     assert np.ptp(read(resistance=(0.01, 0.0, 0.0))[4]["r_a_mohm"] / sound[4]["r_a_mohm"]) < 1e-12
 
 
+ALL_SOLVED = all((ngsolve_bench.SOLVED / f"{machine.name}.npz").exists() for machine in sensitivities())
+
+
+@pytest.mark.skipif(not ALL_SOLVED, reason="not all machines are solved: python -m benchmarks.ngsolve_truths")
 def test_what_is_declared_cannot_be_seen_and_friction_can():
     eye = Eye(TWELVE_TEN, Noise(1.0, 0.2, 0.1, 0.5, remount=0.5))
     base = eye.plain(Reading())
