@@ -35,9 +35,9 @@ def walked(out: Path) -> Added:
     return added
 
 
-def held_out_current(step: LedgerStep) -> float:
-    """Mean of both sweeps' rms error of the current on rows that no fit has seen [A]."""
-    return sum(step.held_out_rms_error[name] for name in CURRENT) / len(CURRENT)
+def current_error(step: LedgerStep) -> float:
+    """Mean of both sweeps' rms error of the current over all rows [A]."""
+    return sum(step.rms_error[name] for name in CURRENT) / len(CURRENT)
 
 
 def show(out: Path) -> None:
@@ -49,8 +49,8 @@ def show(out: Path) -> None:
     before = compare(nominal_model(campaign), campaign, package_effects())
     print(comparison_sentence(before))
     for s in end.ledger.steps:
-        words = f"{s.effect} {s.decision}; {size_words(s)}; chi2/n {s.chi2_per_n:.2f}, held out"
-        print(f"{words} {s.held_out_chi2_per_n:.2f}, current {held_out_current(s):.2f} A; then {s.verdict}")
+        words = f"{s.effect} {s.decision}; {size_words(s)}; chi2/n {s.chi2_per_n:.2f}, left out"
+        print(f"{words} {s.held_out_chi2_per_n:.2f}, current {current_error(s):.2f} A; then {s.verdict}")
     print(ledger_sentence(end.ledger), verdict_sentence(end.diagnosis), comparison_sentence(end.comparison), sep="\n")
     draw(before, end.comparison, before.failing, f"{len(end.comparison.effects)} effects", end.ledger, out)
     write_comparison_report(out / "comparison.html", end.comparison)
