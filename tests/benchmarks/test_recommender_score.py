@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.recommender_score import MEASURED, PARTS, RecommenderScore, Tried, score, tried
+from benchmarks.recommender_score import MEASURED, PARTS, RecommenderScore, Tried, score
 
 
 def case(after, advised, bench="damper", before=0.1):
@@ -31,10 +31,3 @@ def test_the_fixed_option_is_one_of_each_bench():
 
 def test_what_is_measured_first_is_one_of_the_parts():
     assert all(first in PARTS[bench] and len(PARTS[bench]) > 2 for bench, first in MEASURED.items())
-
-
-@pytest.mark.slow
-def test_a_case_from_end_to_end():
-    found = tried("dq", 12007)
-    assert found.truth == "winding_turns" and 0.02 < found.before < 0.9
-    assert found.choice == "operation" and found.after["operation"] > found.before

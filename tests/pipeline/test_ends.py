@@ -31,7 +31,9 @@ def ended(tmp_path, monkeypatch):
         monkeypatch.setattr(pipeline.run_command, "graph_of", lambda study: graph)
         monkeypatch.setattr(pipeline.run_command, "results_of", lambda study: Results(tmp_path / "results"))
         monkeypatch.setattr(pipeline.run_command, "Processes", lambda jobs, modules: Here())
-        options = argparse.Namespace(study=str(study.path), to=None, jobs=1, executor="processes", scheduler=None)
+        options = argparse.Namespace(
+            study=str(study.path), to=None, jobs=1, executor="processes", scheduler=None, model=None, out=None
+        )
         with pytest.raises(SystemExit) as end:
             run_command(options)
         assert end.value.code == 1

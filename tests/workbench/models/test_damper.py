@@ -248,7 +248,7 @@ def test_device_table_is_read_in_its_units():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"force_constant_N_per_A": -1.0}, "negative"),
+        ({"force_constant_N_per_A": -1.0}, "positive number or zero"),
         ({"force_constant_N_per_A": "60"}, "number"),
         ({"stroke_mm": 40.0}, "does not use"),
     ],
