@@ -99,9 +99,10 @@ def test_what_no_effect_explains_is_none_of_these_and_its_law_is_said(tmp_path):
     assert found.residual_signature["law"].endswith("displacement to the power 0.5")
 
 
-def test_an_effect_beside_an_unknown_law_explains_a_part(tmp_path):
+def test_beside_an_unknown_law_that_is_sure_an_effect_is_listed_and_not_named(tmp_path):
     found = diagnose(*of(written(tmp_path / "c", lambda x: 2 * even(x) + root(x))), LIBRARY)
-    assert (found.verdict, found.names) == ("partial", ("bump",)) and found.p_something_remains > 0.95
+    assert (found.verdict, found.names) == ("none_of_these", ()) and found.p_something_remains > 0.95
+    assert max(found.p_sets, key=found.p_sets.get) == "bump + something unknown"
 
 
 def test_two_effects_are_found_together(tmp_path):
