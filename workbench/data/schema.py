@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, get_args
@@ -364,8 +363,3 @@ def shown(value: object) -> str:
 def _short(text: str) -> str:
     text = " ".join(text.split())
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-def systematics_named(entry: TableEntry) -> Mapping[str, tuple[str, ...]]:
-    """Columns of a table -> the systematics that they name in ``u_sys``."""
-    return {name: column.u_sys for name, column in (entry.columns or {}).items()}

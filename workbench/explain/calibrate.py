@@ -24,7 +24,6 @@ from workbench.likelihood.unknown import SIZES, Beside, Shape, seen
 EMPTY, HIDDEN = 100, 60  # simulated campaigns that hide nothing, and that hide something
 POWER_SIZES = (3.0, 10.0)  # of unknown functions [rms over the uncertainty of a reading]
 NORMAL_90 = 1.2816  # one-sided 90 % of a standard normal
-FALSE_NAMES = 1.0 - 0.97  # wanted share of simulated campaigns in which a name that is printed is false
 _LEADERS = (1, 3)  # sets that are looked at with one effect more
 EFFECTS_ALONE, EFFECTS_IN_PAIRS = 0.5, 0.25  # of the campaigns that hide something; an unknown function in the rest
 
@@ -129,7 +128,7 @@ def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]
     empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
     quiet = min(1.0 - SURE, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
-    sure = max(SURE, -_lowest([-p for p in wrong], FALSE_NAMES))
+    sure = max(SURE, -_lowest([-p for p in wrong], FALSE_ALARMS))
     if spare_readings(simulator.bench) < SPARE:
         return Thresholds(sure, quiet, False), dict.fromkeys(POWER_SIZES, 0.0)
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}

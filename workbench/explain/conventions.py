@@ -53,6 +53,7 @@ from workbench.explain.mistakes import (
     slack,
     zero_grid,
 )
+from workbench.explain.verdict import CONVENTION
 from workbench.findings import Diagnosis
 from workbench.models.base import Progress
 from workbench.models.model import Model
@@ -136,7 +137,7 @@ def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: floa
     return Diagnosis(
         campaign=conventions.campaign.id,
         model=model.base.name,
-        verdict="convention",
+        verdict=CONVENTION,
         names=conventions.names,
         probability=conventions.probability,
         seed=seed,

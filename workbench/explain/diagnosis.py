@@ -26,7 +26,7 @@ from workbench.explain.search import Search, searched
 from workbench.explain.verdict import NONE_OF_THESE, NOTHING_MISSING, Thresholds, Verdict, verdict
 from workbench.findings import ChannelFit, Diagnosis, Ranked, Sealed, SizePosterior
 from workbench.likelihood.bench import Bench, bench_of, sealed_words
-from workbench.likelihood.fit import Problem, with_parameters
+from workbench.likelihood.fit import linearised
 from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import nearest
 from workbench.models.model import Model
@@ -117,8 +117,8 @@ def opened(bench: Bench, final: Hypothesis) -> Sealed | None:
     part = sealed_rows(bench, final)
     if part is None:
         return None
-    residual = part.residual(final.fit.x, final.effects)
-    slopes = _slopes(part, final)
+    there = linearised(part, final.fit.x, final.fit.effects, final.fit.z)
+    residual, slopes = there.residual, there.jacobian
     covariance = np.eye(len(residual)) + slopes @ final.fit.covariance @ slopes.T
     square = float(residual @ np.linalg.solve(covariance, residual))
     dof = float(np.mean([channel.dof for channel in bench.noise.channels]))
@@ -129,20 +129,6 @@ def opened(bench: Bench, final: Hypothesis) -> Sealed | None:
 def _heavier(rows: int, dof: float) -> float:
     """Factor on chi2 that the unknown size of the noise is worth: two standard deviations of it."""
     return 1.0 + 2.0 * float(np.sqrt(2.0 / dof)) if rows else 1.0
-
-
-def _slopes(part: Problem, final: Hypothesis) -> np.ndarray:
-    """Whitened derivatives of rows to nuisances and parameters at a fit (n, m + k)."""
-    fit, step = final.fit, 0.02
-    place = np.concatenate([fit.x, fit.z])
-    base = part.residual(fit.x, final.effects)
-    out = np.empty((len(base), len(place)))
-    for k in range(len(place)):
-        moved = place.copy()
-        moved[k] += step
-        x, z = moved[: len(fit.x)], moved[len(fit.x) :]
-        out[:, k] = -(part.residual(x, with_parameters(fit.effects, z)) - base) / step
-    return out
 
 
 def _with_sealed(said: Verdict, sealed: Sealed | None) -> Verdict:

@@ -26,11 +26,6 @@ class Beliefs:
     excluded: frozenset[frozenset[str]]
 
     @property
-    def log_nothing(self) -> float:
-        """ln prior of the campaign that hides nothing, up to what all explanations share: the odds count from it."""
-        return 0.0
-
-    @property
     def log_unknown(self) -> float:
         """ln odds of an unknown function."""
         return log(UNKNOWN_RATE) - log1p(-UNKNOWN_RATE)

@@ -205,14 +205,9 @@ def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
         parts.append((effect, whole.fit.z[place : place + count]))
         place += count
     kept = [(effect, z) for effect, z in parts if effect.name() in names]
-    try:
-        found = fitted_from(search.bench, [e for e, _ in kept], whole.fit.x, np.concatenate([z for _, z in kept]))
-    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
-        search.failed[_label(names)] = str(error)
-        return
-    search.fitted[names] = found
-    search.forms[names] = -sum(log(len(search.signatures.found[name])) for name in sorted(names))
-    search.guessed.pop(names, None)
+    forms = -sum(log(len(search.signatures.found[name])) for name in sorted(names))
+    effects, z = tuple(effect for effect, _ in kept), np.concatenate([z for _, z in kept])
+    _fit(search, Promise(0.0, _label(names), names, effects, whole.fit.x, z, forms))
 
 
 def _label(names: Set) -> str:
@@ -321,9 +316,11 @@ def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None
 def _fit_beside(search: Search, promise: Promise) -> None:
     """A set beside an unknown function, fitted where the set was not."""
     every = promise.every
-    if every in search.beside or (every not in search.fitted and not _fit(search, promise)):
+    if every in search.beside:
         return
-    found = beside_unknown(search.fitted[every], search.shapes)
+    search.guessed_beside.pop(every, None)
+    found = None
+    if every in search.fitted or _fit(search, promise):
+        found = beside_unknown(search.fitted[every], search.shapes)
     if found is not None:
         search.beside[every] = found
-        search.guessed_beside.pop(every, None)

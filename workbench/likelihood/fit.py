@@ -113,10 +113,6 @@ def with_parameters(effects: Sequence[Effect], z: np.ndarray) -> tuple[Effect, .
     return tuple(out)
 
 
-def parameter_count(effects: Sequence[Effect]) -> int:
-    return sum(len(parameters_of(effect)) for effect in effects)
-
-
 def fitted(
     problem: Problem, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None = None
 ) -> Fit:
@@ -136,10 +132,10 @@ def fitted(
     return search.result(p, slopes)
 
 
-def linearised(problem: Problem, x: np.ndarray) -> Fit:
-    """What a fit without effects would be if it ended at nuisances x."""
-    search = _Search(problem, (), len(x))
-    return search.result(np.asarray(x, dtype=float), search.nuisance_slopes(x, np.zeros(0)))
+def linearised(problem: Problem, x: np.ndarray, effects: Sequence[Effect] = (), z: np.ndarray = np.zeros(0)) -> Fit:
+    """What a fit of effects would be if it ended at nuisances x (m,) and parameters z (k,)."""
+    search = _Search(problem, tuple(effects), len(x))
+    return search.result(np.concatenate([x, z]), search.nuisance_slopes(x, z))
 
 
 @dataclass
