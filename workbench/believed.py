@@ -1,6 +1,6 @@
-"""What is believed before the data and what is wanted of a diagnosis of effects. How often each effect is met is said by
-the effect itself (``base_rate``); sizes and shapes of unknown functions stand in ``likelihood.unknown``, how noise is
-measured in ``likelihood.noise``, and what is asked before a convention is blamed in ``explain.mistakes``."""
+"""What is believed before the data and what is wanted of a diagnosis of effects. How often each effect is met is said
+by the effect itself (``base_rate``); sizes and shapes of unknown functions stand in ``likelihood.unknown``, how noise
+is measured in ``likelihood.noise``, and what is asked before a convention is blamed in ``explain.mistakes``."""
 
 UNKNOWN_RATE = 0.12  # share of campaigns that show something which no effect of the library is
 TAILS = 4.0  # degrees of freedom of Student's t of an effect's size [prior standard deviations]: far off is a surprise

@@ -116,20 +116,37 @@ def bench_of(
     tables = tuple(thinned(table, most_rows) for table in sealed.tables)
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = replace(predictor.stack, u=_with_conditions(predictor))
-    noise = measured_noise(stack, predictor.predict(predictor.start))
-    white = whitener(stack, noise)
     chosen = [~table.held_out for table in tables]
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
-    fit = _problem(predictor, stack, noise, white, chosen)
-    hidden = [~mask for mask in chosen]
-    held_out = _problem(predictor, stack, noise, white, hidden) if any(m.any() for m in hidden) else None
-    drawn = fit
-    fit, null = sharpened(fit, fitted(fit, (), predictor.start, np.zeros(0)))
+    noise = _noise_at(predictor, stack, chosen, predictor.start)
+    drawn = _problem(predictor, stack, noise, chosen)
+    first = fitted(drawn, (), predictor.start, np.zeros(0))
+    noise = _noise_at(predictor, stack, chosen, first.x)
+    drawn = _problem(predictor, stack, noise, chosen)
+    fit, null = sharpened(drawn, fitted(drawn, (), first.x, np.zeros(0)))
     fit = drawn if _far(fit, null) else fit
-    held_out = None if held_out is None else replace(held_out, predictor=fit.predictor.on(held_out.stack))
+    hidden = [~mask for mask in chosen]
+    held_out = _problem(fit.predictor, stack, noise, hidden) if any(m.any() for m in hidden) else None
     complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise) + _untested(tables)
+    white = whitener(stack, noise)
     return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, complaints)
+
+
+def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndarray], x: np.ndarray) -> Noise:
+    """Of the rows to fit and, apart, of the sealed ones: they say nothing of the noise but which of them are wild. A
+    channel whose repeats are all sealed but one is judged by all of them: else nothing would be known of its noise."""
+    predicted, inflation = predictor.predict(x), np.ones(stack.size)
+    whole = measured_noise(stack, predicted)
+    parts = []
+    for masks in (chosen, [~mask for mask in chosen]):
+        keep = np.concatenate([masks[c.table] for c in stack.channels])
+        parts.append(measured_noise(_part(stack, masks), predicted[keep]))
+        inflation[keep] = parts[-1].inflation
+    alone = [not own.pairs for own in parts[0].channels]
+    for channel in (c for c, one in zip(stack.channels, alone) if one):
+        inflation[channel.rows] = whole.inflation[channel.rows]
+    return Noise(tuple(w if one else o for o, w, one in zip(parts[0].channels, whole.channels, alone)), inflation)
 
 
 def _far(fit: Problem, null: Fit) -> bool:
@@ -165,15 +182,17 @@ def predictor_of(
     return DirectPredictor(model, nuisances_of(known, library, declared), stack)
 
 
-def _problem(
-    predictor: DirectPredictor, stack: Stack, noise: Noise, white: Whitener, chosen: Sequence[np.ndarray]
-) -> Problem:
-    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, chosen)])
-    keep = np.concatenate([chosen[c.table] for c in stack.channels])
-    part = replace(part, u=stack.u[keep])
-    own = replace(whitener(part, noise_on_rows(noise, stack, chosen)), sigma=white.sigma[keep])
+def _problem(predictor: DirectPredictor, stack: Stack, noise: Noise, chosen: Sequence[np.ndarray]) -> Problem:
+    part = _part(stack, chosen)
+    white = whitener(part, noise_on_rows(noise, stack, chosen))
     dof = np.array([channel.dof for channel in noise.channels])
-    return Problem(predictor.on(part), part, own, dof, predictor.start)
+    return Problem(predictor.on(part), part, white, dof, predictor.start)
+
+
+def _part(stack: Stack, chosen: Sequence[np.ndarray]) -> Stack:
+    """The chosen rows (one mask a table), their u as it is in the whole."""
+    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, chosen)])
+    return replace(part, u=stack.u[np.concatenate([chosen[c.table] for c in stack.channels])])
 
 
 def _with_conditions(predictor: DirectPredictor) -> np.ndarray:

@@ -132,9 +132,10 @@ def fitted(
     return search.result(p, slopes)
 
 
-def linearised(problem: Problem, x: np.ndarray, effects: Sequence[Effect] = (), z: np.ndarray = np.zeros(0)) -> Fit:
+def linearised(problem: Problem, x: np.ndarray, effects: Sequence[Effect] = (), z: Sequence[float] = ()) -> Fit:
     """What a fit of effects would be if it ended at nuisances x (m,) and parameters z (k,)."""
     search = _Search(problem, tuple(effects), len(x))
+    z = np.asarray(z, dtype=float)
     return search.result(np.concatenate([x, z]), search.nuisance_slopes(x, z))
 
 

@@ -2,7 +2,8 @@
 by (remounting, drift), single wild readings.
 
 The declared uncertainty gives the shape over the rows; its size is measured. Differences between repeats are taken of
-reading minus nominal model, so that conditions that were not set quite alike do no harm. Of a scan
+reading minus model, so that conditions that were not set quite alike do no harm. The model has a vote, like each
+repeat, on which reading is the wild one: of two alone nobody could tell. Of a scan
 
     z = (offset + slope (t - 1/2)) / u + AR(1) noise of size 1,   t: how far through the scan, 0 to 1
 """
@@ -18,8 +19,8 @@ from scipy.spatial import cKDTree
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 
-WILD = 2.5  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
-TAME_SHARE = 0.9749  # mean of min(d^2, WILD^2) of a standard normal d
+WILD = 2.0  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
+TAME_SHARE = 0.9205  # mean of min(d^2, WILD^2) of a standard normal d
 REPORTED = 4.5  # standard deviations of disagreement from which a reading is called wild
 DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the repeats
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
@@ -133,7 +134,7 @@ def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whiten
 def _scans(table: Table) -> list[np.ndarray]:
     """Rows of every scan of every repeat."""
     _, which = np.unique(np.stack([table.scan, table.repeat]), axis=1, return_inverse=True)
-    return [np.flatnonzero(which == k) for k in range(which.max() + 1)]
+    return [np.flatnonzero(which == k) for k in range(which.max(initial=-1) + 1)]
 
 
 def _through(rows: int) -> np.ndarray:
@@ -141,35 +142,62 @@ def _through(rows: int) -> np.ndarray:
     return np.linspace(-0.5, 0.5, rows) if rows > 1 else np.zeros(rows)
 
 
-def measured_noise(stack: Stack, nominal: np.ndarray) -> Noise:
+def measured_noise(stack: Stack, predicted: np.ndarray) -> Noise:
     """Noise of each channel of a stack from its repeats.
 
-    nominal: readings of the nominal model (n,)
+    predicted: readings of the model (n,)
     """
-    whole = [_deviation(stack, channel, nominal) for channel in stack.channels]
-    deviations = [_within_scans(stack.tables[c.table], stack.u[c.rows], d) for c, d in zip(stack.channels, whole)]
-    scales = [_scale(d) for d in deviations]
-    rhos = _correlations(stack, deviations, scales)
-    inflation = np.ones(stack.size)
-    channels, scans = [], []
-    for channel, d, scale, rho, all_of_it in zip(stack.channels, deviations, scales, rhos, whole):
-        ratio = np.nan_to_num(np.abs(d.row) / scale.size) if scale.pairs else np.zeros(channel.size)
-        inflation[channel.rows] = np.maximum(ratio / WILD, 1.0)
-        dof = _dof(scale.pairs, rho)
-        size = np.sqrt((DECLARED_WEIGHT + scale.pairs * scale.size**2) / (DECLARED_WEIGHT + scale.pairs))
-        channels.append(
-            ChannelNoise(
-                channel.name,
-                float(size),
-                float(rho),
-                dof,
-                scale.pairs,
-                int((ratio > REPORTED).sum()),
-            )
-        )
-        u = stack.u[channel.rows]
-        scans.append(_of_whole_scans(stack.tables[channel.table], u, all_of_it.spread / size, rho))
-    return Noise(tuple(replace(c, scans=spread) for c, spread in zip(channels, _spreads(scans))), inflation)
+    residual = (stack.y - predicted) / stack.u
+    raw = _disagreements(stack, residual)
+    tame = _disagreements(stack, residual - _wild_part(stack, raw))
+    rhos = _correlations(stack, tame.within, tame.scales)
+    found = [_of_channel(c.name, s, r) for c, s, r in zip(stack.channels, tame.scales, rhos)]
+    ratios = [_ratio(d.row, scale) for d, scale in zip(raw.within, tame.scales)]
+    scans = [
+        _of_whole_scans(stack.tables[c.table], stack.u[c.rows], d.spread / own.scale, own.rho)
+        for c, d, own in zip(stack.channels, tame.whole, found)
+    ]
+    channels = tuple(
+        replace(own, scans=spread, wild=int((ratio > REPORTED).sum()))
+        for own, spread, ratio in zip(found, _spreads(scans), ratios)
+    )
+    return Noise(channels, np.maximum(np.concatenate(ratios) / WILD, 1.0) if ratios else np.ones(0))
+
+
+def _of_channel(name: str, scale: _Scale, rho: float) -> ChannelNoise:
+    """The measured size drawn towards the declared one."""
+    size = np.sqrt((DECLARED_WEIGHT + scale.pairs * scale.size**2) / (DECLARED_WEIGHT + scale.pairs))
+    return ChannelNoise(name, float(size), float(rho), _dof(scale.pairs, rho), scale.pairs, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Disagreements:
+    """Of the repeats of every channel. within: less what a scan as a whole is off by"""
+
+    whole: list[_Deviation]
+    within: list[_Deviation]
+    scales: list[_Scale]
+
+
+def _disagreements(stack: Stack, residual: np.ndarray) -> _Disagreements:
+    whole = [_deviation(stack, channel, residual) for channel in stack.channels]
+    within = [_within_scans(stack.tables[c.table], stack.u[c.rows], d) for c, d in zip(stack.channels, whole)]
+    return _Disagreements(whole, within, [_scale(d) for d in within])
+
+
+def _ratio(disagreement: np.ndarray, scale: _Scale) -> np.ndarray:
+    """Of every row, over the size of the noise (n,); zero where nothing is known."""
+    return np.nan_to_num(np.abs(disagreement) / scale.size) if scale.pairs else np.zeros(len(disagreement))
+
+
+def _wild_part(stack: Stack, found: _Disagreements) -> np.ndarray:
+    """By how much every reading is further off its repeats than WILD, of u (n,): left in, it would move their mean and
+    make all of them look noisy. The model has no vote here: a wrong one must not look like noise."""
+    parts = [
+        np.nan_to_num(np.sign(d.middle)) * np.maximum(_ratio(d.middle, scale) - WILD, 0.0) * scale.size
+        for d, scale in zip(found.within, found.scales)
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0)
 
 
 def noise_on_rows(noise: Noise, stack: Stack, chosen: Sequence[np.ndarray]) -> Noise:
@@ -182,12 +210,13 @@ def noise_on_rows(noise: Noise, stack: Stack, chosen: Sequence[np.ndarray]) -> N
 class _Deviation:
     """Of the size of the noise of one reading over u, NaN where a row has no partner (n,).
 
-    spread: from the mean of the repeats, for the size of the noise;  row: from their median, which shows which one
-    is wild
+    spread: from the mean of the repeats, for the size of the noise;  middle: from their median, which no wild reading
+    moves;  row: from the median of them and the model, which shows which one is wild
     dof: differences that are independent
     """
 
     spread: np.ndarray
+    middle: np.ndarray
     row: np.ndarray
     dof: int
 
@@ -198,25 +227,23 @@ class _Scale:
     pairs: int
 
 
-def _deviation(stack: Stack, channel: Channel, nominal: np.ndarray) -> _Deviation:
-    table = stack.tables[channel.table]
-    rows = channel.rows
-    residual = (stack.y[rows] - nominal[rows]) / stack.u[rows]
-    stations = matched_rows(table)
-    spread, row = np.full(channel.size, np.nan), np.full(channel.size, np.nan)
+def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviation:
+    stations = matched_rows(stack.tables[channel.table])
+    spread, middle, row = np.full((3, channel.size), np.nan)
     if stations is None:
-        return _Deviation(spread, row, 0)
-    values = residual[stations]  # (stations, repeats)
+        return _Deviation(spread, middle, row, 0)
+    values = residual[channel.rows][stations]  # (stations, repeats)
     repeats = values.shape[1]
-    growth = np.sqrt(repeats / (repeats - 1))
-    spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
-    row[stations] = (values - np.median(values, axis=1, keepdims=True)) * growth
-    return _Deviation(spread, row, len(stations) * (repeats - 1))
+    votes = np.column_stack([values, np.zeros(len(values))])
+    spread[stations] = (values - values.mean(axis=1, keepdims=True)) * np.sqrt(repeats / (repeats - 1))
+    middle[stations] = values - np.median(values, axis=1, keepdims=True)
+    row[stations] = values - np.median(votes, axis=1, keepdims=True)
+    return _Deviation(spread, middle, row, len(stations) * (repeats - 1))
 
 
 def _within_scans(table: Table, u: np.ndarray, whole: _Deviation) -> _Deviation:
     """The deviations less mean and slope of every scan that is long enough to have them."""
-    spread, row = whole.spread.copy(), whole.row.copy()
+    spread, middle, row = whole.spread.copy(), whole.middle.copy(), whole.row.copy()
     for rows in _scans(table):
         known = rows[np.isfinite(spread[rows])]
         if len(known) < SHORTEST_SCAN:
@@ -226,8 +253,9 @@ def _within_scans(table: Table, u: np.ndarray, whole: _Deviation) -> _Deviation:
         line = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0]
         free = np.sqrt(len(known) / (len(known) - 2))
         spread[known] = (spread[known] - line) * free
+        middle[known] -= line
         row[known] -= line
-    return _Deviation(spread, row, whole.dof)
+    return _Deviation(spread, middle, row, whole.dof)
 
 
 def _fence(values: np.ndarray) -> tuple[float, float]:

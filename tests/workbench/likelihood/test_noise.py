@@ -167,3 +167,40 @@ def test_an_open_circuit_leaves_the_other_shunts_apart():
     stations = matched_rows(one)
     shunts = one.conditions["shunt"][stations]
     assert (shunts == shunts[:, :1]).all() and set(shunts[:, 0]) == {0.3, 1.0, 1e6}
+
+
+def readings_of(errors):
+    """Of a channel of the same ten stations in every repeat (repeats, 10), in u of 0.2, as a stack."""
+    repeats, rows = errors.shape
+    number, place = np.repeat(np.arange(repeats), rows), np.tile(np.linspace(0, 1, rows), repeats)
+    return stacked([table({"force": 0.2 * errors.ravel()}, 0.2, number, number, displacement=place)])
+
+
+def test_the_model_votes_which_of_two_readings_is_the_wild_one():
+    errors = 0.1 * np.random.default_rng(1).standard_normal((2, 10))
+    errors[1, 4] += 12.0
+    found = noise_of(readings_of(errors)).inflation.reshape(2, 10)
+    assert found[1, 4] > 3 and np.delete(found.ravel(), 14).max() < 1.5
+
+
+def test_two_wild_readings_of_three_do_not_become_physics():
+    errors = np.random.default_rng(2).standard_normal((3, 60))
+    errors[1:, 20] = 4.5, 8.0
+    stack = readings_of(errors)
+    assert noise_of(stack).inflation.reshape(3, 60)[2, 20] > 2
+
+
+def test_what_all_repeats_show_is_not_wild():
+    errors = np.random.default_rng(3).standard_normal((3, 60))
+    errors[:, 20] += 10.0
+    assert noise_of(readings_of(errors)).inflation.reshape(3, 60)[:, 20].max() < 1.5
+
+
+def test_sealed_rows_say_nothing_of_the_noise(tmp_path):
+    folder = written(tmp_path, n=400, repeats=3)
+    quiet = bench(folder).noise.channels[0].scale
+    lines = (folder / "pull.csv").read_text().splitlines()
+    parts = [line.split(",") for line in lines[1:]]
+    loud = [f"{r},{x},{float(f) + (np.sin(7e4 * k) if r == '2' else 0.0):.6f}" for k, (r, x, f) in enumerate(parts)]
+    (folder / "pull.csv").write_text("\n".join([lines[0], *loud]))
+    assert bench(folder).noise.channels[0].scale == pytest.approx(quiet, rel=1e-6)
