@@ -15,6 +15,7 @@ import numpy as np
 
 from effects.base import Effect
 from units import DEGREE
+from workbench.believed import SURE
 from workbench.data.checks import checks_of
 from workbench.data.conventions import (
     ANGLE,
@@ -529,7 +530,7 @@ ALLOWED_BEYOND = 0.1  # of an end, by which the model must go beyond it somewher
 def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken) -> Conventions:
     checks = checks_of(campaign)
     everything = fixes + broken
-    if not everything:
+    if not everything or not broken and _p_wrong(best) < SURE:
         return Conventions((), campaign, _p_wrong(best), checks=checks)
     others = _equivalents(best)
     section = section_of(everything)

@@ -27,6 +27,7 @@ from workbench.data.conventions import (
 from workbench.data.table import Table
 
 OVERWHELMING = 7.0  # nats, odds of 1000 to 1, by which the data must prefer each fix beyond what it is believed
+COLDEST, HOTTEST = -80.0, 450.0  # degC, between which a column of temperatures reads, be it one of kelvins
 COMMON, USUAL, RARE = 4.0, 5.5, 7.5  # minus ln of how often a first file has this mistake
 NEAR = 0.2  # of the logarithm of a factor, beyond which it is another one; effects reach 20 %
 NEAR_TEN = 0.5  # the same for a power of ten, which no effect comes near
@@ -148,13 +149,20 @@ def _signs(table: Table) -> Iterator[tuple[Fix, float]]:
 def _exchanges(table: Table) -> Iterator[tuple[Fix, float]]:
     asked = _asked(table)
     for one, other in combinations([*asked, *table.responses], 2):
-        if one in asked and not np.array_equal(_values(table, one), _values(table, other)):
+        differ = not np.array_equal(_values(table, one), _values(table, other))
+        if one in asked and differ and _can_be_exchanged(table, one, other):
             alike = quantity(one) == quantity(other)
             yield SwappedColumns(table.file, (one, other)), COMMON if alike else RARE
     phases = tuple(c for c in asked if is_phase(c))
     if len(phases) == 3:
         yield SwappedColumns(table.file, phases), COMMON
         yield SwappedColumns(table.file, phases[::-1]), COMMON
+
+
+def _can_be_exchanged(table: Table, one: str, other: str) -> bool:
+    """Whether what would stand in a column of temperatures can be any."""
+    held = [_values(table, b) for a, b in ((one, other), (other, one)) if a.endswith("_T")]
+    return all(COLDEST < values.min() and values.max() < HOTTEST for values in held)
 
 
 def _values(table: Table, column: str) -> np.ndarray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from heapq import heappop, heappush
+from heapq import heapify, heappop, heappush
 from math import log
 
 import numpy as np
@@ -33,13 +33,16 @@ from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures, candidates, signatures_of
 from workbench.likelihood.unknown import Shape, shapes_of
 
-FITS = 40  # fits of sets of effects at most
+FITS = 60  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
+TWINS = 8.0  # nats behind the best, within which what may stand in the place of an effect of it is fitted
+EXCHANGED = 2  # such others for each of its effects
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
 KEPT = 40  # promises beside one fit that are followed up
 BESIDE = 4  # sets that are looked at beside an unknown function
+MOST_BESIDE = 16  # effects at most that are fitted beside one
 
 Progress = Callable[[str], None]
 Set = frozenset[str]
@@ -72,9 +75,9 @@ class Additions:
     readings: Readings
 
     def promises(self, found: Mapping[Set, tuple[Explanation, float]]) -> list[Promise]:
-        """Of sets with ln of their promised posterior; the best few."""
+        """Of sets with ln of their promised posterior; the best few and the smaller ones that they hold."""
         leading = sorted(found, key=lambda every: (-found[every][1], _label(every)))[:KEPT]
-        return [self._promise(every, *found[every]) for every in leading]
+        return [self._promise(e, *found[e]) for e in found if any(e <= every for every in leading)]
 
     def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
@@ -96,8 +99,9 @@ class Additions:
 class Search:
     """All that was tried. fitted: by set of names;  forms: what other forms of the effects add to ln evidence
 
-    guessed: ln evidence of sets that promised too little to be fitted;  beside: sets beside an unknown function
-    guessed_beside: ln evidence of such sets that were not fitted
+    guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
+    guessed;  beside: sets beside an unknown function
+    guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
     """
 
     bench: Bench
@@ -107,9 +111,11 @@ class Search:
     fitted: dict[Set, Hypothesis]
     forms: dict[Set, float] = field(default_factory=dict)
     guessed: dict[Set, float] = field(default_factory=dict)
+    origins: dict[Set, Set] = field(default_factory=dict)
     beside: dict[Set, Beside] = field(default_factory=dict)
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
+    expanded: set[Set] = field(default_factory=set)
 
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
@@ -148,11 +154,17 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     beliefs = beliefs_of(library, signatures.names)
     shapes = shapes_of(bench.fit.stack, bench.fit.white)
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
-    _best_first(search, progress)
-    less_one(search, progress)
+    _effects_alone(search, progress)
     _exactly(search, progress)
+    _cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]))
     _beside_unknown(search, progress)
     return search
+
+
+def _cap(guessed: dict[Set, float], beliefs: Beliefs, best: float) -> None:
+    """A guess that was not followed up counts for no more than the best that was fitted (ln posterior)."""
+    for names in guessed:
+        guessed[names] = min(guessed[names], best - beliefs.log_prior(names))
 
 
 def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypothesis:
@@ -170,19 +182,82 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
     return search.fitted[heap[0].every]
 
 
-def _best_first(search: Search, progress: Progress) -> None:
+def _effects_alone(search: Search, progress: Progress) -> None:
+    """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
+    until that changes nothing."""
     heap: list[Promise] = []
     _expand(search, search.fitted[frozenset()], heap)
+    _best_first(search, heap, progress)
+    settled: set[Set] = set()
+    while (leader := search.ranked[0]) not in settled:
+        settled.add(leader)
+        less_one(search, progress)
+        for names in (leader - {name} for name in sorted(leader)):
+            if names in search.fitted and names not in search.expanded:
+                _expand(search, search.fitted[names], heap)
+            _exchange(search, leader, names, heap, progress)
+        _best_first(search, heap, progress)
+
+
+def _exchange(search: Search, leader: Set, rest: Set, heap: list[Promise], progress: Progress) -> None:
+    """What leads is weighed against the few that promise most in the place of one of its effects: beside a tolerance
+    that was pulled far a promise of its twin is too modest by several nats."""
+    least = search.log_posterior(leader) - TWINS
+    others = [p for p in heap if p.every > rest and len(p.every) == len(leader) and p.every in search.guessed]
+    for promise in sorted(others, key=lambda p: (-_promised(search, p.every), p.label))[:EXCHANGED]:
+        if _promised(search, promise.every) >= least:
+            heap.remove(promise)
+            progress("fitting " + promise.label)
+            _fit(search, promise)
+    heapify(heap)
+
+
+def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None:
     while heap and len(search.fitted) <= FITS:
         promise = heappop(heap)
         if promise.every in search.fitted or _label(promise.every) in search.failed:
             continue
+        if _has_paled(search, promise):
+            heappush(heap, promise)
+            continue
+        if (smaller := _smaller(search, promise, heap)) is not None:
+            heappush(heap, promise)
+            promise = smaller
         within = -promise.order >= search.log_posterior(search.ranked[0]) - REACH
         if not within and len(search.fitted) > LEAST_FITS:
+            heappush(heap, promise)
             break
         progress("fitting " + promise.label)
         if _fit(search, promise) and len(promise.every) < MOST:
             _expand(search, search.fitted[promise.every], heap)
+
+
+def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise | None:
+    """A promise of the same effects but some that leads too, taken from the heap: if it is not kept, neither is that of
+    the larger set, nor of a hundred others that hold it."""
+    least = search.log_posterior(search.ranked[0]) - REACH
+    open_ones = [p for p in heap if p.every < promise.every and p.every in search.guessed]
+    leading = [p for p in open_ones if search.guessed[p.every] + search.beliefs.log_prior(p.every) >= least]
+    if not leading:
+        return None
+    first = min(leading, key=lambda p: (len(p.every), p.order, p.label))
+    heap.remove(first)
+    heapify(heap)
+    return first
+
+
+def _has_paled(search: Search, promise: Promise) -> bool:
+    """Whether a promise has become worse since it was made; it is given its new order."""
+    order = -_promised(search, promise.every)
+    paled, promise.order = order > promise.order, max(order, promise.order)
+    return paled
+
+
+def _promised(search: Search, every: Set) -> float:
+    """ln posterior that a set promises: its guess, and a share of what it would gain over all that was fitted of it."""
+    guess = search.guessed[every]
+    before = max(search.log_evidence(names) for names in search.fitted if names <= every)
+    return guess + SLACK * max(guess - before, 0.0) + search.beliefs.log_prior(every)
 
 
 def less_one(search: Search, progress: Progress) -> None:
@@ -217,33 +292,45 @@ def _label(names: Set) -> str:
 def _fit(search: Search, promise: Promise) -> bool:
     """Fits a set; False where the model has no answer. A guess of it is replaced."""
     every = promise.every
+    guess = search.guessed.pop(every, -np.inf)
     try:
         found = fitted_from(search.bench, promise.effects, promise.x, promise.z)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
         search.failed[promise.label] = str(error)
-        search.guessed.pop(every, None)
         return False
     search.fitted[every] = found
     search.forms[every] = promise.forms
-    search.guessed.pop(every, None)
+    _lower(search, every, max(guess - search.log_evidence(every), 0.0))
     return True
+
+
+def _lower(search: Search, every: Set, shortfall: float) -> None:
+    """Sets that hold one whose guess was too high were guessed too high as well, unless beside a nearer fit."""
+    origin = search.origins.get(every, frozenset())
+    for names in search.guessed:
+        if names > every and search.origins[names] <= origin:
+            search.guessed[names] -= shortfall
 
 
 def _expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     """Promises of one or two effects more beside a fit."""
     have = hypothesis.names
+    search.expanded.add(have)
     added = _additions(search, hypothesis, hypothesis.fit.jacobian)
     sets = explored(added.names, added.readings, search.beliefs, have, min(len(have) + 2, MOST))
     promised: dict[Set, tuple[Explanation, float]] = {}
     for every, found in ((have | found.names, found) for found in sets.values() if found.names):
         if every in search.fitted:
             continue
-        gain = student_gain(hypothesis, found.gain)
-        estimate = search.log_evidence(have) + gain
-        search.guessed[every] = max(search.guessed.get(every, -np.inf), estimate)
-        promised[every] = found, estimate + SLACK * max(gain, 0.0) + search.beliefs.log_prior(every)
-    for promise in added.promises(promised):
-        heappush(heap, promise)
+        guess = search.log_evidence(have) + student_gain(hypothesis, found.gain)
+        origin = search.origins.get(every, frozenset())
+        if every not in search.guessed or len(have) > len(origin) or guess > search.guessed[every]:
+            search.guessed[every], search.origins[every] = guess, have
+            promised[every] = found, _promised(search, every)
+    renewed = added.promises(promised)
+    stale = {promise.every for promise in renewed}
+    heap[:] = [promise for promise in heap if promise.every not in stale] + renewed
+    heapify(heap)
 
 
 def _additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
@@ -291,8 +378,11 @@ def _beside_unknown(search: Search, progress: Progress) -> None:
     leader = max(search.beside, key=lambda n: search.beside[n].log_evidence + search.beliefs.log_prior(n))
     if leader:
         _effects_beside(search, search.beside[leader], heap)
-    for promise in [heappop(heap) for _ in range(min(BESIDE, len(heap)))]:
-        _fit_beside(search, promise)
+    best = lambda: max(b.log_evidence + search.beliefs.log_prior(n) for n, b in search.beside.items())  # noqa: E731
+    for number, promise in enumerate(sorted(heap)[:MOST_BESIDE]):
+        if number < BESIDE or -promise.order >= best() - REACH:
+            _fit_beside(search, promise)
+    _cap(search.guessed_beside, search.beliefs, best())
 
 
 def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None:

@@ -16,7 +16,15 @@ from workbench.data.stack import Stack, rows_of, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised
-from workbench.likelihood.noise import Noise, Whitener, measured_noise, noise_on_rows, places_of, whitener
+from workbench.likelihood.noise import (
+    Noise,
+    Whitener,
+    measured_noise,
+    noise_on_rows,
+    places_of,
+    whitener,
+    with_wild_readings,
+)
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.predictor import DirectPredictor
 from workbench.likelihood.regions import sealed_region
@@ -134,19 +142,23 @@ def bench_of(
 
 
 def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndarray], x: np.ndarray) -> Noise:
-    """Of the rows to fit and, apart, of the sealed ones: they say nothing of the noise but which of them are wild. A
+    """Size and correlation of the noise from the rows to fit alone; of sealed rows only which are wild is asked. A
     channel whose repeats are all sealed but one is judged by all of them: else nothing would be known of its noise."""
     predicted, inflation = predictor.predict(x), np.ones(stack.size)
     whole = measured_noise(stack, predicted)
-    parts = []
-    for masks in (chosen, [~mask for mask in chosen]):
-        keep = np.concatenate([masks[c.table] for c in stack.channels])
-        parts.append(measured_noise(_part(stack, masks), predicted[keep]))
-        inflation[keep] = parts[-1].inflation
-    alone = [not own.pairs for own in parts[0].channels]
-    for channel in (c for c, one in zip(stack.channels, alone) if one):
+    parts = [(_part(stack, masks), _rows(stack, masks)) for masks in (chosen, [~mask for mask in chosen])]
+    own = measured_noise(parts[0][0], predicted[parts[0][1]])
+    channels = tuple(o if o.pairs else w for o, w in zip(own.channels, whole.channels))
+    for part, rows in parts:
+        inflation[rows] = with_wild_readings(channels, part, predicted[rows]).inflation
+    for channel in (c for c, o in zip(stack.channels, own.channels) if not o.pairs):
         inflation[channel.rows] = whole.inflation[channel.rows]
-    return Noise(tuple(w if one else o for o, w, one in zip(parts[0].channels, whole.channels, alone)), inflation)
+    return Noise(channels, inflation)
+
+
+def _rows(stack: Stack, chosen: Sequence[np.ndarray]) -> np.ndarray:
+    """One mask a table -> one of the rows of the stack (n,)."""
+    return np.concatenate([chosen[c.table] for c in stack.channels])
 
 
 def _far(fit: Problem, null: Fit) -> bool:
@@ -192,7 +204,7 @@ def _problem(predictor: DirectPredictor, stack: Stack, noise: Noise, chosen: Seq
 def _part(stack: Stack, chosen: Sequence[np.ndarray]) -> Stack:
     """The chosen rows (one mask a table), their u as it is in the whole."""
     part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, chosen)])
-    return replace(part, u=stack.u[np.concatenate([chosen[c.table] for c in stack.channels])])
+    return replace(part, u=stack.u[_rows(stack, chosen)])
 
 
 def _with_conditions(predictor: DirectPredictor) -> np.ndarray:

@@ -25,6 +25,7 @@ class Term:
 
     name: of the effect;  shift: what it adds there (n,);  columns: how that changes with its weights (n, k)
     log_prior: ln of the prior share of the place among all terms of the name [1]
+    reach: smallest and largest weight of every column that the place stands for (k, 2)
     variant, place: numbers of the form of the effect and of the place on its grid
     """
 
@@ -32,6 +33,7 @@ class Term:
     shift: np.ndarray
     columns: np.ndarray
     log_prior: float
+    reach: np.ndarray
     variant: int = 0
     place: int = 0
 
@@ -96,6 +98,11 @@ class Catalogue:
         sizes = np.diff(self.first) - 1
         return {int(k): np.flatnonzero(sizes == k) for k in np.unique(sizes)}
 
+    @cached_property
+    def reaches(self) -> dict[int, np.ndarray]:
+        """Reach of the terms of each size (t, k, 2)."""
+        return {k: np.stack([self.terms[t].reach for t in which]) for k, which in self.by_size.items()}
+
 
 @dataclass(frozen=True, eq=False)
 class Given:
@@ -159,4 +166,14 @@ class Given:
         root = np.linalg.cholesky(np.eye(size) + gram[:, 1:, 1:])
         moved = np.linalg.solve(root, left[:, 1:] - gram[:, 1:, :1])
         spread = np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
-        return left[:, 0] - 0.5 * gram[:, 0, :1] + 0.5 * np.sum(moved**2, axis=1) - spread[:, None]
+        gain = left[:, 0] - 0.5 * gram[:, 0, :1] + 0.5 * np.sum(moved**2, axis=1) - spread[:, None]
+        return gain - _out_of_reach(root, moved, self.catalogue.reaches[size])
+
+
+def _out_of_reach(root: np.ndarray, moved: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """What expected weights beyond their reach lose where they are held there [nats] (t, R): linear algebra would make
+    a friction negative where the model cannot. root: of A (t, k, k);  moved: root^T times the weights (t, k, R)"""
+    upper = root.transpose(0, 2, 1)
+    weights = np.linalg.solve(upper, moved)
+    held = np.clip(weights, reach[:, :, :1], reach[:, :, 1:])
+    return 0.5 * np.sum((upper @ (weights - held)) ** 2, axis=1)

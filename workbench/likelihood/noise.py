@@ -152,16 +152,23 @@ def measured_noise(stack: Stack, predicted: np.ndarray) -> Noise:
     tame = _disagreements(stack, residual - _wild_part(stack, raw))
     rhos = _correlations(stack, tame.within, tame.scales)
     found = [_of_channel(c.name, s, r) for c, s, r in zip(stack.channels, tame.scales, rhos)]
-    ratios = [_ratio(d.row, scale) for d, scale in zip(raw.within, tame.scales)]
     scans = [
         _of_whole_scans(stack.tables[c.table], stack.u[c.rows], d.spread / own.scale, own.rho)
         for c, d, own in zip(stack.channels, tame.whole, found)
     ]
-    channels = tuple(
-        replace(own, scans=spread, wild=int((ratio > REPORTED).sum()))
-        for own, spread, ratio in zip(found, _spreads(scans), ratios)
-    )
-    return Noise(channels, np.maximum(np.concatenate(ratios) / WILD, 1.0) if ratios else np.ones(0))
+    channels = [replace(own, scans=spread) for own, spread in zip(found, _spreads(scans))]
+    return with_wild_readings(channels, stack, predicted)
+
+
+def with_wild_readings(channels: Sequence[ChannelNoise], stack: Stack, predicted: np.ndarray) -> Noise:
+    """Noise of known size on rows of a stack, those that are off their repeats counting less.
+
+    channels: in the order of the stack;  predicted: readings of the model (n,)
+    """
+    rows = [d.row for d in _disagreements(stack, (stack.y - predicted) / stack.u).within]
+    ratios = [np.nan_to_num(np.abs(row) / own.scale) for row, own in zip(rows, channels)]
+    counted = tuple(replace(own, wild=int((ratio > REPORTED).sum())) for own, ratio in zip(channels, ratios))
+    return Noise(counted, np.maximum(np.concatenate(ratios) / WILD, 1.0) if ratios else np.ones(0))
 
 
 def _of_channel(name: str, scale: _Scale, rho: float) -> ChannelNoise:
@@ -185,16 +192,11 @@ def _disagreements(stack: Stack, residual: np.ndarray) -> _Disagreements:
     return _Disagreements(whole, within, [_scale(d) for d in within])
 
 
-def _ratio(disagreement: np.ndarray, scale: _Scale) -> np.ndarray:
-    """Of every row, over the size of the noise (n,); zero where nothing is known."""
-    return np.nan_to_num(np.abs(disagreement) / scale.size) if scale.pairs else np.zeros(len(disagreement))
-
-
 def _wild_part(stack: Stack, found: _Disagreements) -> np.ndarray:
     """By how much every reading is further off its repeats than WILD, of u (n,): left in, it would move their mean and
     make all of them look noisy. The model has no vote here: a wrong one must not look like noise."""
     parts = [
-        np.nan_to_num(np.sign(d.middle)) * np.maximum(_ratio(d.middle, scale) - WILD, 0.0) * scale.size
+        np.nan_to_num(np.sign(d.middle) * np.maximum(np.abs(d.middle) - WILD * scale.size, 0.0))
         for d, scale in zip(found.within, found.scales)
     ]
     return np.concatenate(parts) if parts else np.zeros(0)

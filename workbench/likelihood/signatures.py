@@ -25,6 +25,7 @@ from workbench.likelihood.noise import Whitener
 # cells an axis and half-width of the grid [standard deviations] by number of parameters
 _GRIDS = {1: (9, 4.5), 2: (5, 3.5), 3: (4, 3.0), 4: (3, 2.4)}
 _BELL = 1 / np.sqrt(2 * np.pi)  # standard deviation over width of a bell as high as the box it stands for
+MOST_WEIGHT = 1e3  # of a column that does nothing
 UNSEEN = 0.05  # length of a whitened signature below which an effect does nothing to these data
 
 Progress = Callable[[str], None]
@@ -53,8 +54,25 @@ class Signature:
         """A term for every place of the grid that has an answer. share: ln of the prior of this variant"""
         s = white(self.change)
         tangents = np.stack([white(t) for t in self.tangents]) * (_BELL * self.width)
+        reach = np.stack([self._reach(s, tangents[a], a) for a in range(len(tangents))])
         for k in np.flatnonzero(np.isfinite(self.log_prior)):
-            yield Term(self.name, s[:, k], tangents[:, :, k].T, float(self.log_prior[k]) + share, variant, int(k))
+            prior = float(self.log_prior[k]) + share
+            yield Term(self.name, s[:, k], tangents[:, :, k].T, prior, reach[:, :, k], variant, int(k))
+
+    def _reach(self, s: np.ndarray, column: np.ndarray, axis: int) -> np.ndarray:
+        """Weights of a column at which a place becomes its neighbour below and above, at an end of the grid nothing at
+        all (2, K). s: whitened changes;  column: of this axis, whitened (n, K)"""
+        shape = grid(len(self.tangents))[2]
+        on_grid = np.moveaxis(s.reshape((len(s),) + shape), 1 + axis, -1)
+        known = np.moveaxis(np.isfinite(self.log_prior).reshape(shape), axis, -1)
+        steps = np.linalg.norm(np.diff(on_grid, axis=-1), axis=0)
+        both = known[..., 1:] & known[..., :-1]
+        apart = np.repeat(np.linalg.norm(on_grid, axis=0)[None], 2, axis=0)
+        apart[0, ..., 1:] = np.where(both, steps, apart[0, ..., 1:])
+        apart[1, ..., :-1] = np.where(both, steps, apart[1, ..., :-1])
+        lengths = np.linalg.norm(column, axis=0)
+        weights = np.moveaxis(apart, -1, 1 + axis).reshape(2, -1) / np.where(lengths > 0, lengths, 1e-300)
+        return np.minimum(weights, MOST_WEIGHT) * np.array([[-1.0], [1.0]])
 
     def at(self, place: int, weights: np.ndarray) -> np.ndarray:
         """z (k,) of a place of the grid moved by the weights of its columns."""

@@ -8,6 +8,7 @@ from workbench.explain.explore import Beliefs, Names
 from workbench.likelihood.marginal import Catalogue, Term
 
 ODDS = np.log(0.05 / 0.95)
+ANY = np.array([[-1e3, 1e3]])
 
 
 def names_of(shapes, places=(-2.0, -1.0, 1.0, 2.0), background=None):
@@ -15,7 +16,7 @@ def names_of(shapes, places=(-2.0, -1.0, 1.0, 2.0), background=None):
     rows, effects = shapes.shape
     background = 0.5 * np.ones((rows, 1)) if background is None else background
     terms = [
-        Term(f"e{k}", place * shapes[:, k], 0.4 * shapes[:, k : k + 1], -np.log(len(places)), 0, number)
+        Term(f"e{k}", place * shapes[:, k], 0.4 * shapes[:, k : k + 1], -np.log(len(places)), ANY, 0, number)
         for k in range(effects)
         for number, place in enumerate(places)
     ]

@@ -18,6 +18,8 @@ from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_
 from workbench.explain.search import Search, best_alone, less_one, searched, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
+from workbench.likelihood.marginal import Catalogue
+from workbench.likelihood.noise import Whitener
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
 from workbench.models.model import Model
@@ -228,6 +230,15 @@ def test_tangents_do_not_reach_over_places_without_an_answer():
     z = found.z[:, 0]
     assert found.tangents[0, 0, last] == pytest.approx(z[last] + z[last - 1])
     assert np.allclose(found.tangents[0, 0, 1:last], 2 * z[1:last]) and not found.tangents[0, 0, last + 2 :].any()
+
+
+def test_a_size_that_cannot_be_negative_is_not_promised_a_negative_one():
+    """A friction on its logarithmic grid, held against readings that show less than none."""
+    friction = signature(Bump(), lambda effect: np.full(40, np.exp(2 * effect.size)))
+    white = Whitener(np.ones(40), np.zeros(40))
+    catalogue = Catalogue(np.zeros((40, 0)), tuple(friction.terms(white, 0, 0.0)))
+    gains = catalogue.given((), catalogue.readings(-3.0 * np.ones((40, 1)))[0]).gains()
+    assert gains.max() < 0
 
 
 def test_the_prior_of_a_grid_is_that_of_its_cells():

@@ -13,7 +13,7 @@ def problem(seed):
     """A background of two columns, terms of one, two and three, and two residuals."""
     random = np.random.default_rng(seed)
     draw = lambda *shape: random.standard_normal(shape)  # noqa: E731
-    terms = tuple(Term(f"e{k}", draw(ROWS), draw(ROWS, k), 0.0) for k in (1, 2, 3, 1))
+    terms = tuple(Term(f"e{k}", draw(ROWS), draw(ROWS, k), 0.0, np.tile([-1e3, 1e3], (k, 1))) for k in (1, 2, 3, 1))
     return Catalogue(draw(ROWS, 2), terms), 3 * draw(ROWS, 2)
 
 
