@@ -101,7 +101,8 @@ class Simulator:
         mine = np.flatnonzero([term.name == name for term in self.names.catalogue.terms])
         shares = np.exp(self.names.priors[mine])
         term = self.names.catalogue.terms[int(self.random.choice(mine, p=shares / shares.sum()))]
-        return term.shift + term.columns @ self.random.standard_normal(term.columns.shape[1])
+        weights = np.clip(self.random.standard_normal(term.columns.shape[1]), *term.reach.T)
+        return term.shift + term.columns @ weights
 
     def _as_simulated(self, residuals: np.ndarray, truths: list[tuple[frozenset[str], bool]]) -> list[Simulated]:
         readings = self.names.catalogue.readings(residuals)
