@@ -28,7 +28,7 @@ from workbench.explain.hypotheses import (
     null_of,
 )
 from workbench.likelihood.bench import Bench
-from workbench.likelihood.fit import FAR, misfit
+from workbench.likelihood.fit import FAR, misfit, with_parameters
 from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures, candidates, signatures_of
 from workbench.likelihood.unknown import Shape, shapes_of
@@ -36,8 +36,8 @@ from workbench.likelihood.unknown import Shape, shapes_of
 FITS = 60  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
-TWINS = 8.0  # nats behind the best, within which what may stand in the place of an effect of it is fitted
-EXCHANGED = 2  # such others for each of its effects
+EXCHANGED = 2  # others that are tried in the place of each effect of what leads
+ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
 KEPT = 40  # promises beside one fit that are followed up
@@ -195,21 +195,42 @@ def _effects_alone(search: Search, progress: Progress) -> None:
         for names in (leader - {name} for name in sorted(leader)):
             if names in search.fitted and names not in search.expanded:
                 _expand(search, search.fitted[names], heap)
-            _exchange(search, leader, names, heap, progress)
+        _exchange(search, leader, progress)
         _best_first(search, heap, progress)
 
 
-def _exchange(search: Search, leader: Set, rest: Set, heap: list[Promise], progress: Progress) -> None:
-    """What leads is weighed against the few that promise most in the place of one of its effects: beside a tolerance
-    that was pulled far a promise of its twin is too modest by several nats."""
-    least = search.log_posterior(leader) - TWINS
-    others = [p for p in heap if p.every > rest and len(p.every) == len(leader) and p.every in search.guessed]
-    for promise in sorted(others, key=lambda p: (-_promised(search, p.every), p.label))[:EXCHANGED]:
-        if _promised(search, promise.every) >= least:
-            heap.remove(promise)
-            progress("fitting " + promise.label)
-            _fit(search, promise)
-    heapify(heap)
+def _exchange(search: Search, leader: Set, progress: Progress) -> None:
+    """What leads is weighed against the few that do most nearly the same as one of its effects, from where it ended: a
+    promise beside a tolerance that was pulled far in the place of that effect is too modest by many nats."""
+    for name in sorted(leader):
+        for promise in _twins(search, leader, name):
+            if promise.every not in search.fitted and promise.label not in search.failed:
+                progress("fitting " + promise.label)
+                _fit(search, promise)
+
+
+def _twins(search: Search, leader: Set, name: str) -> list[Promise]:
+    """Starts of what leads with one of its effects exchanged for others, nearest first."""
+    whole = search.fitted[leader]
+    rest, z_rest = _part_of(whole, leader - {name})
+    problem, x = whole.problem, whole.fit.x
+    change = problem.predictor.predict(x, whole.effects) - problem.predictor.predict(x, with_parameters(rest, z_rest))
+    target = problem.white(change)
+    starts = []
+    for other in (o for o in search.signatures.names if search.beliefs.may_join(o, leader)):
+        nearest = min((s.nearest(target, problem.white) for s in search.signatures.found[other]), key=lambda n: n[0])
+        if nearest[0] < ALMOST * float(np.linalg.norm(target)):
+            starts.append((nearest[0], other, *nearest[1:]))
+    return [
+        _start(search, leader - {name} | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
+        for _, other, effect, z in sorted(starts, key=lambda start: start[:2])[:EXCHANGED]
+    ]
+
+
+def _start(search: Search, every: Set, effects: tuple[Effect, ...], x: np.ndarray, z: np.ndarray) -> Promise:
+    """A fit of effects of which only the forms that they have count."""
+    forms = -sum(log(len(search.signatures.found[name])) for name in sorted(every))
+    return Promise(0.0, _label(every), every, effects, x, z, forms)
 
 
 def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None:
@@ -273,16 +294,20 @@ def less_one(search: Search, progress: Progress) -> None:
 
 
 def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
-    """Fits some of the effects of a fit, from where it ended; only the forms that it has count."""
+    """Fits some of the effects of a fit, from where it ended."""
+    effects, z = _part_of(whole, names)
+    _fit(search, _start(search, names, effects, whole.fit.x, z))
+
+
+def _part_of(whole: Hypothesis, names: Set) -> tuple[tuple[Effect, ...], np.ndarray]:
+    """Some of the effects of a fit, as null effects, and their parameters."""
     parts, place = [], 0
     for effect in whole.fit.effects:
         count = len(parameters_of(effect))
         parts.append((effect, whole.fit.z[place : place + count]))
         place += count
     kept = [(effect, z) for effect, z in parts if effect.name() in names]
-    forms = -sum(log(len(search.signatures.found[name])) for name in sorted(names))
-    effects, z = tuple(effect for effect, _ in kept), np.concatenate([z for _, z in kept])
-    _fit(search, Promise(0.0, _label(names), names, effects, whole.fit.x, z, forms))
+    return tuple(effect for effect, _ in kept), np.concatenate([np.zeros(0), *(z for _, z in kept)])
 
 
 def _label(names: Set) -> str:
