@@ -13,6 +13,7 @@ from benchmarks.virtual_benches.case import Answer, Bench
 from benchmarks.virtual_benches.hiding import Hidden, Layout, Setup, hide, measured
 from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_truth import Expansion, FullField, with_strengths
+from benchmarks.virtual_benches.truths import DRAWINGS
 from effects.machine_design import MachineAsBuilt
 from units import DEGREE, RPM
 from workbench.models.machine.field import LoadedState
@@ -20,28 +21,7 @@ from workbench.models.machine.model import MachineBench as Model
 from workbench.models.machine.spectra import averaged, evaluated, slope
 from workbench.models.machine.surrogate import Surrogate
 
-DEVICE: dict[str, object] = {
-    "slots": 12,
-    "poles": 10,
-    "stator_outer_radius_mm": 42.5,
-    "rotor_outer_radius_mm": 15.7,
-    "back_iron_width_mm": 3.3,
-    "tooth_width_mm": 5.5,
-    "magnet_length_mm": 2.5,
-    "airgap_mm": 0.5,
-    "slot_opening_mm": 2.0,
-    "shoe_d1_mm": 1.43,
-    "shoe_d2_mm": 1.43,
-    "shaft_radius_mm": 5.0,
-    "magnetisation": "parallel",
-    "remanence_T": 1.30,
-    "remanence_coefficient_percent_per_K": -0.12,
-    "recoil_permeability": 1.0,
-    "steel": "35PN270",
-    "active_length_mm": 41.0,
-    "turns_per_coil": 7,
-    "phase_resistance_mohm_20degC": 12.6,
-}
+DEVICE = DRAWINGS["12-10"].device
 TOLERANCE = {"remanence": 0.01, "airgap_mm": 0.04, "active_length_mm": 0.0025}
 SYSTEMATIC = {
     "voltage_gain": ("gain", 0.002),

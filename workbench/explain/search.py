@@ -37,6 +37,7 @@ FITS = 60  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 EXCHANGED = 2  # others that are tried in the place of each effect of what leads
+PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
 ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
@@ -102,6 +103,7 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
+    exact: sets that were fitted with a base model that is exact where they ended
     """
 
     bench: Bench
@@ -116,6 +118,7 @@ class Search:
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
+    exact: set[Set] = field(default_factory=lambda: {frozenset()})
 
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
@@ -158,6 +161,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     _exactly(search, progress)
     _cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]))
     _beside_unknown(search, progress)
+    _exactly(search, progress)
     return search
 
 
@@ -200,29 +204,50 @@ def _effects_alone(search: Search, progress: Progress) -> None:
 
 
 def _exchange(search: Search, leader: Set, progress: Progress) -> None:
-    """What leads is weighed against the few that do most nearly the same as one of its effects, from where it ended: a
-    promise beside a tolerance that was pulled far in the place of that effect is too modest by many nats."""
-    for name in sorted(leader):
-        for promise in _twins(search, leader, name):
-            if promise.every not in search.fitted and promise.label not in search.failed:
-                progress("fitting " + promise.label)
-                _fit(search, promise)
-
-
-def _twins(search: Search, leader: Set, name: str) -> list[Promise]:
-    """Starts of what leads with one of its effects exchanged for others, nearest first."""
+    """What leads is weighed against the few that do most nearly the same as one of its effects, or as a tolerance that
+    it pulls far, from where it ended: a promise beside such a pull is too modest by many nats."""
     whole = search.fitted[leader]
-    rest, z_rest = _part_of(whole, leader - {name})
-    problem, x = whole.problem, whole.fit.x
-    change = problem.predictor.predict(x, whole.effects) - problem.predictor.predict(x, with_parameters(rest, z_rest))
-    target = problem.white(change)
+    starts = [promise for name in sorted(leader) for promise in _instead_of_effect(search, whole, name)]
+    if len(leader) < MOST:
+        pulled = np.flatnonzero(np.abs(whole.fit.x) > PULLED)
+        starts += [promise for k in pulled for promise in _instead_of_pull(search, whole, int(k))]
+    for promise in starts:
+        if promise.every not in search.fitted and promise.label not in search.failed:
+            progress("fitting " + promise.label)
+            _fit(search, promise)
+
+
+def _instead_of_effect(search: Search, whole: Hypothesis, name: str) -> list[Promise]:
+    """Starts of a fit with one of its effects exchanged for others."""
+    rest, z = _part_of(whole, whole.names - {name})
+    x = whole.fit.x
+    return _twins(search, whole, rest, z, x, whole.problem.predictor.predict(x, with_parameters(rest, z)))
+
+
+def _instead_of_pull(search: Search, whole: Hypothesis, number: int) -> list[Promise]:
+    """Starts of a fit with others in the place of a tolerance that it pulls far."""
+    x = whole.fit.x.copy()
+    x[number] = 0.0
+    return _twins(search, whole, whole.fit.effects, whole.fit.z, x, whole.problem.predictor.predict(x, whole.effects))
+
+
+def _twins(
+    search: Search, whole: Hypothesis, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray, left: np.ndarray
+) -> list[Promise]:
+    """Starts with another effect that does most nearly what a fit does beyond what is left of it (n,), nearest first.
+
+    rest, z_rest, x: what stays of the fit
+    """
+    problem = whole.problem
+    target = problem.white(problem.predictor.predict(whole.fit.x, whole.effects) - left)
     starts = []
-    for other in (o for o in search.signatures.names if search.beliefs.may_join(o, leader)):
+    for other in (o for o in search.signatures.names if search.beliefs.may_join(o, whole.names)):
         nearest = min((s.nearest(target, problem.white) for s in search.signatures.found[other]), key=lambda n: n[0])
         if nearest[0] < ALMOST * float(np.linalg.norm(target)):
             starts.append((nearest[0], other, *nearest[1:]))
+    kept = frozenset(effect.name() for effect in rest)
     return [
-        _start(search, leader - {name} | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
+        _start(search, kept | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
         for _, other, effect, z in sorted(starts, key=lambda start: start[:2])[:EXCHANGED]
     ]
 
@@ -379,14 +404,13 @@ def student_gain(hypothesis: Hypothesis, gain: float) -> float:
 
 def _exactly(search: Search, progress: Progress) -> None:
     """The leaders again with a base model that is exact where they ended, until the leader is one of these."""
-    done: set[Set] = {frozenset()}
-    for _ in range(EXACT):
-        leader = next((names for names in search.ranked[:2] if names not in done), None)
-        if leader is None or not search.bench.model.base.is_expansion:
+    for _ in range(EXACT if search.bench.model.base.is_expansion else 0):
+        leader = next((names for names in search.ranked[:2] if names not in search.exact), None)
+        if leader is None:
             break
         progress("field solutions for " + _label(leader))
         search.fitted[leader] = exact(search.fitted[leader])
-        done.add(leader)
+        search.exact.add(leader)
 
 
 def _beside_unknown(search: Search, progress: Progress) -> None:
