@@ -40,7 +40,7 @@ EXCHANGED = 2  # others that are tried in the place of each effect of what leads
 PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
 ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
-EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
+EXACT = 6  # fits that are repeated exactly, where the base model answers by an expansion
 KEPT = 40  # promises beside one fit that are followed up
 BESIDE = 4  # sets that are looked at beside an unknown function
 MOST_BESIDE = 16  # effects at most that are fitted beside one
@@ -103,7 +103,8 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
-    exact: sets that were fitted with a base model that is exact where they ended
+    exact: sets that were fitted with a base model that is exact where they ended;  given_by_exactness: the most that
+    this has given any of them [nats]
     """
 
     bench: Bench
@@ -119,6 +120,7 @@ class Search:
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
     exact: set[Set] = field(default_factory=lambda: {frozenset()})
+    given_by_exactness: float = 0.0
 
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
@@ -307,13 +309,14 @@ def _promised(search: Search, every: Set) -> float:
 
 
 def less_one(search: Search, progress: Progress) -> None:
-    """What leads is weighed against itself without each of its effects, fitted from where it ended: a promise beside
-    a null whose tolerances were pulled far may have hidden them. Until such a leader is found."""
+    """What leads is weighed against itself without each of its effects, fitted from where it ended, once more where it
+    was fitted from elsewhere: a promise beside a null whose tolerances were pulled far may have hidden such a part, or
+    begun its fit in another valley. Until such a leader is found."""
     tried: set[Set] = set()
     while (leader := search.ranked[0]) not in tried:
         tried.add(leader)
         for names in (leader - {name} for name in sorted(leader)):
-            if names not in search.fitted:
+            if names:
                 progress("fitting " + _label(names))
                 _fit_part(search, search.fitted[leader], names)
 
@@ -340,15 +343,19 @@ def _label(names: Set) -> str:
 
 
 def _fit(search: Search, promise: Promise) -> bool:
-    """Fits a set; False where the model has no answer. A guess of it is replaced."""
+    """Fits a set; False where the model has no answer. Replaces a guess of it, and an earlier fit that was worse."""
     every = promise.every
     guess = search.guessed.pop(every, -np.inf)
     try:
         found = fitted_from(search.bench, promise.effects, promise.x, promise.z)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
-        search.failed[promise.label] = str(error)
-        return False
+        if every not in search.fitted:
+            search.failed[promise.label] = str(error)
+        return every in search.fitted
+    if every in search.fitted and found.log_evidence + promise.forms <= search.log_evidence(every):
+        return True
     search.fitted[every] = found
+    search.exact.discard(every)
     search.forms[every] = promise.forms
     _lower(search, every, max(guess - search.log_evidence(every), 0.0))
     return True
@@ -403,14 +410,28 @@ def student_gain(hypothesis: Hypothesis, gain: float) -> float:
 
 
 def _exactly(search: Search, progress: Progress) -> None:
-    """The leaders again with a base model that is exact where they ended, until the leader is one of these."""
+    """What leads again with a base model that is exact where it ended, and whatever might lead if that gave it as much:
+    an exact fit must not be weighed against one that is not."""
     for _ in range(EXACT if search.bench.model.base.is_expansion else 0):
-        leader = next((names for names in search.ranked[:2] if names not in search.exact), None)
-        if leader is None:
+        names = _next_exact(search)
+        if names is None:
             break
-        progress("field solutions for " + _label(leader))
-        search.fitted[leader] = exact(search.fitted[leader])
-        search.exact.add(leader)
+        progress("field solutions for " + _label(names))
+        before = search.fitted[names].log_evidence
+        search.fitted[names] = exact(search.fitted[names])
+        search.exact.add(names)
+        search.given_by_exactness = max(search.given_by_exactness, search.fitted[names].log_evidence - before)
+
+
+def _next_exact(search: Search) -> Set | None:
+    """Of those that might lead the first, what leads without one of its effects before others."""
+    leader = search.ranked[0]
+    least = search.log_posterior(leader) - REACH - search.given_by_exactness
+    might = [n for n in search.ranked if n not in search.exact and search.log_posterior(n) >= least]
+    if leader in might:
+        return leader
+    parts = [n for n in might if n < leader and len(n) == len(leader) - 1]
+    return next(iter(parts + might[:1]), None)
 
 
 def _beside_unknown(search: Search, progress: Progress) -> None:
