@@ -121,10 +121,11 @@ def settle(
 ) -> Conventions:
     """The conventions of a campaign.
 
-    model: the nominal one;  library: not needed yet, for the day when effects are tried beside conventions
+    model: effects that it has are left out, beside one of them what is right may look wrong
+    library: not needed yet, for the day when effects are tried beside conventions
     """
     progress("settling conventions")
-    model = replace(model, base=model.base.anywhere(model.design))
+    model = replace(model, base=model.base.anywhere(model.design), effects=())
     readers = [_Reader(model, campaign, table) for table in campaign.tables if table.responses]
     readings = _readings_of_all(readers)
     best = _joint(readings)

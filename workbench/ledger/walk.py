@@ -120,6 +120,8 @@ def walk(
 
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The names of a verdict, the one with the most evidence by itself first."""
+    """The names of a verdict, the one with the most evidence by itself first; then, of those that cannot be told apart,
+    the most probable one: without it what is named may not stand."""
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
-    return tuple(sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0)))
+    named = sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0))
+    return (*named, *diagnosis.alternatives)
