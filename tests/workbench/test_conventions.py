@@ -9,11 +9,13 @@ import pytest
 from benchmarks.virtual_benches import damper_bench, dq_bench
 from benchmarks.virtual_benches.hiding import hide
 from benchmarks.virtual_benches.mistakes import MISTAKES, mistaken
+from tests.workbench.likelihood.tables import table
 from tests.workbench.models.machine_case import drawn
 from workbench.data.campaign import read_campaign
 from workbench.data.conventions import NAMES, applied, fixes_of, section_text, with_conventions
 from workbench.data.table import Campaign, Response, Table
 from workbench.errors import WorkbenchError
+from workbench.explain import mistakes
 from workbench.explain.conventions import settle
 from workbench.models.bases import nominal_model
 from workbench.models.machine.model import MachineBench
@@ -237,3 +239,12 @@ def test_the_text_names_what_was_found():
     fixes = fixes_of(replace(campaign, conventions={"a.csv": entry}))
     assert section_text({"a.csv": entry}).startswith('[conventions]\n"a.csv" = {')
     assert len(applied(campaign, fixes).tables) == 1 and len(fixes) == 3
+
+
+def test_a_temperature_is_not_exchanged_for_what_no_temperature_can_be():
+    """A logged room temperature and a speed of both signs: nobody's thermometer reads -2800 degC."""
+    speed, room = np.linspace(-2800.0, 2800.0, 8), np.full(8, 21.5)
+    drag = table({"torque": np.full(8, 0.1)}, 0.01, np.zeros(8, int), np.zeros(8, int), speed=speed, room_T=room)
+    assert not mistakes._can_be_exchanged(drag, "speed", "room_T")
+    warm = replace(drag, conditions={"speed": np.linspace(20.0, 90.0, 8), "room_T": room})
+    assert mistakes._can_be_exchanged(warm, "speed", "room_T")

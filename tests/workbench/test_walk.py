@@ -229,6 +229,12 @@ def test_names_are_tried_by_the_evidence_of_each_alone(diagnosed):
     assert by_evidence(replace(diagnosed, names=(other, one))) == (one, other)
 
 
+def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):
+    one, other = diagnosed.ranking[0].name, diagnosed.ranking[1].name
+    unsure = replace(diagnosed, names=(one,), alternatives={other: ("twin",)})
+    assert by_evidence(unsure) == (one, other)
+
+
 def test_a_step_tells_the_error_of_each_channel_in_percent(hidden):
     step = try_effect(*hidden, LIBRARY, "hardening").step
     assert step.rms_error["pull.force"] < 1.2 * step.noise_floor["pull.force"]

@@ -40,7 +40,8 @@ EXCHANGED = 2  # others that are tried in the place of each effect of what leads
 PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
 ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
-EXACT = 6  # fits that are repeated exactly, where the base model answers by an expansion
+EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
+PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give a part of it besides
 KEPT = 40  # promises beside one fit that are followed up
 BESIDE = 4  # sets that are looked at beside an unknown function
 MOST_BESIDE = 16  # effects at most that are fitted beside one
@@ -103,8 +104,7 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
-    exact: sets that were fitted with a base model that is exact where they ended;  given_by_exactness: the most that
-    this has given any of them [nats]
+    exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     """
 
     bench: Bench
@@ -119,12 +119,17 @@ class Search:
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
-    exact: set[Set] = field(default_factory=lambda: {frozenset()})
-    given_by_exactness: float = 0.0
+    exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
 
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
-        return self.fitted[names].log_evidence + self.forms.get(names, 0.0)
+        return self.fitted[names].log_evidence + self.forms.get(names, 0.0) + self.exactness(names)
+
+    def exactness(self, names: Set) -> float:
+        """What an exact base model would give a set that has none: as much as the exact one that is most like it."""
+        if names in self.exact:
+            return 0.0
+        return self.exact[min(self.exact, key=lambda e: (-len(e & names), len(e ^ names), sorted(e)))]
 
     def log_posterior(self, names: Set) -> float:
         """Up to what all share [nats]."""
@@ -148,8 +153,9 @@ class Search:
     @property
     def posterior(self) -> Posterior:
         """Probabilities of everything that was fitted or guessed."""
-        alone = {**self.guessed, **{names: self.log_evidence(names) for names in self.fitted}}
-        beside = {n: b.log_evidence + self.forms.get(n, 0.0) for n, b in self.beside.items()}
+        guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
+        alone = guessed | {names: self.log_evidence(names) for names in self.fitted}
+        beside = {n: b.log_evidence + self.forms.get(n, 0.0) + self.exactness(n) for n, b in self.beside.items()}
         return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
 
 
@@ -161,16 +167,21 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
     _effects_alone(search, progress)
     _exactly(search, progress)
-    _cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]))
+    _cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]), search.exactness)
     _beside_unknown(search, progress)
     _exactly(search, progress)
     return search
 
 
-def _cap(guessed: dict[Set, float], beliefs: Beliefs, best: float) -> None:
-    """A guess that was not followed up counts for no more than the best that was fitted (ln posterior)."""
+def _cap(
+    guessed: dict[Set, float], beliefs: Beliefs, best: float, added: Callable[[Set], float] = lambda names: 0.0
+) -> None:
+    """A guess that was not followed up counts for no more than the best that was fitted (ln posterior).
+
+    added: what is added to the guess of a set [nats]
+    """
     for names in guessed:
-        guessed[names] = min(guessed[names], best - beliefs.log_prior(names))
+        guessed[names] = min(guessed[names], best - beliefs.log_prior(names) - added(names))
 
 
 def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypothesis:
@@ -355,7 +366,7 @@ def _fit(search: Search, promise: Promise) -> bool:
     if every in search.fitted and found.log_evidence + promise.forms <= search.log_evidence(every):
         return True
     search.fitted[every] = found
-    search.exact.discard(every)
+    search.exact.pop(every, None)
     search.forms[every] = promise.forms
     _lower(search, every, max(guess - search.log_evidence(every), 0.0))
     return True
@@ -410,8 +421,8 @@ def student_gain(hypothesis: Hypothesis, gain: float) -> float:
 
 
 def _exactly(search: Search, progress: Progress) -> None:
-    """What leads again with a base model that is exact where it ended, and whatever might lead if that gave it as much:
-    an exact fit must not be weighed against one that is not."""
+    """What leads again with a base model that is exact where it ended. Others are believed to gain as much by that as
+    the exact one that is most like them; what leads then is made exact, too."""
     for _ in range(EXACT if search.bench.model.base.is_expansion else 0):
         names = _next_exact(search)
         if names is None:
@@ -419,19 +430,18 @@ def _exactly(search: Search, progress: Progress) -> None:
         progress("field solutions for " + _label(names))
         before = search.fitted[names].log_evidence
         search.fitted[names] = exact(search.fitted[names])
-        search.exact.add(names)
-        search.given_by_exactness = max(search.given_by_exactness, search.fitted[names].log_evidence - before)
+        search.exact[names] = search.fitted[names].log_evidence - before
 
 
 def _next_exact(search: Search) -> Set | None:
-    """Of those that might lead the first, what leads without one of its effects before others."""
+    """What leads; then what leads without one of its effects, where it is not far behind: such an effect may have made
+    good what the expansion lacks, so that its part gains more by an exact model than the whole."""
     leader = search.ranked[0]
-    least = search.log_posterior(leader) - REACH - search.given_by_exactness
-    might = [n for n in search.ranked if n not in search.exact and search.log_posterior(n) >= least]
-    if leader in might:
+    if leader not in search.exact:
         return leader
-    parts = [n for n in might if n < leader and len(n) == len(leader) - 1]
-    return next(iter(parts + might[:1]), None)
+    parts = [n for n in search.ranked if n < leader and len(n) == len(leader) - 1 and n not in search.exact]
+    least = search.log_posterior(leader) - REACH - PART_GAINS * max(search.exact[leader], 0.0)
+    return next((n for n in parts if search.log_posterior(n) >= least), None)
 
 
 def _beside_unknown(search: Search, progress: Progress) -> None:

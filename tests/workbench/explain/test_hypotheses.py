@@ -9,6 +9,7 @@ from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
+import workbench.explain.search as search_module
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
@@ -297,6 +298,45 @@ def test_what_leads_is_weighed_against_itself_without_each_of_its_effects(tmp_pa
     assert search.ranked[0] == one and set(search.fitted) == {none, one, frozenset(("wave5",)), both}
     straight = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.5]))
     assert search.log_evidence(one) == pytest.approx(straight.log_evidence, abs=1e-2)
+
+
+def searching(bench, fitted):
+    """A search that has fitted some sets, of the named effects."""
+    signatures = signatures_of(bench, [wave() for wave in WAVES.values()])
+    return Search(bench, signatures, beliefs_of(WAVES, signatures.names), (), fitted)
+
+
+def test_a_guess_learns_from_the_fits_of_what_it_holds(tmp_path):
+    """A set was guessed too high by as much as a part of it, unless it was guessed beside a nearer fit."""
+    bench = sure_of_noise(tmp_path)
+    none, far, near = frozenset(), frozenset(("wave2", "wave3")), frozenset(("wave2", "wave4"))
+    search = searching(bench, {none: null_of(bench)})
+    search.guessed = {far: 100.0, near: 100.0}
+    search.origins = {far: none, near: frozenset(("wave4",))}
+    search_module._lower(search, frozenset(("wave2",)), 30.0)
+    assert search.guessed == {far: 70.0, near: 100.0}
+
+
+def test_what_leads_is_weighed_against_its_twin(tmp_path):
+    """Two names for one law: the one that was found first is not sure of itself."""
+    twin = type("Twin", (WAVES["wave2"],), {"name": classmethod(lambda cls: "twin")})
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    signatures = signatures_of(bench, (WAVES["wave2"](), twin()))
+    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    beliefs = beliefs_of({"wave2": WAVES["wave2"], "twin": twin}, signatures.names)
+    found = {frozenset(): null_of(bench), one.names: one}
+    search = Search(bench, signatures, beliefs, (), found)
+    search_module._exchange(search, one.names, lambda words: None)
+    assert search.log_evidence(frozenset(("twin",))) == pytest.approx(one.log_evidence, abs=1e-3)
+
+
+def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
+    bench = sure_of_noise(tmp_path)
+    none, pair = frozenset(), frozenset(("wave2", "wave3"))
+    search = searching(bench, {none: null_of(bench)})
+    search.exact[pair] = 50.0
+    assert search.exactness(frozenset(("wave2", "wave4"))) == 50.0 and search.exactness(pair) == 0.0
+    assert search.exactness(frozenset(("wave5",))) == 0.0 and search.exactness(none) == 0.0
 
 
 def test_probabilities_of_a_search_add_up_to_one(bench):
