@@ -15,7 +15,6 @@ import numpy as np
 
 from effects.base import Effect
 from units import DEGREE
-from workbench.believed import SURE
 from workbench.data.checks import checks_of
 from workbench.data.conventions import (
     ANGLE,
@@ -527,11 +526,15 @@ ALLOWED_BEYOND = 0.1  # of an end, by which the model must go beyond it somewher
 
 # ---- what is said ----------------------------------------------------------------------------------------------------
 
+SETTLED = (
+    0.75  # probability that something is wrong with the conventions, below which effects are looked for all the same
+)
+
 
 def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken) -> Conventions:
     checks = checks_of(campaign)
     everything = fixes + broken
-    if not everything or not broken and _p_wrong(best) < SURE:
+    if not everything or not broken and _p_wrong(best) < SETTLED:
         return Conventions((), campaign, _p_wrong(best), checks=checks)
     others = _equivalents(best)
     section = section_of(everything)

@@ -19,6 +19,7 @@ from workbench.likelihood.fit import Fit, Problem, fitted, linearised
 from workbench.likelihood.noise import (
     Noise,
     Whitener,
+    matched_rows,
     measured_noise,
     noise_on_rows,
     places_of,
@@ -142,18 +143,22 @@ def bench_of(
 
 
 def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndarray], x: np.ndarray) -> Noise:
-    """Size and correlation of the noise from the rows to fit alone; of sealed rows only which are wild is asked. A
-    channel whose repeats are all sealed but one is judged by all of them: else nothing would be known of its noise."""
-    predicted, inflation = predictor.predict(x), np.ones(stack.size)
+    """Size and correlation of the noise from what all repeats disagree by, the sealed ones too; which readings are wild
+    is asked of fitted and of sealed rows apart, and of all where only one repeat is fitted."""
+    predicted = predictor.predict(x)
     whole = measured_noise(stack, predicted)
-    parts = [(_part(stack, masks), _rows(stack, masks)) for masks in (chosen, [~mask for mask in chosen])]
-    own = measured_noise(parts[0][0], predicted[parts[0][1]])
-    channels = tuple(o if o.pairs else w for o, w in zip(own.channels, whole.channels))
-    for part, rows in parts:
-        inflation[rows] = with_wild_readings(channels, part, predicted[rows]).inflation
-    for channel in (c for c, o in zip(stack.channels, own.channels) if not o.pairs):
-        inflation[channel.rows] = whole.inflation[channel.rows]
-    return Noise(channels, inflation)
+    inflation = whole.inflation.copy()
+    for masks in (chosen, [~mask for mask in chosen]):
+        part, rows = _part(stack, masks), _rows(stack, masks)
+        found = with_wild_readings(whole.channels, part, predicted[rows]).inflation
+        repeated = np.repeat([matched_rows(part.tables[c.table]) is not None for c in part.channels], _sizes(part))
+        inflation[rows] = np.where(repeated, found, inflation[rows])
+    return Noise(whole.channels, inflation)
+
+
+def _sizes(stack: Stack) -> list[int]:
+    """Rows of every channel."""
+    return [channel.size for channel in stack.channels]
 
 
 def _rows(stack: Stack, chosen: Sequence[np.ndarray]) -> np.ndarray:

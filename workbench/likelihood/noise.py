@@ -19,8 +19,8 @@ from scipy.spatial import cKDTree
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 
-WILD = 2.0  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
-TAME_SHARE = 0.9205  # mean of min(d^2, WILD^2) of a standard normal d
+WILD = 2.5  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
+TAME_SHARE = 0.9749  # mean of min(d^2, WILD^2) of a standard normal d
 REPORTED = 4.5  # standard deviations of disagreement from which a reading is called wild
 DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the repeats
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
@@ -188,7 +188,7 @@ class _Disagreements:
 
 def _disagreements(stack: Stack, residual: np.ndarray) -> _Disagreements:
     whole = [_deviation(stack, channel, residual) for channel in stack.channels]
-    within = [_within_scans(stack.tables[c.table], stack.u[c.rows], d) for c, d in zip(stack.channels, whole)]
+    within = [_within_scans(stack, c, residual, d) for c, d in zip(stack.channels, whole)]
     return _Disagreements(whole, within, [_scale(d) for d in within])
 
 
@@ -214,13 +214,14 @@ class _Deviation:
 
     spread: from the mean of the repeats, for the size of the noise;  middle: from their median, which no wild reading
     moves;  row: from the median of them and the model, which shows which one is wild
-    dof: differences that are independent
+    dof: differences that are independent;  growth: factor on the spread, as the mean of few is nearer than the truth
     """
 
     spread: np.ndarray
     middle: np.ndarray
     row: np.ndarray
     dof: int
+    growth: float
 
 
 @dataclass(frozen=True)
@@ -233,31 +234,32 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
     stations = matched_rows(stack.tables[channel.table])
     spread, middle, row = np.full((3, channel.size), np.nan)
     if stations is None:
-        return _Deviation(spread, middle, row, 0)
+        return _Deviation(spread, middle, row, 0, 1.0)
     values = residual[channel.rows][stations]  # (stations, repeats)
     repeats = values.shape[1]
     votes = np.column_stack([values, np.zeros(len(values))])
-    spread[stations] = (values - values.mean(axis=1, keepdims=True)) * np.sqrt(repeats / (repeats - 1))
+    growth = float(np.sqrt(repeats / (repeats - 1)))
+    spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
     middle[stations] = values - np.median(values, axis=1, keepdims=True)
     row[stations] = values - np.median(votes, axis=1, keepdims=True)
-    return _Deviation(spread, middle, row, len(stations) * (repeats - 1))
+    return _Deviation(spread, middle, row, len(stations) * (repeats - 1), growth)
 
 
-def _within_scans(table: Table, u: np.ndarray, whole: _Deviation) -> _Deviation:
+def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
     """The deviations less mean and slope of every scan that is long enough to have them."""
-    spread, middle, row = whole.spread.copy(), whole.middle.copy(), whole.row.copy()
-    for rows in _scans(table):
-        known = rows[np.isfinite(spread[rows])]
+    u, off, free = stack.u[channel.rows], np.zeros(channel.size), np.ones(channel.size)
+    for rows in _scans(stack.tables[channel.table]):
+        known = rows[np.isfinite(whole.spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
         shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
-        values = np.clip(spread[known], *_fence(spread[known]))
-        line = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0]
-        free = np.sqrt(len(known) / (len(known) - 2))
-        spread[known] = (spread[known] - line) * free
-        middle[known] -= line
-        row[known] -= line
-    return _Deviation(spread, middle, row, whole.dof)
+        values = np.clip(whole.spread[known], *_fence(whole.spread[known]))
+        off[known] = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0] / whole.growth
+        free[known] = np.sqrt(len(known) / (len(known) - 2))
+    left = residual.copy()
+    left[channel.rows] -= off
+    found = _deviation(stack, channel, left)
+    return replace(found, spread=found.spread * free)
 
 
 def _fence(values: np.ndarray) -> tuple[float, float]:
