@@ -2,7 +2,8 @@
 
 Motor signs, amplitude-invariant: currents, voltages and flux linkages are peak phase values; omega = p * speed.
 
-    e_d = -omega psi_q,  e_q = omega psi_d,   i = i_m + e / R_fe,   v = R i + e
+    e_d = -omega psi_q,  e_q = omega psi_d,   i = i_m + g e,   v = R i + e
+    g = iron_conductance + iron_hysteresis / |omega|
     psi = (psi_m + L_d i_md, L_q i_mq) + sum of flux laws of i_m
     T_shaft = 1.5 p (psi_d i_mq - psi_q i_md) - sum of torque laws
 """
@@ -38,6 +39,7 @@ class DqMachine:
     reference_T: temperature at which psi_m and resistance hold [degC]
     copper_coefficient, remanence_coefficient: relative change of R and psi_m per kelvin of winding_T and magnet_T [1/K]
     iron_conductance: 1 / R_fe, in parallel with the induced voltage [1/ohm]
+    iron_hysteresis: the same times |omega|, of a loss in proportion to the frequency [rad/s/ohm]
     voltage_per_dc: largest peak phase voltage of its inverter over the voltage of the d.c. link [1]
     """
 
@@ -50,6 +52,7 @@ class DqMachine:
     copper_coefficient: float = 0.0
     remanence_coefficient: float = 0.0
     iron_conductance: float = 0.0
+    iron_hysteresis: float = 0.0
     voltage_per_dc: float = 1.0 / sqrt(3.0)  # space vectors up to the circle that their hexagon holds
     fluxes: tuple[FluxLaw, ...] = field(default=())
     torques: tuple[TorqueLaw, ...] = field(default=())

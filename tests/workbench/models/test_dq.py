@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from effects.dq_design import DqMachine
 from effects.electrical.copper_drift import CopperDrift
 from effects.electrical.cross_saturation import CrossSaturation
+from effects.electrical.iron_loss_resistance import IronLossResistance
 from effects.electrical.quadrature_saturation import QuadratureSaturation
 from effects.electrical.remanence_drift import RemanenceDrift
 from effects.mechanical.friction_torque import FrictionTorque
@@ -81,6 +82,17 @@ def test_power_that_goes_in_comes_out():
     iron = 1.5 * 4e-3 * _induced_squared(machine, conditions, ours["current"], ours["power"])
     shaft = (conditions["torque"] + 0.2) * 150.0
     assert ours["power"] == pytest.approx(shaft + copper + iron, rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_iron_loss_has_a_part_that_goes_with_the_frequency(share):
+    """P = 1.5 psi_m^2 g (omega^2 (1 - h) + h omega omega_0) of a machine that is driven with open terminals."""
+    machine = IronLossResistance(1e-4, share).on_design(PLAIN)
+    speed = np.array([20.0, 100.0, 300.0])
+    omega = PLAIN.pole_pairs * speed
+    ours = BASE.respond(machine, "no_load", {"speed": speed})["power"]
+    loss = 1.5 * PLAIN.psi_m**2 * 1e-4 * (omega**2 * (1 - share) + share * omega * 2 * np.pi * 100)
+    assert ours == pytest.approx(loss, rel=2e-3), "the field that the loss itself weakens is left out"
 
 
 def _induced_squared(machine, conditions, current, power):

@@ -16,6 +16,7 @@ STEPS = 60  # of Newton's method; some six are needed
 CLOSE = 1e-11  # residual, of its scale
 FAR = 1e9  # the same, where Newton has left every machine
 TOO_LOW = "the machine has no steady state there, the voltage is too low for the torque"
+_STILL = 1e-3  # rad/s, electrical, below which hysteresis no longer brakes
 _SLOPE_STEP = 1e-3  # of the current that cancels the magnets, for slopes by central differences
 
 Currents = tuple[np.ndarray, np.ndarray]
@@ -37,6 +38,8 @@ class Operation:
         self.psi_m = design.psi_m * self._warm(design.remanence_coefficient, "magnet_T")
         self.resistance = self.resistance * conditions.get("resistance_factor", 1.0)
         self.psi_m = self.psi_m * conditions.get("flux_factor", 1.0)
+        turning = np.maximum(np.abs(self.omega), _STILL)
+        self.iron_conductance = design.iron_conductance + design.iron_hysteresis / turning
 
     def _warm(self, coefficient: float, column: str) -> np.ndarray:
         if not coefficient or column not in self.conditions:
@@ -73,7 +76,7 @@ class Operation:
     def terminals(self, i_d: np.ndarray, i_q: np.ndarray) -> tuple[np.ndarray, ...]:
         """v_d, v_q [V] and i_d, i_q [A] at the terminals, from magnetising currents."""
         e_d, e_q = self.induced(i_d, i_q)
-        all_d, all_q = i_d + self.design.iron_conductance * e_d, i_q + self.design.iron_conductance * e_q
+        all_d, all_q = i_d + self.iron_conductance * e_d, i_q + self.iron_conductance * e_q
         return self.resistance * all_d + e_d, self.resistance * all_q + e_q, all_d, all_q
 
     def voltage(self, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
@@ -94,7 +97,7 @@ class Operation:
 
     def magnetising(self, i_d: np.ndarray, i_q: np.ndarray) -> Currents:
         """Magnetising currents of terminal currents [A]."""
-        if not self.design.iron_conductance:
+        if not np.any(self.iron_conductance):
             return i_d, i_q
 
         def too_much(m_d: np.ndarray, m_q: np.ndarray) -> Currents:
