@@ -28,7 +28,8 @@ from workbench.data.stack import rows_of
 from workbench.data.table import Campaign, Table
 from workbench.explain.explore import Posterior
 from workbench.explain.recommend import gains_of
-from workbench.explain.search import Search, searched
+from workbench.explain.search import searched
+from workbench.explain.tried import Search
 from workbench.likelihood.bench import bench_of
 from workbench.models.base import Option
 from workbench.models.bases import nominal_model

@@ -2,7 +2,8 @@
 by the effect itself (``base_rate``); sizes and shapes of unknown functions stand in ``likelihood.unknown``, how noise
 is measured in ``likelihood.noise``, and what is asked before a convention is blamed in ``explain.mistakes``."""
 
-UNKNOWN_RATE = 0.12  # share of campaigns that show something which no effect of the library is
+UNKNOWN_RATE = 0.12  # share of campaigns that show an unknown function of the conditions in a table
+LAW_RATE = 0.01  # the same for each law of the device that no effect of the library is
 TAILS = 4.0  # degrees of freedom of Student's t of an effect's size [prior standard deviations]: far off is a surprise
 MOST = 4  # effects that may be hidden at once
 SURE = 0.95  # probability from which a name is printed, and from which something is said to be missing

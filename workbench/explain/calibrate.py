@@ -20,12 +20,14 @@ from workbench.likelihood.marginal import Readings
 from workbench.likelihood.noise import drawn_noise
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import SIZES, Beside, Shape, seen
+from workbench.likelihood.unknown_laws import LAWS
 
 EMPTY, HIDDEN = 100, 60  # simulated campaigns that hide nothing, and that hide something
 POWER_SIZES = (3.0, 10.0)  # of unknown functions [rms over the uncertainty of a reading]
 NORMAL_90 = 1.2816  # one-sided 90 % of a standard normal
 _LEADERS = (1, 3)  # sets that are looked at with one effect more
-EFFECTS_ALONE, EFFECTS_IN_PAIRS = 0.5, 0.25  # of the campaigns that hide something; an unknown function in the rest
+EFFECTS_ALONE, EFFECTS_IN_PAIRS = 0.5, 0.25  # of the campaigns that hide something
+UNKNOWN_LAWS = 0.5  # of the rest, where there are such laws; an unknown function in the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,19 +84,23 @@ class Simulator:
 
     def _hidden(self) -> tuple[np.ndarray, frozenset[str], bool]:
         kind = self.random.random()
-        if kind < EFFECTS_ALONE + EFFECTS_IN_PAIRS and self.names.order:
-            chosen = self._effects(1 if kind < EFFECTS_ALONE else 2)
+        known = [name for name in self.names.order if name not in LAWS]
+        if kind < EFFECTS_ALONE + EFFECTS_IN_PAIRS and known:
+            chosen = self._effects(known, 1 if kind < EFFECTS_ALONE else 2)
             return sum(self._effect(name) for name in chosen), frozenset(chosen), False
+        laws = [name for name in self.names.order if name in LAWS]
+        if laws and self.random.random() < UNKNOWN_LAWS:
+            return self._effect(str(self.random.choice(laws))), frozenset(), True
         shape = self.shapes[int(self.random.integers(len(self.shapes)))]
         change = np.zeros(self.bench.fit.stack.size)
         weights = float(self.random.choice(SIZES)) * self.random.standard_normal(shape.columns.shape[1])
         change[shape.rows] = shape.columns @ weights
         return change, frozenset(), True
 
-    def _effects(self, count: int) -> list[str]:
-        rates = np.exp([self.beliefs.log_odds[name] for name in self.names.order])
+    def _effects(self, known: Sequence[str], count: int) -> list[str]:
+        rates = np.exp([self.beliefs.log_odds[name] for name in known])
         count = min(count, len(rates))
-        return [str(n) for n in self.random.choice(self.names.order, count, replace=False, p=rates / rates.sum())]
+        return [str(n) for n in self.random.choice(known, count, replace=False, p=rates / rates.sum())]
 
     def _effect(self, name: str) -> np.ndarray:
         """Whitened change by an effect at a size after its prior (n,)."""
@@ -200,6 +206,8 @@ def detection_limits(simulator: Simulator, thresholds: Thresholds) -> tuple[Dete
     found: dict[str, DetectionLimit] = {}
     energies = _energies(simulator)
     for name, start, end in zip(simulator.names.order, simulator.names.starts, _ends(simulator.names)):
+        if name in LAWS:
+            continue
         needed = _needed(simulator.beliefs.log_odds[name], thresholds)
         limit = _limit(simulator, name, start, end, energies, needed)
         if limit is not None:

@@ -22,7 +22,8 @@ from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior
 from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of, sealed_rows
 from workbench.explain.recommend import next_measurements
-from workbench.explain.search import Search, searched
+from workbench.explain.search import searched
+from workbench.explain.tried import Search
 from workbench.explain.verdict import NONE_OF_THESE, NOTHING_MISSING, Thresholds, Verdict, verdict
 from workbench.findings import ChannelFit, Diagnosis, Ranked, Sealed, SizePosterior
 from workbench.likelihood.bench import Bench, bench_of, sealed_words
@@ -158,7 +159,7 @@ def ranking(search: Search, p: Posterior) -> tuple[Ranked, ...]:
     """Every effect that was tried, most probable first."""
     null = search.fitted[frozenset()]
     before = _errors(null)
-    names = sorted(search.signatures.names, key=lambda n: (-p.of(n), -_gain(search, n), n))
+    names = sorted(search.signatures.effects, key=lambda n: (-p.of(n), -_gain(search, n), n))
     return tuple(_ranked(search, name, p.of(name), before) for name in names)
 
 
@@ -202,9 +203,8 @@ def _on_bounds(effect: Effect) -> tuple[str, ...]:
 def residual_signature(search: Search) -> dict[str, object]:
     """Where the largest part of the residual sits and what it looks like; nearest known signatures with their
     cosine."""
-    bench = search.bench
-    found = search.beside.get(frozenset())
-    words = {"law": found.leading[0].shape.words()} if found is not None else {}
+    bench, law = search.bench, search.unknown_in_words
+    words = {"law": law} if law else {}
     return {**describe(bench, search.unknown), **words, "nearest": nearest(bench, search.signatures)}
 
 

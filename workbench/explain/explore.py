@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from math import fsum, log, log1p
 
 import numpy as np
@@ -14,13 +15,15 @@ from scipy.special import logsumexp
 from effects.base import Effect
 from workbench.believed import MOST, UNKNOWN_RATE
 from workbench.likelihood.marginal import Catalogue, Readings
+from workbench.likelihood.unknown_laws import LAWS, without_laws
 
 LEADERS = (1, 8, 6, 4)  # sets of none, one, two and three effects that are looked at with one effect more
 
 
 @dataclass(frozen=True)
 class Beliefs:
-    """Prior shares, from the base rates of the effects. excluded: pairs of which one is a special case of the other"""
+    """Prior shares, from the base rates of the effects. excluded: pairs of which one is a special case of the other,
+    and pairs of unknown laws"""
 
     log_odds: Mapping[str, float]
     excluded: frozenset[frozenset[str]]
@@ -43,7 +46,8 @@ def beliefs_of(library: Mapping[str, type[Effect]], names: Iterator[str] | tuple
     chosen = tuple(names)
     odds = {name: log(library[name].base_rate) - log1p(-library[name].base_rate) for name in chosen}
     pairs = {frozenset((name, other)) for name in chosen for other in library[name].contains if other != name}
-    return Beliefs(odds, frozenset(pairs))
+    laws = {frozenset(pair) for pair in combinations((name for name in chosen if name in LAWS), 2)}
+    return Beliefs(odds, frozenset(pairs | laws))
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,11 +238,19 @@ def _share(shares: Iterable[float]) -> float:
 def posterior(
     alone: Mapping[frozenset[str], float], beside: Mapping[frozenset[str], float], beliefs: Beliefs
 ) -> Posterior:
-    """Probabilities from ln evidences, on one scale, of sets alone and beside an unknown function."""
+    """Probabilities from ln evidences, on one scale, of sets alone and beside an unknown function. A set that holds an
+    unknown law counts as its effects beside something unknown."""
     logs = [v + beliefs.log_prior(n) for n, v in alone.items()]
     more = [v + beliefs.log_prior(n) + beliefs.log_unknown for n, v in beside.items()]
     total = logsumexp(logs + more)
-    return Posterior(
-        {n: float(np.exp(v - total)) for n, v in zip(alone, logs)},
-        {n: float(np.exp(v - total)) for n, v in zip(beside, more)},
-    )
+    found = Posterior({}, {})
+    for names, v in zip(alone, logs):
+        _add(found.beside if names & LAWS.keys() else found.alone, names, float(np.exp(v - total)))
+    for names, v in zip(beside, more):
+        _add(found.beside, names, float(np.exp(v - total)))
+    return found
+
+
+def _add(shares: dict[frozenset[str], float], names: frozenset[str], share: float) -> None:
+    effects = without_laws(names)
+    shares[effects] = shares.get(effects, 0.0) + share

@@ -22,11 +22,12 @@ from workbench.data.table import Response, Table
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Posterior
 from workbench.explain.hypotheses import Hypothesis
-from workbench.explain.search import Search
+from workbench.explain.tried import Search
 from workbench.findings import NextMeasurement
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import with_parameters
 from workbench.likelihood.predictor import STEP, jacobian
+from workbench.likelihood.unknown_laws import LAWS
 from workbench.models.base import Option
 
 CAP = 20.0  # nats; more certainty than this is worth nothing
@@ -109,7 +110,7 @@ def gains_of(search: Search, p: Posterior, options: Sequence[Option]) -> np.ndar
 
 def _weighing(search: Search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
     """What the leading hypotheses are weighed with, and the sums over the rows that were fitted."""
-    hypotheses = [search.fitted[names] for names in search.ranked if names][:LEADERS]
+    hypotheses = [search.fitted[names] for names in search.ranked if names and not names & LAWS.keys()][:LEADERS]
     if not hypotheses:
         return None
     bench = search.bench

@@ -21,6 +21,7 @@ from workbench.errors import WorkbenchError
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.marginal import Catalogue, Term
 from workbench.likelihood.noise import Whitener
+from workbench.likelihood.unknown_laws import LAWS
 
 # cells an axis and half-width of the grid [standard deviations] by number of parameters
 _GRIDS = {1: (9, 4.5), 2: (5, 3.5), 3: (4, 3.0), 4: (3, 2.4)}
@@ -156,6 +157,11 @@ class Signatures:
     def names(self) -> tuple[str, ...]:
         return tuple(self.found)
 
+    @property
+    def effects(self) -> dict[str, tuple[Signature, ...]]:
+        """Those of the library, without the unknown laws."""
+        return {name: variants for name, variants in self.found.items() if name not in LAWS}
+
     def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
         """The catalogue beside a background, of all effects but some."""
         left = [name for name in self.found if name not in set(without)]
@@ -209,7 +215,7 @@ def nearest(bench: Bench, signatures: Signatures, count: int = 5) -> dict[str, f
     free = lambda v: v - u @ (shrink * (u.T @ v))  # noqa: E731
     target = free(bench.residual[:, None])[:, 0]
     found: dict[str, float] = {}
-    for name, variants in signatures.found.items():
+    for name, variants in signatures.effects.items():
         shapes = free(np.hstack([white(s.change) for s in variants]))
         lengths = np.linalg.norm(shapes, axis=0) * np.linalg.norm(target)
         found[name] = float(np.max((target @ shapes) / np.where(lengths > 0, lengths, np.inf)))

@@ -9,14 +9,16 @@ from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
-import workbench.explain.search as search_module
+import workbench.explain.tried as tried_module
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
-from workbench.explain.search import Search, best_alone, less_one, searched, student_gain
+from workbench.explain.neighbours import exchange, less_one
+from workbench.explain.search import best_alone, searched
+from workbench.explain.tried import Search, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
 from workbench.likelihood.marginal import Catalogue
@@ -313,7 +315,7 @@ def test_a_guess_learns_from_the_fits_of_what_it_holds(tmp_path):
     search = searching(bench, {none: null_of(bench)})
     search.guessed = {far: 100.0, near: 100.0}
     search.origins = {far: none, near: frozenset(("wave4",))}
-    search_module._lower(search, frozenset(("wave2",)), 30.0)
+    tried_module._lower(search, frozenset(("wave2",)), 30.0)
     assert search.guessed == {far: 70.0, near: 100.0}
 
 
@@ -326,7 +328,7 @@ def test_what_leads_is_weighed_against_its_twin(tmp_path):
     beliefs = beliefs_of({"wave2": WAVES["wave2"], "twin": twin}, signatures.names)
     found = {frozenset(): null_of(bench), one.names: one}
     search = Search(bench, signatures, beliefs, (), found)
-    search_module._exchange(search, one.names, lambda words: None)
+    exchange(search, one.names, lambda words: None)
     assert search.log_evidence(frozenset(("twin",))) == pytest.approx(one.log_evidence, abs=1e-3)
 
 

@@ -1,0 +1,88 @@
+"""Unknown functions beside nothing and beside what leads, and effects beside the best of these."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappush
+
+import numpy as np
+
+from workbench.believed import MOST
+from workbench.explain.explore import Beliefs, Explanation, explored
+from workbench.explain.hypotheses import Beside, beside_unknown
+from workbench.explain.tried import (
+    REACH,
+    Progress,
+    Promise,
+    Search,
+    Set,
+    additions,
+    fit_set,
+    student_gain,
+)
+
+BESIDE = 4  # sets that are looked at beside an unknown function
+MOST_BESIDE = 16  # effects at most that are fitted beside one
+
+
+def weigh_unknown(search: Search, progress: Progress) -> None:
+    """Unknown functions beside nothing and beside the leaders, and effects beside the best of these."""
+    progress("unknown functions")
+    for names in dict.fromkeys([*search.ranked[:BESIDE], frozenset()]):
+        found = beside_unknown(search.fitted[names], search.shapes)
+        if found is not None:
+            search.beside[names] = found
+    if not search.beside:
+        return
+    heap: list[Promise] = []
+    _effects_beside(search, search.beside[frozenset()], heap)
+    leader = max(search.beside, key=lambda n: search.beside[n].log_evidence + search.beliefs.log_prior(n))
+    if leader:
+        _effects_beside(search, search.beside[leader], heap)
+    best = lambda: max(b.log_evidence + search.beliefs.log_prior(n) for n, b in search.beside.items())  # noqa: E731
+    for number, promise in enumerate(sorted(heap)[:MOST_BESIDE]):
+        if number < BESIDE or -promise.order >= best() - REACH:
+            _fit_beside(search, promise)
+    cap(search.guessed_beside, search.beliefs, best())
+
+
+def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None:
+    """What one effect more would gain beside an unknown function."""
+    hypothesis = beside.hypothesis
+    have = hypothesis.names
+    if len(have) == MOST:
+        return
+    added = additions(search, hypothesis, np.hstack([hypothesis.fit.jacobian, beside.columns()]))
+    promised: dict[Set, tuple[Explanation, float]] = {}
+    for found in explored(added.names, added.readings, search.beliefs, have, len(have) + 1).values():
+        every = have | found.names
+        if found.names and every not in search.beside:
+            gain = beside.log_evidence + search.forms.get(have, 0.0) + student_gain(hypothesis, found.gain)
+            search.guessed_beside[every] = max(gain, search.guessed_beside.get(every, -np.inf))
+            promised[every] = found, gain + search.beliefs.log_prior(every)
+    for promise in added.promises(promised):
+        heappush(heap, promise)
+
+
+def _fit_beside(search: Search, promise: Promise) -> None:
+    """A set beside an unknown function, fitted where the set was not."""
+    every = promise.every
+    if every in search.beside:
+        return
+    search.guessed_beside.pop(every, None)
+    found = None
+    if every in search.fitted or fit_set(search, promise):
+        found = beside_unknown(search.fitted[every], search.shapes)
+    if found is not None:
+        search.beside[every] = found
+
+
+def cap(
+    guessed: dict[Set, float], beliefs: Beliefs, best: float, added: Callable[[Set], float] = lambda names: 0.0
+) -> None:
+    """A guess that was not followed up counts for no more than the best that was fitted (ln posterior).
+
+    added: what is added to the guess of a set [nats]
+    """
+    for names in guessed:
+        guessed[names] = min(guessed[names], best - beliefs.log_prior(names) - added(names))

@@ -1,0 +1,238 @@
+"""What was tried: sets of effects that were fitted, what linear algebra promises of others, and the fit of one more.
+
+Sets of up to four effects are looked at beside every set that was fitted, at its own slopes and with the errors of its
+laws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from heapq import heapify
+from math import log
+
+import numpy as np
+
+from effects.base import Effect
+from effects.parameter import parameters_of
+from workbench.believed import MOST
+from workbench.errors import WorkbenchError
+from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
+from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from
+from workbench.likelihood.bench import Bench
+from workbench.likelihood.fit import FAR, misfit
+from workbench.likelihood.marginal import Readings
+from workbench.likelihood.signatures import Signatures
+from workbench.likelihood.unknown import Shape
+from workbench.likelihood.unknown_laws import LAWS, UnknownLaw
+
+REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
+SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
+KEPT = 40  # promises beside one fit that are followed up
+
+Progress = Callable[[str], None]
+Set = frozenset[str]
+
+
+@dataclass(order=True)
+class Promise:
+    """A set that could be fitted, by linear algebra beside a fit. order: minus ln of its promised posterior
+
+    effects, x, z: null effects, nuisances and parameters where a fit of it begins
+    forms: what other forms of its effects add to ln evidence [nats]
+    """
+
+    order: float
+    label: str
+    every: Set = field(compare=False)
+    effects: tuple[Effect, ...] = field(compare=False)
+    x: np.ndarray = field(compare=False)
+    z: np.ndarray = field(compare=False)
+    forms: float = field(compare=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Additions:
+    """What may be added beside a fit. The products of all columns are let go of when the promises are made."""
+
+    search: Search
+    parent: Hypothesis
+    names: Names
+    readings: Readings
+
+    def promises(self, found: Mapping[Set, tuple[Explanation, float]]) -> list[Promise]:
+        """Of sets with ln of their promised posterior; the best few and the smaller ones that they hold."""
+        leading = sorted(found, key=lambda every: (-found[every][1], label_of(every)))[:KEPT]
+        return [self._promise(e, *found[e]) for e in found if any(e <= every for every in leading)]
+
+    def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
+        fit, m = self.parent.fit, len(self.parent.fit.x)
+        weights = self.names.catalogue.given(found.terms, self.readings).weights
+        effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
+        place = self.names.catalogue.background.shape[1]
+        for term in (self.names.catalogue.terms[t] for t in found.terms):
+            signature = self.search.signatures.found[term.name][term.variant]
+            count = len(parameters_of(signature.effect))
+            effects.append(signature.effect)
+            z.append(signature.at(term.place, np.clip(weights[place : place + count], -2.0, 2.0)))
+            place += count
+        forms = self.search.forms.get(self.parent.names, 0.0) + found.forms
+        x = np.clip(weights[:m], -FAR, FAR)
+        return Promise(-promised, label_of(every), every, tuple(effects), x, np.concatenate(z), forms)
+
+
+@dataclass(eq=False)
+class Search:
+    """All that was tried. fitted: by set of names;  forms: what other forms of the effects add to ln evidence
+
+    guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
+    guessed;  beside: sets beside an unknown function
+    guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
+    exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
+    """
+
+    bench: Bench
+    signatures: Signatures
+    beliefs: Beliefs
+    shapes: tuple[Shape, ...]
+    fitted: dict[Set, Hypothesis]
+    forms: dict[Set, float] = field(default_factory=dict)
+    guessed: dict[Set, float] = field(default_factory=dict)
+    origins: dict[Set, Set] = field(default_factory=dict)
+    beside: dict[Set, Beside] = field(default_factory=dict)
+    guessed_beside: dict[Set, float] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)
+    expanded: set[Set] = field(default_factory=set)
+    exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
+
+    def log_evidence(self, names: Set) -> float:
+        """Of a set that was fitted, all its forms together [nats]."""
+        return self.fitted[names].log_evidence + self.forms.get(names, 0.0) + self.exactness(names)
+
+    def exactness(self, names: Set) -> float:
+        """What an exact base model would give a set that has none: as much as the exact one that is most like it."""
+        if names in self.exact:
+            return 0.0
+        return self.exact[min(self.exact, key=lambda e: (-len(e & names), len(e ^ names), sorted(e)))]
+
+    def log_posterior(self, names: Set) -> float:
+        """Up to what all share [nats]."""
+        return self.log_evidence(names) + self.beliefs.log_prior(names)
+
+    @property
+    def ranked(self) -> list[Set]:
+        """Sets that were fitted, most probable first."""
+        return sorted(self.fitted, key=lambda names: -self.log_posterior(names))
+
+    @property
+    def unknown(self) -> np.ndarray:
+        """Expected unknown function beside nothing, of the uncertainty of the rows to fit (n,); zero where none is
+        seen."""
+        out = np.zeros(self.bench.fit.stack.size)
+        found = self.beside.get(frozenset())
+        for s, function in zip(found.leading, found.functions) if found is not None else ():
+            out[s.shape.rows] += function
+        return out / self.bench.fit.white.sigma
+
+    @property
+    def unknown_in_words(self) -> str:
+        """The most probable of the unknown functions beside nothing and the unknown laws; empty where none is seen."""
+        function = self.beside.get(frozenset())
+        least = -np.inf if function is None else function.log_evidence + self.beliefs.log_unknown
+        words = function.leading[0].shape.words() if function is not None else ""
+        with_law = next((names for names in self.ranked if names & LAWS.keys()), frozenset())
+        if with_law and self.log_posterior(with_law) > least:
+            words = next(e.words() for e in self.fitted[with_law].effects if isinstance(e, UnknownLaw))
+        return words
+
+    @property
+    def posterior(self) -> Posterior:
+        """Probabilities of everything that was fitted or guessed."""
+        guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
+        alone = guessed | {names: self.log_evidence(names) for names in self.fitted}
+        beside = {n: b.log_evidence + self.forms.get(n, 0.0) + self.exactness(n) for n, b in self.beside.items()}
+        return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
+
+
+def label_of(names: Set) -> str:
+    return " with ".join(sorted(names))
+
+
+def start_from(search: Search, every: Set, effects: tuple[Effect, ...], x: np.ndarray, z: np.ndarray) -> Promise:
+    """A fit of effects of which only the forms that they have count."""
+    forms = -sum(log(len(search.signatures.found[name])) for name in sorted(every))
+    return Promise(0.0, label_of(every), every, effects, x, z, forms)
+
+
+def promised_of(search: Search, every: Set) -> float:
+    """ln posterior that a set promises: its guess, and a share of what it would gain over all that was fitted of it."""
+    guess = search.guessed[every]
+    before = max(search.log_evidence(names) for names in search.fitted if names <= every)
+    return guess + SLACK * max(guess - before, 0.0) + search.beliefs.log_prior(every)
+
+
+def fit_set(search: Search, promise: Promise) -> bool:
+    """Fits a set; False where the model has no answer. Replaces a guess of it, and an earlier fit that was worse."""
+    every = promise.every
+    guess = search.guessed.pop(every, -np.inf)
+    try:
+        found = fitted_from(search.bench, promise.effects, promise.x, promise.z)
+    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
+        if every not in search.fitted:
+            search.failed[promise.label] = str(error)
+        return every in search.fitted
+    if every in search.fitted and found.log_evidence + promise.forms <= search.log_evidence(every):
+        return True
+    search.fitted[every] = found
+    search.exact.pop(every, None)
+    search.forms[every] = promise.forms
+    _lower(search, every, max(guess - search.log_evidence(every), 0.0))
+    return True
+
+
+def _lower(search: Search, every: Set, shortfall: float) -> None:
+    """Sets that hold one whose guess was too high were guessed too high as well, unless beside a nearer fit."""
+    origin = search.origins.get(every, frozenset())
+    for names in search.guessed:
+        if names > every and search.origins[names] <= origin:
+            search.guessed[names] -= shortfall
+
+
+def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
+    """Promises of one or two effects more beside a fit."""
+    have = hypothesis.names
+    search.expanded.add(have)
+    added = additions(search, hypothesis, hypothesis.fit.jacobian)
+    sets = explored(added.names, added.readings, search.beliefs, have, min(len(have) + 2, MOST))
+    promised: dict[Set, tuple[Explanation, float]] = {}
+    for every, found in ((have | found.names, found) for found in sets.values() if found.names):
+        if every in search.fitted:
+            continue
+        guess = search.log_evidence(have) + student_gain(hypothesis, found.gain)
+        origin = search.origins.get(every, frozenset())
+        if every not in search.guessed or len(have) > len(origin) or guess > search.guessed[every]:
+            search.guessed[every], search.origins[every] = guess, have
+            promised[every] = found, promised_of(search, every)
+    renewed = added.promises(promised)
+    stale = {promise.every for promise in renewed}
+    heap[:] = [promise for promise in heap if promise.every not in stale] + renewed
+    heapify(heap)
+
+
+def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
+    names = Names(search.signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
+    return Additions(search, hypothesis, names, names.catalogue.readings(at_zero(hypothesis)[:, None])[0])
+
+
+def student_gain(hypothesis: Hypothesis, gain: float) -> float:
+    """A Gaussian gain of ln p in the likelihood of the fits [nats]: what pulled tolerances cost comes back as it is,
+    the rest is taken from the channels that fit worst."""
+    problem, x = hypothesis.problem, hypothesis.fit.x
+    squares, sizes = problem.squares(hypothesis.fit.residual), problem.sizes
+    excess = np.maximum(squares - sizes, 0.0)
+    pulls = 0.5 * float(x @ x)
+    left = gain - pulls
+    if left <= 0 or excess.sum() == 0:
+        return gain
+    fall = np.minimum(2 * left * excess / excess.sum(), excess)
+    return pulls + min(left, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))
