@@ -168,10 +168,9 @@ def _leading(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarr
     groups = len({s.channels for s in shapes})
     chosen = [max(found, key=lambda s: s.log_evidence)]
     share = float(logsumexp([s.log_evidence for s in found])) - float(chosen[0].gains.max())
-    while len(chosen) < groups:
+    while left := _in_other_channels(shapes, chosen):
         background = np.hstack([background, chosen[-1].columns(len(residual))])
-        taken = {s.shape.channels for s in chosen}
-        found = seen([s for s in shapes if s.channels not in taken], background, residual)
+        found = seen(left, background, residual)
         best = max(found, key=lambda s: s.log_evidence)
         of_group = [s.log_evidence for s in found if s.shape.channels == best.shape.channels]
         gain = float(logsumexp(of_group)) + log(groups) + log(ALSO)
@@ -180,6 +179,11 @@ def _leading(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarr
         chosen.append(best)
         share += gain - float(best.gains.max())
     return tuple(chosen), share
+
+
+def _in_other_channels(shapes: Sequence[Shape], chosen: Sequence[Seen]) -> list[Shape]:
+    taken = {channel for s in chosen for channel in s.shape.channels}
+    return [shape for shape in shapes if not taken.intersection(shape.channels)]
 
 
 def _rewhitened(shapes: Sequence[Shape], problem: Problem) -> list[Shape]:

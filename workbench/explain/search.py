@@ -32,7 +32,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     every = {**library, **LAWS}
     signatures = signatures_of(bench, candidates(bench, every), progress)
     beliefs = beliefs_of(every, signatures.names)
-    shapes = shapes_of(bench.fit.stack, bench.fit.white)
+    shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
     _effects_alone(search, progress)
     _exactly(search, progress)

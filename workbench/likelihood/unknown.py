@@ -1,14 +1,15 @@
 """What no effect of the library is: an unknown function of the conditions in a channel, its size in the channel's unit.
 
 Two families stand for it: smooth functions (a Gaussian process of some length over the conditions, periodic in
-angles), and plain laws c |x|^p sign(x)^s of one condition x, which are what a missing law most often looks like.
-The size is a share of the rms reading of the channel, whatever the noise of its sensor is. Phases of one quantity
-have functions of their own of the same size and length.
+angles, or over the reading of an instrument in all its tables), and plain laws c |x|^p sign(x)^s of one condition x,
+which are what a missing law most often looks like. The size is a share of the rms reading of the channel, whatever the
+noise of its sensor is. Phases of one quantity have functions of their own of the same size and length.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import log
@@ -33,7 +34,8 @@ LANDMARKS = 60  # shapes of a smooth function in one channel
 class Shape:
     """One kind of unknown function: what its rows have in common.
 
-    channels: names;  law: "smooth", "along" (one condition) or "power";  of: that condition;  detail: length or power
+    channels: names;  law: "smooth", "along" (one condition), "reading" (what the instrument shows) or "power"
+    of: that condition or response;  detail: length or power
     rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
     raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
     """
@@ -52,6 +54,8 @@ class Shape:
         where = ", ".join(self.channels)
         if self.law == "along":
             return f"a smooth function of {self.of} in {where}"
+        if self.law == "reading":
+            return f"a smooth function of the reading itself in {where}"
         if self.law == "power":
             return f"a law of {where} that goes with {self.of} to the power {self.detail:g}"
         return f"a smooth function of the conditions in {where}"
@@ -81,18 +85,16 @@ class Seen:
         return out
 
 
-def shapes_of(stack: Stack, white: Whitener) -> tuple[Shape, ...]:
+def shapes_of(stack: Stack, white: Whitener, answers: np.ndarray) -> tuple[Shape, ...]:
     """Every unknown function that is thought of: equal shares of the prior for smooth functions of all conditions, for
-    smooth functions of one of them, and for plain laws."""
-    groups = _groups(stack)
-    found = [(law, shape) for group in groups for law, shape in _of_group(stack, white, group)]
-    counts = {law: sum(1 for kind, _ in found if kind == law) for law in ("smooth", "along", "power")}
-    families = sum(1 for count in counts.values() if count)
-    return tuple(_with_prior(shape, -log(families * counts[law])) for law, shape in found)
+    smooth functions of one of them, for those of the reading itself, and for plain laws.
 
-
-def _with_prior(shape: Shape, log_prior: float) -> Shape:
-    return Shape(shape.channels, shape.law, shape.of, shape.detail, shape.rows, shape.columns, shape.raw, log_prior)
+    answers: readings as the model has them (n,): those of the table would betray their own noise
+    """
+    found = [shape for group in _groups(stack) for shape in _of_group(stack, white, group)]
+    found += [shape for group in _instruments(stack) for shape in _of_readings(stack, white, answers, group)]
+    counts = Counter(shape.law for shape in found)
+    return tuple(replace(shape, log_prior=-log(len(counts) * counts[shape.law])) for shape in found)
 
 
 def _groups(stack: Stack) -> list[list[Channel]]:
@@ -110,22 +112,41 @@ def _quantity(response: str) -> str:
     return stem if stem and phase in ("a", "b", "c") else response
 
 
-def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterator[tuple[str, Shape]]:
+def _instruments(stack: Stack) -> list[list[Channel]]:
+    """Channels of all tables that show one quantity, those of one instrument together."""
+    found: dict[str, list[Channel]] = {}
+    for channel in sorted(stack.channels, key=lambda c: c.response):
+        found.setdefault(_quantity(channel.response), []).append(channel)
+    return list(found.values())
+
+
+def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterator[Shape]:
     table = stack.tables[group[0].table]
-    names = tuple(channel.name for channel in group)
-    rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
+    each = lambda law: _blocks([_rms(stack, c) * law for c in group])  # noqa: E731
     for length in range(len(LENGTHS)):
-        raw = _blocks([_rms(stack, c) * smooth(table, length) for c in group])
-        yield "smooth", Shape(names, "smooth", "", LENGTHS[length], rows, _whitened(stack, white, rows, raw), raw, 0.0)
+        yield _shape(stack, white, group, "smooth", "", LENGTHS[length], each(smooth(table, length)))
     for of in _alone(table):
-        only = replace(table, conditions={of: table.conditions[of]})
+        only = {of: table.conditions[of]}
         for length in range(len(LENGTHS)):
-            raw = _blocks([_rms(stack, c) * smooth(only, length) for c in group])
-            white_columns = _whitened(stack, white, rows, raw)
-            yield "along", Shape(names, "along", of, LENGTHS[length], rows, white_columns, raw, 0.0)
+            yield _shape(stack, white, group, "along", of, LENGTHS[length], each(smooth_over(only, length)))
     for of, power, law in _laws(table):
-        raw = _blocks([_rms(stack, c) * law[:, None] for c in group])
-        yield "power", Shape(names, "power", of, power, rows, _whitened(stack, white, rows, raw), raw, 0.0)
+        yield _shape(stack, white, group, "power", of, power, each(law[:, None]))
+
+
+def _of_readings(stack: Stack, white: Whitener, answers: np.ndarray, group: Sequence[Channel]) -> Iterator[Shape]:
+    """Smooth functions of what each instrument reads, the same in all its tables, in proportion to it."""
+    instruments = [[c for c in group if c.response == r] for r in dict.fromkeys(c.response for c in group)]
+    readings = [np.concatenate([answers[c.rows] for c in one]) for one in instruments]
+    for length in range(len(LENGTHS)):
+        raw = _blocks([np.abs(y)[:, None] * smooth_over({"reading": y}, length) for y in readings])
+        yield _shape(stack, white, group, "reading", _quantity(group[0].response), LENGTHS[length], raw)
+
+
+def _shape(stack: Stack, white: Whitener, group: Sequence[Channel], law: str, of: str, detail: float, raw: np.ndarray):
+    """A shape of channels, its prior still open."""
+    rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
+    names = tuple(channel.name for channel in group)
+    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, raw), raw, 0.0)
 
 
 def _rms(stack: Stack, channel: Channel) -> float:
@@ -169,18 +190,23 @@ def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:
 
 
 def smooth(table: Table, length: int) -> np.ndarray:
+    """Phi (n, q) with Phi Phi^T = exp(-d^2 / 2) over all conditions of a table."""
+    return smooth_over(table.conditions, length)
+
+
+def smooth_over(conditions: Mapping[str, np.ndarray], length: int) -> np.ndarray:
     """Phi (n, q) with Phi Phi^T = exp(-d^2 / 2) as far as LANDMARKS reach (Nystroem); d: distance over the length."""
-    places = _places(table, length)
+    places = _places(conditions, length)
     unique = np.unique(np.round(places, 6), axis=0)
     marks = unique[:: max(1, -(-len(unique) // LANDMARKS))]
     between = _kernel(marks, marks) + 1e-6 * np.eye(len(marks))
     return np.linalg.solve(np.linalg.cholesky(between), _kernel(marks, places)).T
 
 
-def _places(table: Table, length: int) -> np.ndarray:
+def _places(conditions: Mapping[str, np.ndarray], length: int) -> np.ndarray:
     """Conditions over the length (n, d): an angle on its circle, others by their ranks with standard deviation 1."""
     columns: list[np.ndarray] = []
-    for name, values in table.conditions.items():
+    for name, values in conditions.items():
         if np.ptp(values) == 0:
             continue
         if "angle" in name:
@@ -188,7 +214,7 @@ def _places(table: Table, length: int) -> np.ndarray:
         else:
             rank = rankdata(np.round(values, 12))
             columns.append((rank - rank.mean()) / rank.std() / LENGTHS[length])
-    return np.array(columns).T if columns else np.zeros((table.rows, 1))
+    return np.array(columns).T if columns else np.zeros((len(next(iter(conditions.values()))), 1))
 
 
 def _kernel(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ def simulator_of(folder, seed=1, **more):
     campaign = read_campaign(written(folder, **more))
     bench = bench_of(Model(SpringModel(), SpringModel().design(campaign.device)), campaign, LIBRARY)
     signatures = signatures_of(bench, candidates(bench, LIBRARY))
-    shapes = shapes_of(bench.fit.stack, bench.fit.white)
+    shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     return Simulator(bench, signatures, beliefs_of(LIBRARY, signatures.names), shapes, default_rng(seed))
 
 

@@ -96,7 +96,7 @@ def test_two_starts_find_the_same_maximum(bench):
 
 
 def test_evidence_beside_the_unknown_is_the_mean_over_all_shapes_and_sizes(bench):
-    shapes = shapes_of(bench.fit.stack, bench.fit.white)
+    shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     logs = [
         gauss(bench, extra=a**2 * s.columns @ s.columns.T) + s.log_prior - np.log(len(SIZES))
         for s in shapes
@@ -110,7 +110,9 @@ def test_an_unknown_law_is_seen_beside_an_effect_too(tmp_path):
     """A wave and an even part: the expected function beside the even part is the wave, where noise lets it be seen."""
     wave = lambda x: 0.5 * np.sin(900 * x)  # noqa: E731
     bench = sure_of_noise(tmp_path, extra=lambda x: wave(x) + 1.0 * (x / 0.01) ** 2)
-    found = beside_unknown(alone(bench, Bump), shapes_of(bench.fit.stack, bench.fit.white))
+    found = beside_unknown(
+        alone(bench, Bump), shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    )
     x = bench.fit.stack.tables[0].conditions["displacement"]
     assert found.leading[0].shape.law == "smooth"
     assert np.corrcoef(found.functions[0], wave(x))[0, 1] > 0.97
@@ -362,4 +364,8 @@ def test_a_fit_that_has_no_answer_is_left_out_and_said(bench):
 def test_the_residual_that_is_explained_is_carried_back_to_the_drawing(bench):
     """Linear in its nuisances, the residual at zero of them is what the drawing itself leaves."""
     assert np.allclose(at_zero(null_of(bench)), bench.fit.residual(np.zeros(2)), atol=1e-6)
-    assert seen(shapes_of(bench.fit.stack, bench.fit.white), bench.null.jacobian, at_zero(null_of(bench)))
+    assert seen(
+        shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x)),
+        bench.null.jacobian,
+        at_zero(null_of(bench)),
+    )

@@ -18,7 +18,7 @@ def drag(extra, u=0.01, seed=0):
     """A force of rms near one over a speed, whitened residual of what a model leaves out."""
     noise = u * np.random.default_rng(seed).standard_normal(len(SPEED))
     stack, white = whitened(table({"force": 0.2 * SPEED + extra + noise}, u, speed=SPEED))
-    return shapes_of(stack, white), white(extra + noise)
+    return shapes_of(stack, white, stack.y), white(extra + noise)
 
 
 def dense(covariance, residual):
@@ -76,6 +76,35 @@ def test_a_wave_is_no_plain_law():
     assert found.shape.law == "smooth" and found.log_evidence > 20
 
 
+def two_tables_of_one_cell(step, seed=0, u=0.01):
+    """A force over a speed and one over a shunt; the cell reads more by a step above 1 N."""
+    random = np.random.default_rng(seed)
+    shunt = np.linspace(1.0, 5.0, 30)
+    truths = [0.2 * SPEED, 2.0 / shunt]
+    read = [f * (1 + step * (f > 1.0)) + u * random.standard_normal(len(f)) for f in truths]
+    tables = (table({"force": read[0]}, u, speed=SPEED), table({"force": read[1]}, u, file="s.csv", shunt=shunt))
+    stack, white = whitened(*tables)
+    answers = np.concatenate(truths)
+    return shapes_of(stack, white, answers), white(stack.y - answers)
+
+
+def test_what_an_instrument_does_is_one_function_of_its_reading_in_all_tables():
+    shapes, residual = two_tables_of_one_cell(0.05)
+    found = max(seen(shapes, np.zeros((len(residual), 0)), residual), key=lambda s: s.log_evidence)
+    assert found.shape.law == "reading" and found.shape.channels == ("t.force", "s.force")
+    assert found.log_evidence > 20
+
+
+def test_noise_is_no_function_of_the_reading():
+    """The reading is that of the model: its own noise would show it."""
+    gains = []
+    for seed in range(20):
+        shapes, residual = two_tables_of_one_cell(0.0, seed)
+        found = seen(shapes, np.zeros((len(residual), 0)), residual)
+        gains.append(max(s.log_evidence for s in found if s.shape.law == "reading"))
+    assert max(gains) < 3 and np.mean(gains) < 0
+
+
 def test_a_better_sensor_does_not_shrink_what_is_believed_possible():
     """The prior is in the unit of the channel: whitened columns grow by as much as the noise shrinks."""
     rough, fine = (drag(0 * SPEED, u)[0] for u in (0.01, 0.001))
@@ -105,7 +134,7 @@ def test_the_phases_of_one_voltage_share_size_and_length():
     turn = np.linspace(0, 6, 20)
     emf = table({f"v_{x}": np.cos(turn - k) for k, x in enumerate("abc")}, 0.1, angle_mech=turn)
     stack, white = whitened(emf)
-    shapes = shapes_of(stack, white)
+    shapes = shapes_of(stack, white, stack.y)
     assert {shape.channels for shape in shapes} == {("t.v_a", "t.v_b", "t.v_c")}
     crossing = shapes[0].raw[:20].T @ shapes[0].raw[:20]
     third = shapes[0].columns.shape[1] // 3
