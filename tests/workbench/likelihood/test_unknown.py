@@ -76,13 +76,13 @@ def test_a_wave_is_no_plain_law():
     assert found.shape.law == "smooth" and found.log_evidence > 20
 
 
-def two_tables_of_one_cell(step, seed=0, u=0.01):
-    """A force over a speed and one over a shunt; the cell reads more by a step above 1 N."""
+def two_tables_of_one_cell(step, seed=0, u=0.01, times=1):
+    """A force over a speed and one over a shunt, so many times each; the cell reads more by a step above 1 N."""
     random = np.random.default_rng(seed)
-    shunt = np.linspace(1.0, 5.0, 30)
-    truths = [0.2 * SPEED, 2.0 / shunt]
+    speed, shunt = np.tile(SPEED, times), np.tile(np.linspace(1.0, 5.0, 30), times)
+    truths = [0.2 * speed, 2.0 / shunt]
     read = [f * (1 + step * (f > 1.0)) + u * random.standard_normal(len(f)) for f in truths]
-    tables = (table({"force": read[0]}, u, speed=SPEED), table({"force": read[1]}, u, file="s.csv", shunt=shunt))
+    tables = (table({"force": read[0]}, u, speed=speed), table({"force": read[1]}, u, file="s.csv", shunt=shunt))
     stack, white = whitened(*tables)
     answers = np.concatenate(truths)
     return shapes_of(stack, white, answers), white(stack.y - answers)
@@ -99,7 +99,7 @@ def test_noise_is_no_function_of_the_reading():
     """The reading is that of the model: its own noise would show it."""
     gains = []
     for seed in range(20):
-        shapes, residual = two_tables_of_one_cell(0.0, seed)
+        shapes, residual = two_tables_of_one_cell(0.0, seed, u=0.3, times=4)
         found = seen(shapes, np.zeros((len(residual), 0)), residual)
         gains.append(max(s.log_evidence for s in found if s.shape.law == "reading"))
     assert max(gains) < 3 and np.mean(gains) < 0
