@@ -33,7 +33,8 @@ class Effect:
     contains: effects that are special cases of this one, never combined with it
     signature: what its vanishing size does to readings, to be verified on the model [claims]
     model_error: declared relative error of the effect's own law; zero where the law defines the effect
-    model_error_source: what it was measured against, or rests on
+    size_error: declared relative error of its first parameter for the same reason
+    model_error_source: what they were measured against, or rest on
     base_rate: how often a bench campaign of such a device has it, before anything is measured [1]
     base_rate_source: why it is believed to be that
     """
@@ -45,6 +46,7 @@ class Effect:
     contains: ClassVar[tuple[str, ...]] = ()
     signature: ClassVar[tuple[Claim, ...]] = ()
     model_error: ClassVar[float] = 0.0
+    size_error: ClassVar[float] = 0.0
     model_error_source: ClassVar[str] = ""
     base_rate: ClassVar[float] = 0.02
     base_rate_source: ClassVar[str] = "one of about fifty things that a campaign may hide, none of them likelier"

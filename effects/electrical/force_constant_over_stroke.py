@@ -23,6 +23,7 @@ class ForceConstantOverStroke(CouplingEffect):
         Power("impedance.re", "frequency", 0.0),
     )
     model_error = 0.001
+    size_error = 0.009
     model_error_source = "benchmarks/law_errors.py: against 1 - curvature x^2"
     base_rate = 0.01
     base_rate_source = "engineering judgement: designed out within the rated stroke"

@@ -39,6 +39,7 @@ class IronLossResistance(DesignEffect):
         Touches("dq_supply.*"),
     )
     model_error = 0.012
+    size_error = 0.028
     model_error_source = "benchmarks/law_errors.py: against Bertotti's law with a fifth of the loss as excess"
     base_rate = 0.08
     base_rate_source = "engineering judgement: in every machine, in few simple models, visible in one of twelve"

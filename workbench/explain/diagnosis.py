@@ -178,7 +178,7 @@ def _ranked(search: Search, name: str, probability: float, before: tuple[float, 
     hypothesis = search.fitted[best]
     after = _errors(hypothesis)
     bounds = tuple(p for effect in hypothesis.effects if effect.name() == name for p in _on_bounds(effect))
-    sizes = estimates(hypothesis)[name]
+    sizes = estimates(hypothesis, search.weights(name))[name]
     return Ranked(
         name, title, probability, _gain(search, name), sizes, before[0], after[0], before[1], after[1], bounds
     )

@@ -3,12 +3,12 @@ each with its evidence."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import logsumexp, ndtri
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -24,6 +24,7 @@ ALSO = 0.5  # probability that an unknown law which shows in one group of channe
 LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
+SHARES = 100  # of a posterior, whose middles stand for it where several are brought together
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
 
@@ -243,21 +244,46 @@ def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: float) -> float:
     return -value - 0.5 * float(np.linalg.slogdet(normal)[1])
 
 
-def estimates(hypothesis: Hypothesis) -> dict[str, dict[str, Estimate]]:
-    """Effect -> parameter -> value and 90 % interval."""
-    fit, place = hypothesis.fit, 0
-    out: dict[str, dict[str, Estimate]] = {}
-    for effect in fit.effects:
-        found = {}
-        for name, parameter in parameters_of(effect).items():
-            low, high = _interval(hypothesis, place)
-            values = [_value(effect, name, z) for z in (fit.z[place], low, high)]
-            low90, high90 = max(min(values[1:]), parameter.low), min(max(values[1:]), parameter.high)
-            std = (high90 - low90) / (2 * NORMAL_95)
-            found[name] = Estimate(values[0], float(std), float(low90), float(high90), parameter.unit)
-            place += 1
-        out[effect.name()] = found
-    return out
+def estimates(
+    hypothesis: Hypothesis, among: Mapping[Hypothesis, float] | None = None
+) -> dict[str, dict[str, Estimate]]:
+    """Effect -> parameter -> value and 90 % interval.
+
+    among: hypotheses with their weights, over all of which with the effect the interval is taken; only this one if None
+    """
+    weights = among or {hypothesis: 1.0}
+    return {
+        effect.name(): {name: _estimate(hypothesis, weights, effect, name) for name in parameters_of(effect)}
+        for effect in hypothesis.fit.effects
+    }
+
+
+def _estimate(hypothesis: Hypothesis, weights: Mapping[Hypothesis, float], effect: Effect, name: str) -> Estimate:
+    """The value is that of the hypothesis; what the law of the effect may be wrong by widens the interval."""
+    parameter = parameters_of(effect)[name]
+    value = _value(effect, name, hypothesis.fit.z[_place(hypothesis, effect.name(), name)])
+    parts = [(_samples(h, effect.name(), name), w) for h, w in weights.items() if effect.name() in h.names]
+    samples = np.concatenate([s for s, _ in parts])
+    shares = np.concatenate([np.full(len(s), w) for s, w in parts])
+    order = np.argsort(samples)
+    low, high = np.interp([0.05, 0.95], (np.cumsum(shares[order]) - shares[order] / 2) / shares.sum(), samples[order])
+    law = NORMAL_95 * effect.size_error * abs(value) if name == next(iter(parameters_of(effect))) else 0.0
+    low90 = max(value - np.hypot(value - low, law) if low < value else low, parameter.low)
+    high90 = min(value + np.hypot(high - value, law) if high > value else high, parameter.high)
+    return Estimate(value, float((high90 - low90) / (2 * NORMAL_95)), float(low90), float(high90), parameter.unit)
+
+
+def _place(hypothesis: Hypothesis, effect_name: str, name: str) -> int:
+    """Number of a parameter among those of all effects."""
+    every = [(effect.name(), p) for effect in hypothesis.fit.effects for p in parameters_of(effect)]
+    return every.index((effect_name, name))
+
+
+def _samples(hypothesis: Hypothesis, effect_name: str, name: str) -> np.ndarray:
+    """Values of a parameter that stand for its posterior, each as likely as the others."""
+    effect = next(e for e in hypothesis.fit.effects if e.name() == effect_name)
+    z = _quantiles(hypothesis, _place(hypothesis, effect_name, name))
+    return np.array([_value(effect, name, place) for place in z])
 
 
 def _value(effect: Effect, name: str, z: float) -> float:
@@ -265,17 +291,16 @@ def _value(effect: Effect, name: str, z: float) -> float:
     return float(np.clip(p.prior.value(float(np.clip(z, -FAR, FAR))), p.low, p.high))
 
 
-def _interval(hypothesis: Hypothesis, place: int) -> tuple[float, float]:
-    """5 % and 95 % points of z."""
-    fit = hypothesis.fit
+def _quantiles(hypothesis: Hypothesis, place: int) -> np.ndarray:
+    """z in the middle of ``SHARES`` equal shares of its posterior."""
+    fit, middles = hypothesis.fit, (np.arange(SHARES) + 0.5) / SHARES
     if len(fit.z) == 1:
         places, density, _ = _integrated(hypothesis.problem, fit)
         fine = np.linspace(places[0], places[-1], 801)
         mass = np.cumsum(np.exp(np.interp(fine, places, density) - density.max()))
-        low, high = np.interp([0.05, 0.95], mass / mass[-1], fine)
-        return float(low), float(high)
+        return np.interp(middles, mass / mass[-1], fine)
     spread = np.sqrt(fit.covariance[len(fit.x) + place, len(fit.x) + place])
-    return fit.z[place] - NORMAL_95 * spread, fit.z[place] + NORMAL_95 * spread
+    return fit.z[place] + spread * ndtri(middles)
 
 
 def density_of(hypothesis: Hypothesis) -> SizePosterior:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from heapq import heapify
-from math import log
+from math import exp, log
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from workbench.likelihood.unknown_laws import LAWS, UnknownLaw
 
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
+NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
 KEPT = 40  # promises beside one fit that are followed up
 
 Progress = Callable[[str], None]
@@ -133,6 +134,12 @@ class Search:
         for s, function in zip(found.leading, found.functions) if found is not None else ():
             out[s.shape.rows] += function
         return out / self.bench.fit.white.sigma
+
+    def weights(self, name: str) -> dict[Hypothesis, float]:
+        """The fits with an effect and how probable they are, over the most probable one of them."""
+        logs = {names: self.log_posterior(names) for names in self.fitted if name in names}
+        best = max(logs.values())
+        return {self.fitted[names]: exp(v - best) for names, v in logs.items() if v > best - NEGLIGIBLE}
 
     @property
     def unknown_in_words(self) -> str:
