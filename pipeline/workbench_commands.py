@@ -145,12 +145,12 @@ def _from_elsewhere(source: str, here: str) -> str:
     )
 
 
-def _settled(options: argparse.Namespace, campaign: Campaign, effects: Library, model: Model) -> Campaign:
+def _settled(options: argparse.Namespace, campaign: Campaign, model: Model) -> Campaign:
     """The campaign with the conventions that were found in it, where the user accepts them."""
     if not options.accept_conventions:
         return campaign
     with _progress() as progress:
-        conventions = settle(model, campaign, effects, progress)
+        conventions = settle(model, campaign, progress)
     if not conventions.are_right:
         print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
     return conventions.campaign
@@ -168,7 +168,7 @@ def _compare(options: argparse.Namespace) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, effects, model)
+        campaign = _settled(options, campaign, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -178,7 +178,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, effects, model)
+        campaign = _settled(options, campaign, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -191,7 +191,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, effects, model)
+        campaign = _settled(options, campaign, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)

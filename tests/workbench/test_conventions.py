@@ -38,7 +38,7 @@ def right(tmp_path_factory) -> dict[str, Path]:
 
 def settled(folder):
     campaign = read_campaign(folder)
-    return settle(nominal_model(campaign), campaign, {})
+    return settle(nominal_model(campaign), campaign)
 
 
 # What is not named as what it is on these two benches: 3 of 52. Where one of them is named, it must leave this list.
@@ -73,7 +73,7 @@ def test_what_is_settled_may_be_written_down(bench, right, tmp_path):
     for one, other in zip(again.tables, found.campaign.tables):
         for name, response in one.responses.items():
             np.testing.assert_allclose(response.values, other.responses[name].values, rtol=1e-9)
-    assert settle(nominal_model(again), again, {}).are_right
+    assert settle(nominal_model(again), again).are_right
 
 
 @pytest.mark.parametrize("bench", CATALOGUES)
@@ -142,12 +142,12 @@ def with_angle(change):
     ],
 )
 def test_the_angle_and_the_phases_of_a_machine(machine, change, names):
-    found = settle(machine, emf_campaign(machine, change), {})
+    found = settle(machine, emf_campaign(machine, change))
     assert found.names[0] == names[0] and set(found.names) <= set(names)
 
 
 def test_a_right_machine_gets_none(machine):
-    assert settle(machine, emf_campaign(machine), {}).are_right
+    assert settle(machine, emf_campaign(machine)).are_right
 
 
 # ---- the section of campaign.toml -----------------------------------------------------------------------------------
@@ -225,7 +225,7 @@ def test_line_voltages_are_answered(machine):
         for n, (p, m) in line.items()
     }
     wired = replace(campaign, tables=(replace(table, responses=responses),))
-    assert settle(machine, wired, {}).are_right
+    assert settle(machine, wired).are_right
 
 
 def test_every_name_is_documented():

@@ -15,9 +15,10 @@ from workbench.data.stack import rows_of, stacked
 from workbench.data.table import Campaign
 from workbench.findings import ChannelScore, Comparison, Pull, SignatureMatch
 from workbench.likelihood.bench import Bench, bench_of, sealed_tables
-from workbench.likelihood.noise import measured_noise, whitener
+from workbench.likelihood.noise import measured_noise
 from workbench.likelihood.nuisance import DeclaredError, InstrumentError, TolerancedInput
 from workbench.likelihood.signatures import candidates, nearest, signatures_of
+from workbench.likelihood.whitening import whitener
 from workbench.models.model import Model
 
 BLOCK = 50_000  # rows that the model is asked for at once

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from workbench.data.repeats import matched_rows
 from workbench.data.table import Campaign, Response, Table
-from workbench.likelihood.noise import matched_rows
 
 LOUD = 4.0  # standard errors from which a check speaks
 COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)

@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 
-from effects.base import Effect
 from units import DEGREE
 from workbench.data.checks import checks_of
 from workbench.data.conventions import (
@@ -115,13 +114,10 @@ class Conventions:
         return not self.found
 
 
-def settle(
-    model: Model, campaign: Campaign, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None
-) -> Conventions:
+def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: None) -> Conventions:
     """The conventions of a campaign.
 
     model: effects that it has are left out, beside one of them what is right may look wrong
-    library: not needed yet, for the day when effects are tried beside conventions
     """
     progress("settling conventions")
     model = replace(model, base=model.base.anywhere(model.design), effects=())
@@ -526,9 +522,7 @@ ALLOWED_BEYOND = 0.1  # of an end, by which the model must go beyond it somewher
 
 # ---- what is said ----------------------------------------------------------------------------------------------------
 
-SETTLED = (
-    0.75  # probability that something is wrong with the conventions, below which effects are looked for all the same
-)
+SETTLED = 0.75  # probability that a convention is wrong, below which effects are looked for all the same
 
 
 def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken) -> Conventions:

@@ -53,7 +53,7 @@ def diagnose(
         WorkbenchError: the campaign cannot be used, see ``likelihood.bench``.
     """
     start = perf_counter()
-    conventions = settle(model, campaign, library, progress)
+    conventions = settle(model, campaign, progress)
     if not conventions.are_right:
         return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")

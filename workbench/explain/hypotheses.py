@@ -15,8 +15,8 @@ from effects.parameter import parameters_of
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
 from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, with_parameters
-from workbench.likelihood.noise import LawError, law_error
 from workbench.likelihood.unknown import Seen, Shape, expected, seen, smooth
+from workbench.likelihood.whitening import LawError, law_error
 
 REACH = 4.0  # standard deviations to either side over which a posterior is integrated
 PLACES = 17

@@ -29,9 +29,10 @@ from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.bench import CONDITION_STEP
-from workbench.likelihood.noise import Noise, Whitener, measured_noise, whitener
+from workbench.likelihood.noise import Noise, measured_noise
 from workbench.likelihood.nuisance import Nuisance
 from workbench.likelihood.predictor import STEP
+from workbench.likelihood.whitening import Whitener, whitener
 from workbench.models.model import Model
 
 ROUNDS = 6  # of finding the calibrations; gains and offsets act almost linearly, two or three are needed

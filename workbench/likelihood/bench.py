@@ -11,24 +11,17 @@ from scipy.spatial import cKDTree
 
 from effects.base import Effect
 from workbench.data.campaign import columns_of_systematics
+from workbench.data.repeats import matched_rows, places_of
 from workbench.data.schema import BY_REGION
 from workbench.data.stack import Stack, rows_of, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised
-from workbench.likelihood.noise import (
-    Noise,
-    Whitener,
-    matched_rows,
-    measured_noise,
-    noise_on_rows,
-    places_of,
-    whitener,
-    with_wild_readings,
-)
+from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.predictor import DirectPredictor
 from workbench.likelihood.regions import sealed_region
+from workbench.likelihood.whitening import Whitener, whitener
 from workbench.models.model import Model
 
 MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is said

@@ -22,8 +22,8 @@ from effects.parameter import parameters_of
 from workbench.believed import TAILS
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
-from workbench.likelihood.noise import Whitener
 from workbench.likelihood.predictor import STEP, Predictor, jacobian
+from workbench.likelihood.whitening import Whitener
 
 ITERATIONS = 15
 CLOSE = 1e-4  # change of the objective [nats] at which a fit is done

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
+from workbench.data.repeats import follows, matched_rows, scans_of
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 
@@ -28,7 +28,6 @@ POOLED_PAIRS = 30.0  # neighbours that the correlation common to all channels co
 LARGEST_CORRELATION = 0.95
 POOLED_SCANS = 6.0  # offsets and slopes that the spread common to all channels counts for in each channel
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
-LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
 
 
 @dataclass(frozen=True)
@@ -54,87 +53,6 @@ class Noise:
 
     channels: tuple[ChannelNoise, ...]
     inflation: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class LawError:
-    """Directions in the whitened rows of a channel along which a law may be wrong, and how much (n_c, q), (q,)."""
-
-    rows: slice
-    directions: np.ndarray
-    size: np.ndarray
-
-    @property
-    def half_log_det(self) -> float:
-        return 0.5 * float(np.log1p(self.size**2).sum())
-
-    def apply(self, z: np.ndarray) -> np.ndarray:
-        """(1 + F F^T)^(-1/2) z of the rows of the channel, F = directions * size."""
-        shrink = 1 - 1 / np.sqrt(1 + self.size**2)
-        return z - self.directions @ ((shrink * self.directions).T @ z)
-
-
-def law_error(rows: slice, wrong: np.ndarray) -> LawError:
-    """Of whitened shapes with standard normal weights (n_c, q)."""
-    directions, size, _ = np.linalg.svd(wrong, full_matrices=False)
-    keep = size > 1e-3
-    return LawError(rows, directions[:, keep], size[keep])
-
-
-@dataclass(frozen=True, eq=False)
-class Whitener:
-    """Turns stacked residuals into independent ones of size one.
-
-    z = r / sigma, then (z_k - rho z_(k-1)) / sqrt(1 - rho^2) inside each scan
-    sigma: standard uncertainty of a row (n,);  rho: correlation with the row before, 0 where there is none (n,)
-    laws: errors of laws that are integrated out besides
-    """
-
-    sigma: np.ndarray
-    rho: np.ndarray
-    laws: tuple[LawError, ...] = ()
-
-    def __call__(self, residual: np.ndarray) -> np.ndarray:
-        """residual (n,) or (n, m) -> whitened, same shape"""
-        shape = (-1,) + (1,) * (residual.ndim - 1)
-        z = residual / self.sigma.reshape(shape)
-        rho = self.rho.reshape(shape)
-        before = np.zeros_like(z)
-        before[1:] = z[:-1]
-        z = (z - rho * before) / np.sqrt(1 - rho**2)
-        for law in self.laws:
-            z[law.rows] = law.apply(z[law.rows])
-        return z
-
-
-def whitener(stack: Stack, noise: Noise) -> Whitener:
-    """The whitener of a stack; noise must have its channels and rows."""
-    sigma, rho = np.empty(stack.size), np.zeros(stack.size)
-    for channel, found in zip(stack.channels, noise.channels):
-        rows = channel.rows
-        sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
-        rho[rows] = np.where(_follows(stack.tables[channel.table]), found.rho, 0.0)
-    white = Whitener(sigma, rho)
-    laws = [_of_scans(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
-    return Whitener(sigma, rho, tuple(law for law in laws if law is not None))
-
-
-def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
-    """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
-    if not channel.size or not found.scans:
-        return None
-    scans = _scans(stack.tables[channel.table])
-    raw = np.zeros((stack.size, 2 * len(scans)))
-    for k, rows in enumerate(scans):
-        shapes = found.scans * _scan_shapes(stack.u[channel.rows][rows])
-        raw[channel.rows.start + rows, 2 * k : 2 * k + 2] = shapes * white.sigma[channel.rows][rows][:, None]
-    return law_error(channel.rows, white(raw)[channel.rows])
-
-
-def _scans(table: Table) -> list[np.ndarray]:
-    """Rows of every scan of every repeat."""
-    _, which = np.unique(np.stack([table.scan, table.repeat]), axis=1, return_inverse=True)
-    return [np.flatnonzero(which == k) for k in range(which.max(initial=-1) + 1)]
 
 
 def _through(rows: int) -> np.ndarray:
@@ -248,11 +166,11 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
 def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
     """The deviations less mean and slope of every scan that is long enough to have them."""
     u, off, free = stack.u[channel.rows], np.zeros(channel.size), np.ones(channel.size)
-    for rows in _scans(stack.tables[channel.table]):
+    for rows in scans_of(stack.tables[channel.table]):
         known = rows[np.isfinite(whole.spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
-        shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
+        shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
         values = np.clip(whole.spread[known], *_fence(whole.spread[known]))
         off[known] = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0] / whole.growth
         free[known] = np.sqrt(len(known) / (len(known) - 2))
@@ -279,17 +197,17 @@ class _Scans:
 
 def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _Scans:
     found, noise = [], []
-    for rows in _scans(table):
+    for rows in scans_of(table):
         known = rows[np.isfinite(z[rows])]
         if len(known) >= SHORTEST_SCAN:
-            shapes = _scan_shapes(u[rows])[np.searchsorted(rows, known)]
+            shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
             values = np.clip(z[known], *_fence(z[known]))
             found += list(np.linalg.lstsq(shapes, values, rcond=None)[0])
             noise += list((1 + rho) / (1 - rho) * np.diagonal(np.linalg.pinv(shapes.T @ shapes)))
     return _Scans(np.array(found), np.array(noise))
 
 
-def _scan_shapes(u: np.ndarray) -> np.ndarray:
+def scan_shapes(u: np.ndarray) -> np.ndarray:
     """An offset and a slope in the unit of the reading over the rows of a scan, of rms 1 over their u (n, 2)."""
     shapes = np.column_stack([np.ones(len(u)), _through(len(u))]) / u[:, None]
     size = np.sqrt(np.mean(shapes**2, axis=0))
@@ -314,48 +232,6 @@ def _excess(found: np.ndarray, noise: np.ndarray) -> float:
     return excess
 
 
-def matched_rows(table: Table) -> np.ndarray | None:
-    """Row numbers (stations, repeats) of readings taken at the same conditions, None where there is one repeat."""
-    repeats = [np.flatnonzero(table.repeat == r) for r in np.unique(table.repeat)]
-    if len(repeats) < 2:
-        return None
-    if len({len(rows) for rows in repeats}) == 1 and _alike(table, repeats):
-        return np.array(repeats).T
-    return _nearest(table, repeats)
-
-
-def places_of(table: Table) -> np.ndarray:
-    """Conditions over their range (n, c)."""
-    set_ones = {n: v for n, v in table.conditions.items() if np.ptp(v) > (LOGGED_WITHIN if n.endswith("_T") else 0.0)}
-    columns = [_spread(v) / np.ptp(_spread(v)) for v in set_ones.values()]
-    return np.array(columns).T if columns else np.zeros((table.rows, 1))
-
-
-def _spread(values: np.ndarray) -> np.ndarray:
-    """The values, by their logarithm where they span decades: 1e6 ohm for open terminals leaves 0.3 and 1 ohm apart."""
-    return np.log(values) if values.min() > 0 and values.max() > 1e3 * values.min() else values
-
-
-def _alike(table: Table, repeats: list[np.ndarray]) -> bool:
-    """True when the k-th rows of all repeats were taken at the same place, but for what the readings scatter."""
-    places = places_of(table)
-    apart = np.median(np.abs(places[repeats[0]] - places[repeats[-1]]), axis=0)
-    between = np.median(np.abs(places - np.median(places, axis=0)), axis=0) + 1e-12
-    return bool((apart < 0.2 * between).mean() >= 0.5)
-
-
-def _nearest(table: Table, repeats: list[np.ndarray]) -> np.ndarray | None:
-    """Stations by nearest conditions; a row of the first repeat without near partners in all others is left out."""
-    places = places_of(table)
-    first, partners = repeats[0], []
-    for rows in repeats[1:]:
-        apart, partner = cKDTree(places[rows]).query(places[first])
-        partners.append(np.where(apart < 0.02, rows[partner], -1))
-    stations = np.column_stack([first, *partners])
-    stations = stations[(stations >= 0).all(axis=1)]
-    return stations if len(stations) >= 2 else None
-
-
 def _scale(deviation: _Deviation) -> _Scale:
     """Standard deviation with disagreements cut at WILD times it (Huber's proposal 2)."""
     d = deviation.spread[np.isfinite(deviation.spread)]
@@ -372,9 +248,9 @@ def _correlations(stack: Stack, deviations, scales) -> list[float]:
     sums = []
     for channel, d, scale in zip(stack.channels, deviations, scales):
         z = np.clip(d.spread / scale.size, -3, 3)
-        follows = _follows(stack.tables[channel.table]) & np.isfinite(z) & np.isfinite(np.roll(z, 1))
+        next_to = follows(stack.tables[channel.table]) & np.isfinite(z) & np.isfinite(np.roll(z, 1))
         share = scale.pairs / max(np.isfinite(z).sum(), 1)
-        sums.append(((z * np.roll(z, 1))[follows].sum() * share, (z**2)[follows].sum() * share))
+        sums.append(((z * np.roll(z, 1))[next_to].sum() * share, (z**2)[next_to].sum() * share))
     over, under = np.array(sums).T if sums else (np.zeros(1), np.zeros(1))
     pooled = over.sum() / under.sum() if under.sum() > 0 else 0.0
     rho = (over + POOLED_PAIRS * pooled) / (under + POOLED_PAIRS)
@@ -384,7 +260,7 @@ def _correlations(stack: Stack, deviations, scales) -> list[float]:
 
 def _lost_by_lines(table: Table, rho: float) -> float:
     """By how much a line through every scan makes the correlation of neighbours look smaller, 2 (1 + 2 rho) / n."""
-    sizes = [len(rows) for rows in _scans(table) if len(rows) >= SHORTEST_SCAN]
+    sizes = [len(rows) for rows in scans_of(table) if len(rows) >= SHORTEST_SCAN]
     return 2 * (1 + 2 * max(rho, 0.0)) / float(np.mean(sizes)) if sizes else 0.0
 
 
@@ -392,13 +268,6 @@ def _dof(pairs: int, rho: float) -> float:
     if pairs == 0:
         return DOF_WITHOUT_REPEATS
     return float(DECLARED_WEIGHT + pairs * (1 - rho**2) / (1 + rho**2))
-
-
-def _follows(table: Table) -> np.ndarray:
-    """True where a row continues the scan of the row before (n,)."""
-    same = np.zeros(table.rows, dtype=bool)
-    same[1:] = (table.scan[1:] == table.scan[:-1]) & (table.repeat[1:] == table.repeat[:-1])
-    return same
 
 
 def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: int) -> np.ndarray:

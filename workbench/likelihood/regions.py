@@ -14,8 +14,8 @@ import numpy as np
 
 from workbench.data.column_units import for_people
 from workbench.data.kinds import KINDS
+from workbench.data.repeats import matched_rows
 from workbench.data.table import Table
-from workbench.likelihood.noise import matched_rows
 
 SAME_SETTING = 0.02  # relative difference of two readings of a condition that were meant to be one setting
 BLOCKS = 5  # of a table, each left out once

@@ -20,8 +20,8 @@ from workbench.believed import TAILS
 from workbench.errors import WorkbenchError
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.marginal import Catalogue, Term
-from workbench.likelihood.noise import Whitener
 from workbench.likelihood.unknown_laws import LAWS
+from workbench.likelihood.whitening import Whitener
 
 # cells an axis and half-width of the grid [standard deviations] by number of parameters
 _GRIDS = {1: (9, 4.5), 2: (5, 3.5), 3: (4, 3.0), 4: (3, 2.4)}

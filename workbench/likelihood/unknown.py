@@ -20,7 +20,7 @@ from scipy.stats import rankdata
 
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
-from workbench.likelihood.noise import Whitener
+from workbench.likelihood.whitening import Whitener
 
 SIZES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)  # of the rms reading of the channel: six levels alike
 LENGTHS = (0.3, 0.8, 2.0)  # over which it changes, of the standard deviation of a condition

@@ -22,9 +22,9 @@ from workbench.explain.tried import Search, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
 from workbench.likelihood.marginal import Catalogue
-from workbench.likelihood.noise import Whitener
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
+from workbench.likelihood.whitening import Whitener
 from workbench.models.model import Model
 
 GAUSS = 1e9  # degrees of freedom at which the noise is known for sure

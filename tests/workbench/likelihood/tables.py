@@ -4,7 +4,7 @@ import numpy as np
 
 from workbench.data.stack import stacked
 from workbench.data.table import Response, Table
-from workbench.likelihood.noise import Whitener
+from workbench.likelihood.whitening import Whitener
 
 
 def table(values, u, repeat=None, scan=None, kind="generic", file="t.csv", **conditions):

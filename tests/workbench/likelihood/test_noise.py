@@ -6,9 +6,11 @@ import pytest
 from tests.workbench.likelihood.tables import table
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
+from workbench.data.repeats import matched_rows
 from workbench.data.stack import stacked, thinned
 from workbench.likelihood.bench import bench_of
-from workbench.likelihood.noise import ChannelNoise, LawError, Noise, Whitener, matched_rows, measured_noise, whitener
+from workbench.likelihood.noise import ChannelNoise, Noise, measured_noise
+from workbench.likelihood.whitening import LawError, Whitener, whitener
 from workbench.models.model import Model
 
 

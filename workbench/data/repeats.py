@@ -1,0 +1,65 @@
+"""What belongs together in a table: rows of one scan, and readings of several repeats at the same conditions."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from workbench.data.table import Table
+
+LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
+
+
+def scans_of(table: Table) -> list[np.ndarray]:
+    """Rows of every scan of every repeat."""
+    _, which = np.unique(np.stack([table.scan, table.repeat]), axis=1, return_inverse=True)
+    return [np.flatnonzero(which == k) for k in range(which.max(initial=-1) + 1)]
+
+
+def follows(table: Table) -> np.ndarray:
+    """True where a row continues the scan of the row before (n,)."""
+    same = np.zeros(table.rows, dtype=bool)
+    same[1:] = (table.scan[1:] == table.scan[:-1]) & (table.repeat[1:] == table.repeat[:-1])
+    return same
+
+
+def matched_rows(table: Table) -> np.ndarray | None:
+    """Row numbers (stations, repeats) of readings taken at the same conditions, None where there is one repeat."""
+    repeats = [np.flatnonzero(table.repeat == r) for r in np.unique(table.repeat)]
+    if len(repeats) < 2:
+        return None
+    if len({len(rows) for rows in repeats}) == 1 and _alike(table, repeats):
+        return np.array(repeats).T
+    return _nearest(table, repeats)
+
+
+def places_of(table: Table) -> np.ndarray:
+    """Conditions over their range (n, c)."""
+    set_ones = {n: v for n, v in table.conditions.items() if np.ptp(v) > (LOGGED_WITHIN if n.endswith("_T") else 0.0)}
+    columns = [_spread(v) / np.ptp(_spread(v)) for v in set_ones.values()]
+    return np.array(columns).T if columns else np.zeros((table.rows, 1))
+
+
+def _spread(values: np.ndarray) -> np.ndarray:
+    """The values, by their logarithm where they span decades: 1e6 ohm for open terminals leaves 0.3 and 1 ohm apart."""
+    return np.log(values) if values.min() > 0 and values.max() > 1e3 * values.min() else values
+
+
+def _alike(table: Table, repeats: list[np.ndarray]) -> bool:
+    """True when the k-th rows of all repeats were taken at the same place, but for what the readings scatter."""
+    places = places_of(table)
+    apart = np.median(np.abs(places[repeats[0]] - places[repeats[-1]]), axis=0)
+    between = np.median(np.abs(places - np.median(places, axis=0)), axis=0) + 1e-12
+    return bool((apart < 0.2 * between).mean() >= 0.5)
+
+
+def _nearest(table: Table, repeats: list[np.ndarray]) -> np.ndarray | None:
+    """Stations by nearest conditions; a row of the first repeat without near partners in all others is left out."""
+    places = places_of(table)
+    first, partners = repeats[0], []
+    for rows in repeats[1:]:
+        apart, partner = cKDTree(places[rows]).query(places[first])
+        partners.append(np.where(apart < 0.02, rows[partner], -1))
+    stations = np.column_stack([first, *partners])
+    stations = stations[(stations >= 0).all(axis=1)]
+    return stations if len(stations) >= 2 else None

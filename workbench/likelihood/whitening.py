@@ -1,0 +1,86 @@
+"""Residuals turned into independent ones of size one, what is integrated out taken with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.data.repeats import follows, scans_of
+from workbench.data.stack import Channel, Stack
+from workbench.likelihood.noise import ChannelNoise, Noise, scan_shapes
+
+
+@dataclass(frozen=True, eq=False)
+class LawError:
+    """Directions in the whitened rows of a channel along which a law may be wrong, and how much (n_c, q), (q,)."""
+
+    rows: slice
+    directions: np.ndarray
+    size: np.ndarray
+
+    @property
+    def half_log_det(self) -> float:
+        return 0.5 * float(np.log1p(self.size**2).sum())
+
+    def apply(self, z: np.ndarray) -> np.ndarray:
+        """(1 + F F^T)^(-1/2) z of the rows of the channel, F = directions * size."""
+        shrink = 1 - 1 / np.sqrt(1 + self.size**2)
+        return z - self.directions @ ((shrink * self.directions).T @ z)
+
+
+def law_error(rows: slice, wrong: np.ndarray) -> LawError:
+    """Of whitened shapes with standard normal weights (n_c, q)."""
+    directions, size, _ = np.linalg.svd(wrong, full_matrices=False)
+    keep = size > 1e-3
+    return LawError(rows, directions[:, keep], size[keep])
+
+
+@dataclass(frozen=True, eq=False)
+class Whitener:
+    """Turns stacked residuals into independent ones of size one.
+
+    z = r / sigma, then (z_k - rho z_(k-1)) / sqrt(1 - rho^2) inside each scan
+    sigma: standard uncertainty of a row (n,);  rho: correlation with the row before, 0 where there is none (n,)
+    laws: errors of laws that are integrated out besides
+    """
+
+    sigma: np.ndarray
+    rho: np.ndarray
+    laws: tuple[LawError, ...] = ()
+
+    def __call__(self, residual: np.ndarray) -> np.ndarray:
+        """residual (n,) or (n, m) -> whitened, same shape"""
+        shape = (-1,) + (1,) * (residual.ndim - 1)
+        z = residual / self.sigma.reshape(shape)
+        rho = self.rho.reshape(shape)
+        before = np.zeros_like(z)
+        before[1:] = z[:-1]
+        z = (z - rho * before) / np.sqrt(1 - rho**2)
+        for law in self.laws:
+            z[law.rows] = law.apply(z[law.rows])
+        return z
+
+
+def whitener(stack: Stack, noise: Noise) -> Whitener:
+    """The whitener of a stack; noise must have its channels and rows."""
+    sigma, rho = np.empty(stack.size), np.zeros(stack.size)
+    for channel, found in zip(stack.channels, noise.channels):
+        rows = channel.rows
+        sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
+        rho[rows] = np.where(follows(stack.tables[channel.table]), found.rho, 0.0)
+    white = Whitener(sigma, rho)
+    laws = [_of_scans(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
+    return Whitener(sigma, rho, tuple(law for law in laws if law is not None))
+
+
+def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
+    """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
+    if not channel.size or not found.scans:
+        return None
+    scans = scans_of(stack.tables[channel.table])
+    raw = np.zeros((stack.size, 2 * len(scans)))
+    for k, rows in enumerate(scans):
+        shapes = found.scans * scan_shapes(stack.u[channel.rows][rows])
+        raw[channel.rows.start + rows, 2 * k : 2 * k + 2] = shapes * white.sigma[channel.rows][rows][:, None]
+    return law_error(channel.rows, white(raw)[channel.rows])
