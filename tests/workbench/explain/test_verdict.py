@@ -67,7 +67,7 @@ def test_something_unknown_lends_no_probability_to_a_name():
 
 def random_posterior(random):
     names = "abcdef"
-    sets = {frozenset(n for n in names if random.random() < 0.3) for _ in range(12)}
+    sets = list(dict.fromkeys(frozenset(n for n in names if random.random() < 0.3) for _ in range(12)))
     shares = random.dirichlet(np.full(2 * len(sets), random.choice([0.05, 0.3])))
     return Posterior(dict(zip(sets, shares)), dict(zip(sets, shares[len(sets) :])))
 
