@@ -56,10 +56,12 @@ class Wanted:
 
     @property
     def seed(self) -> int:
+        """Of its random numbers; scored and tuning ones never meet."""
         return self.number + (SCORED_START if self.scored else TUNING_START)
 
     @property
     def name(self) -> str:
+        """Of its folder."""
         return f"{self.group}-{self.seed}"
 
 
@@ -186,6 +188,7 @@ def hashes(folder: Path) -> dict[str, str]:
 
 
 def main(arguments: list[str] | None = None) -> None:
+    """Writes the campaigns that are asked for on the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--tune", type=int, metavar="N", help="so many campaigns of a bench for tuning")

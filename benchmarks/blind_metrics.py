@@ -103,6 +103,7 @@ def asked_for(case: Mapping) -> list[str]:
 
 
 def is_seen(case: Mapping, name: str) -> bool:
+    """Whether something hidden changes the readings by enough to be asked for."""
     return case["visibility"].get(name, 0.0) >= VISIBLE
 
 

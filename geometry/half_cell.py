@@ -127,19 +127,27 @@ def half_cells(machine: Machine, density: MeshDensity) -> tuple[StatorHalfCell, 
 
 
 def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
-    fine = density.gap_edge_length(m)
-    in_tooth, in_yoke = density.in_tooth(m), density.in_yoke(m)
-    in_shoe = min(4 * fine, in_tooth)
-    axis, half = m.slot_pitch / 2, m.opening_width / 2
-    r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
-    r_open = m.opening_top_radius
-    in_copper = min(2 * in_yoke, (r_sb - r_shoe) / 2)
     d = Drawing()
-    d.point("bore", r_si, 0, 2 * fine)  # the edges on the bore are set below
-    d.point("tip", r_si, axis - asin(half / r_si), fine)
+    _stator_points(d, m, density)
+    taper = ("tip_top", "taper") if m.taper_touches_shoe else ("tip_top",)
+    _stator_edges(d, m, edges, taper)
+    tooth_side = (*taper, "shoe_top", "flank_middle", "flank_end")
+    d.region("iron", "bore", "tip", *tooth_side, "bottom", "outer_slot", "outer", "shoe_axis")
+    d.region("opening", "tip", "bore_slot", "open_slot", "tip_top")
+    d.region("copper", "open_slot", "shoe_slot", "slot_middle", "bottom", *reversed(tooth_side))
+    return d
+
+
+def _stator_points(d: Drawing, m: Machine, density: MeshDensity) -> None:
+    """From the bore outwards, on the axis of the tooth, on its side and on the axis of the slot."""
+    fine, in_tooth, in_yoke = density.gap_edge_length(m), density.in_tooth(m), density.in_yoke(m)
+    in_shoe, axis = min(4 * fine, in_tooth), m.slot_pitch / 2
+    r_si, r_shoe, r_sb, r_so = m.stator_inner_radius, m.shoe_top_radius, m.slot_bottom_radius, m.stator_outer_radius
+    d.point("bore", r_si, 0, 2 * fine)  # the edges on the bore are set by their number
+    d.point("tip", r_si, _tip_angle(m), fine)
     d.point("bore_slot", r_si, axis, 2 * fine)
-    d.point("tip_top", r_open, m.opening_top_angle, min(3 * fine, m.shoe_d1))
-    d.point("open_slot", r_open, axis, 3 * fine)
+    d.point("tip_top", m.opening_top_radius, m.opening_top_angle, min(3 * fine, m.shoe_d1))
+    d.point("open_slot", m.opening_top_radius, axis, 3 * fine)
     d.point("shoe_top", r_shoe, asin(m.tooth_width / 2 / r_shoe), in_shoe)
     d.point("shoe_axis", r_shoe, 0, 1.5 * in_tooth)
     d.point("shoe_slot", r_shoe, axis, in_yoke)
@@ -149,15 +157,23 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     d.point("outer", r_so, 0, in_yoke)
     middle = (r_shoe + r_sb) / 2
     d.point("flank_middle", middle, asin(m.tooth_width / 2 / middle), in_tooth)
-    d.point("slot_middle", middle, axis, in_copper)
-    opening = min(max(2, round(edges * (1 - (axis - asin(half / r_si)) / axis))), edges - 1)
+    d.point("slot_middle", middle, axis, min(2 * in_yoke, (r_sb - r_shoe) / 2))
+    if m.taper_touches_shoe:
+        d.point("taper", m.opening_top_radius, m.taper_angle, min(3 * fine, in_shoe))
+
+
+def _tip_angle(m: Machine) -> float:
+    """Of the edge of the shoe at the bore, from the axis of the tooth [rad]."""
+    return m.slot_pitch / 2 - asin(m.opening_width / 2 / m.stator_inner_radius)
+
+
+def _stator_edges(d: Drawing, m: Machine, edges: int, taper: tuple[str, ...]) -> None:
+    """Lines and arcs; edges: of the mesh along the bore of half a slot pitch"""
+    opening = min(max(2, round(edges * (1 - _tip_angle(m) / (m.slot_pitch / 2)))), edges - 1)
     d.arc("bore", "tip", edges - opening)
     d.arc("tip", "bore_slot", opening)
-    taper: tuple[str, ...] = ("tip_top",)
-    if m.taper_touches_shoe:
-        d.point("taper", r_open, m.taper_angle, min(3 * fine, in_shoe))
-        d.arc("tip_top", "taper")
-        taper = ("tip_top", "taper")
+    if len(taper) > 1:
+        d.arc(*taper)
     d.line("tip", "tip_top")
     d.path(taper[-1], "shoe_top", "flank_middle", "flank_end")
     d.arc("tip_top", "open_slot")
@@ -165,11 +181,6 @@ def _draw_stator(m: Machine, density: MeshDensity, edges: int) -> Drawing:
     d.path("bore_slot", "open_slot", "shoe_slot", "slot_middle", "bottom", "outer_slot")
     d.arc("outer", "outer_slot")
     d.path("bore", "shoe_axis", "outer")
-    tooth_side = (*taper, "shoe_top", "flank_middle", "flank_end")
-    d.region("iron", "bore", "tip", *tooth_side, "bottom", "outer_slot", "outer", "shoe_axis")
-    d.region("opening", "tip", "bore_slot", "open_slot", "tip_top")
-    d.region("copper", "open_slot", "shoe_slot", "slot_middle", "bottom", *reversed(tooth_side))
-    return d
 
 
 def _draw_rotor(m: Machine, density: MeshDensity, edges: int) -> Drawing:
