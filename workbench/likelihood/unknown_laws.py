@@ -17,12 +17,15 @@ from effects.base import Effect, ResponseEffect
 from effects.damper_design import Damper
 from effects.dq_design import DqMachine
 from effects.law_effects import CouplingEffect, FluxEffect, ForceEffect, TorqueEffect
+from effects.machine_design import MachineAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
 from workbench.believed import LAW_RATE
 
 VELOCITY, TRAVEL = 0.1, 2e-3  # m/s, m; at a shaft rad/s, rad: where a law of a damper has its size
 FREQUENCY = 300.0  # rad/s, electrical, where a law of the speed of a machine has its size
+TURNING = 100.0  # rad/s, of the shaft, where a law of the speed of a rotor has its size
+SHEAR = 1e3  # Pa, a tenth of what a small machine makes in its gap, of which such a law is a share
 LOAD = 0.2  # of the current that cancels the magnets, where a law of the current has its size
 MOST = (-1.0, 3.0)  # of minus ln of a factor
 TURN = 0.01  # of where a law has its size, over which its sign turns
@@ -210,6 +213,25 @@ class UnknownDropOfCurrent(UnknownLaw, ResponseEffect):
         return {**response, **more}
 
 
+@dataclass(frozen=True)
+class UnknownTorqueOfRotor(UnknownLaw, ResponseEffect):
+    """A torque against the rotation of a machine with a field of its own, wherever the speed is known."""
+
+    goes_with = "a torque that goes with the speed"
+    designs = (MachineAsBuilt,)
+
+    @classmethod
+    def variants(cls, design):
+        section = design.cross_section
+        area = 2 * np.pi * section.mid_gap_radius * design.length
+        return (cls(reference=TURNING, scale=SHEAR * area * section.mid_gap_radius),)
+
+    def on_response(self, response, conditions, kind, design):
+        if "torque" not in response or "speed" not in conditions:
+            return response
+        return {**response, "torque": response["torque"] - self.odd(conditions["speed"])}
+
+
 LAWS: Mapping[str, type[UnknownLaw]] = {
     law.name(): law
     for law in (
@@ -222,6 +244,7 @@ LAWS: Mapping[str, type[UnknownLaw]] = {
         UnknownFluxOfDirectCurrent,
         UnknownFluxOfQuadratureCurrent,
         UnknownDropOfCurrent,
+        UnknownTorqueOfRotor,
     )
 }
 
