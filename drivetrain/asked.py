@@ -109,13 +109,31 @@ class ContinuousEffort(Requirement):
 
 @dataclass(frozen=True)
 class LowSpeedDamping(Requirement):
-    """Regenerative damping of the short-circuited machine at low speed; needed, reached: [Ns/m or Nms/rad]."""
+    """Regenerative damping of the short-circuited machine far below its electrical pole, as the thesis states it;
+    needed, reached: [Ns/m or Nms/rad]."""
 
     def reached(self, design: ActuatorDesign) -> Values:
         return design.low_speed_damping
 
     def name(self, output: Output) -> str:
-        return "regenerative damping at low speed"
+        return "short-circuit damping at low speed"
+
+    def unit(self, output: Output) -> str:
+        return output.damping_unit
+
+
+@dataclass(frozen=True)
+class ControlledDamping(Requirement):
+    """Largest braking effort over the speed [m/s or rad/s], within current and voltage; needed, reached: [Ns/m or
+    Nms/rad]."""
+
+    speed: float
+
+    def reached(self, design: ActuatorDesign) -> Values:
+        return design.braking_at(self.speed) / self.speed
+
+    def name(self, output: Output) -> str:
+        return f"controlled damping at {output.at_speed(self.speed)}"
 
     def unit(self, output: Output) -> str:
         return output.damping_unit

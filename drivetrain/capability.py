@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from drivetrain.added_friction import NO_FRICTION, AddedFriction
+from electrical.braking import strongest_braking
 from electrical.dq import DriveLimits, mtpa_currents, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
@@ -100,15 +101,24 @@ class ActuatorDesign:
         """Bus voltage for each turn and metre [V/m]."""
         return self.dc_voltage / (self.turns * self.active_length)
 
+    def braking_at(self, speed: float) -> Values:
+        """Largest effort against the motion [N or Nm] at an output speed [m/s or rad/s], within current and voltage."""
+        torque = strongest_braking(*self._one_turn(speed / self.transmission_ratio)).torque
+        return np.nan_to_num(torque, nan=0.0) * self.active_length / self.transmission_ratio
+
     def _torque_per_length(self, rotor_speed: np.ndarray) -> np.ndarray:
-        """Envelope per turn and metre [Nm/m]: v = N l v_1, i = i_1 / N, R = N^2 l R_1."""
+        """Envelope per turn and metre [Nm/m]."""
+        return np.asarray(np.nan_to_num(torque_speed_envelope(*self._one_turn(rotor_speed)).torque, nan=0.0))
+
+    def _one_turn(self, rotor_speed: Values) -> tuple[FluxMapMachine, DriveLimits, np.ndarray]:
+        """Machine and limits per turn and metre, and the speed [rad/s], of one shape: v = N l v_1, i = i_1 / N,
+        R = N^2 l R_1."""
         one_turn = self.resistance / (self.turns**2 * self.active_length)
         shape = np.broadcast_shapes(np.shape(rotor_speed), np.shape(one_turn), np.shape(self._volts_per_turn))
         machine = self.per_turn.with_resistance(np.broadcast_to(one_turn, shape))
         volts = np.broadcast_to(self._volts_per_turn, shape)
         limits = DriveLimits.from_dc_bus(self._ampere_turns(self.overload_density), volts)
-        envelope = torque_speed_envelope(machine, limits, np.broadcast_to(rotor_speed, shape))
-        return np.asarray(np.nan_to_num(envelope.torque, nan=0.0))
+        return machine, limits, np.broadcast_to(rotor_speed, shape)
 
     @property
     def peak_torque(self) -> Values:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from drivetrain.matching import MatchOutcome
 from drivetrain.requirements import Linkage, Requirements, Transmission
+from electrical.braking_stage import BrakingDemand
 from gearbox.stage import GearboxOutcome, GearDemand, GearInputs, GearLoads, NormalLoads
 from gearbox.train import DirectDrive
 
@@ -28,6 +29,11 @@ def stated_loads(required: Requirements, inputs: GearInputs) -> GearLoads:
 def direct_drive(linkage: Linkage) -> GearboxOutcome:
     """The place of the gearbox where there is none: the rotor sits on the slow shaft."""
     return GearboxOutcome(DirectDrive(), linkage.ratio_nominal)
+
+
+def braking_demand(required: Requirements, transmission: Transmission) -> BrakingDemand:
+    """The damping that is asked for, and over which speeds."""
+    return BrakingDemand(required.maximum_damping, required.velocity_rms, required.velocity_peak, transmission.nominal)
 
 
 def transmission(gears: GearboxOutcome, linkage: Linkage) -> Transmission:

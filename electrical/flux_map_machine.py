@@ -150,8 +150,21 @@ class FluxMapMachine:
         psi_d, psi_q = np.broadcast_arrays(np.asarray(psi_d, dtype=float), np.asarray(psi_q, dtype=float))
         i = self._nearest(psi_d.ravel(), psi_q.ravel())
         i = self._newton(np.stack([psi_d.ravel(), psi_q.ravel()]), i).reshape(2, *psi_d.shape)
-        inside = np.all(np.abs(i - self._clip(i)) <= self._slack(i), axis=0)
+        inside = self.holds(*i)
         return *np.where(inside, self._clip(i), i), inside
+
+    def holds(self, i_d: Values, i_q: Values) -> np.ndarray:
+        """Whether currents [A] lie in the map."""
+        i = np.stack([np.asarray(i_d, dtype=float), np.asarray(i_q, dtype=float)])
+        return np.all(np.abs(i - self._clip(i)) <= self._slack(i), axis=0)
+
+    def continued_flux_linkage(self, i: np.ndarray) -> np.ndarray:
+        """(psi_d, psi_q) [Wb] (2, k) at any currents [A] (2, k), beyond the edge along the straight lines."""
+        return -self._miss(i, np.zeros_like(i))
+
+    def continued_inductances(self, i: np.ndarray) -> np.ndarray:
+        """Slopes of the same [H] (2, 2, k)."""
+        return self._continued_jacobian(i)
 
     # ---- the constant-parameter machine -------------------------------------------------------------------------
 

@@ -173,7 +173,7 @@ def _stator_edges(d: Drawing, m: Machine, edges: int, taper: tuple[str, ...]) ->
     d.arc("bore", "tip", edges - opening)
     d.arc("tip", "bore_slot", opening)
     if len(taper) > 1:
-        d.arc(*taper)
+        d.arc(taper[0], taper[1])
     d.line("tip", "tip_top")
     d.path(taper[-1], "shoe_top", "flank_middle", "flank_end")
     d.arc("tip_top", "open_slot")

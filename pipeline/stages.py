@@ -8,7 +8,7 @@ searched or stated; gears or a direct drive.
 from __future__ import annotations
 
 from drivetrain.four_bar import LinkageError
-from drivetrain.gear_views import direct_drive, gear_demand, stated_loads, transmission
+from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -17,6 +17,7 @@ from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
 from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
+from electrical.braking_stage import braking_stage
 from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.winding_selection import WindingError
@@ -38,6 +39,7 @@ from optimisation.polynomial_fits import FitRefused
 from optimisation.sweep import sweep_stage
 from pipeline.graph import Function, Graph, Node, Source, Stage, View
 from report import (
+    braking,
     drive,
     fields,
     fits,
@@ -56,7 +58,7 @@ from report import (
 from report import learned as learned_report
 from study.chain import drives, searches_linkage
 from study.inputs_drive import output
-from study.inputs_electrical import flux_map_grid, loss_inputs
+from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
 from study.inputs_field import saturation_limit, sweep_grid
 from study.inputs_gearbox import gear_inputs
 from study.inputs_learned import (
@@ -82,7 +84,7 @@ REFUSALS = (
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output,
+    gear_inputs, output, copper_heat,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -119,6 +121,8 @@ _MACHINE: tuple[Node, ...] = (
     View(transmission),
     Stage("winding", winding_stage, "turns, wires, final length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
+    View(braking_demand),
+    Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
@@ -184,6 +188,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         gearbox.section,
         winding.section,
         drive.section,
+        braking.section,
         losses.section,
         *((ride.section,) if driven else ()),
     )

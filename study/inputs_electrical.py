@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from electrical.braking_stage import CopperHeat
 from electrical.winding_selection import WindingLimits, Wire
 from electrical.winding_stage import WindingInputs
 from losses.stage import LossInputs
@@ -40,6 +41,15 @@ def loss_inputs(study: Study) -> LossInputs:
     return LossInputs(study.materials.steel, study.materials.loss_grade, section.winding_temperature)
 
 
+COLD, HOT = 20.0, 120.0  # degC; a winding of class B (130 degC, IEC 60085) less ten for its hottest place
+
+
+def copper_heat(study: Study) -> CopperHeat:
+    """How the resistance of the copper changes between a cold and a hot machine."""
+    now, copper = winding_resistivity(study), _copper(study)
+    return CopperHeat(COLD, HOT, *(float(copper.resistivity(one)) / now for one in (COLD, HOT)))
+
+
 def winding_limits(study: Study) -> WindingLimits:
     """What workshop, bus and power electronics allow."""
     section = study.winding_selection.si
@@ -55,10 +65,13 @@ def winding_limits(study: Study) -> WindingLimits:
 
 def winding_resistivity(study: Study) -> float:
     """Resistivity of the copper at the temperature of the winding [ohm m]."""
+    return float(_copper(study).resistivity(study.winding_selection.si.winding_temperature))
+
+
+def _copper(study: Study) -> Conductor:
     materials = study.materials.si
-    copper = Conductor(
+    return Conductor(
         reference_resistivity=materials.copper_resistivity,
         temperature_coefficient=materials.copper_temperature_coefficient,
         reference_temperature=materials.copper_reference_temperature,
     )
-    return float(copper.resistivity(study.winding_selection.si.winding_temperature))

@@ -9,6 +9,7 @@ import pytest
 from drivetrain.asked import (
     ActiveLength,
     ContinuousEffort,
+    ControlledDamping,
     Diameter,
     EquivalentMass,
     LowSpeedDamping,
@@ -28,13 +29,14 @@ from drivetrain.remedies import (
     VoltageLever,
     remedies,
 )
+from electrical.braking import strongest_braking
 from electrical.dq import DriveLimits, torque_speed_envelope
 from tests.drivetrain.linear_machine import AREA, END, LENGTH, POLES, PSI, RHO, STRANDS, TURNS, closed_form, per_turn
 from units import FACTORS
 
 AMPERES = sqrt(2) * 20e6 * AREA * STRANDS
 EVERY = (PeakEffortAtRest(1.0), PeakEffort(1.0, 2.0), PeakPower(1.0, 3.0), ContinuousEffort(1.0), LowSpeedDamping(1.0),
-         RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0),
+         ControlledDamping(1.0, 2.0), RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0),
          Diameter(1.0, 0.1))  # fmt: skip
 
 
@@ -76,6 +78,15 @@ def test_a_batch_reads_as_its_designs_do(design, requirement):
     several = [design, longer, rewound, replace(design, dc_voltage=30.0), replace(design, transmission_ratio=3e-3)]
     batch = np.broadcast_to(requirement.reached(together(several)), len(several))
     assert batch == pytest.approx([float(requirement.reached(one)) for one in several], rel=1e-9)
+
+
+def test_controlled_damping_is_that_of_the_wound_machine(design):
+    """At rest the peak effort over the speed; where the voltage rules, what the search finds on the wound machine."""
+    assert ControlledDamping(1.0, 1e-3).reached(design) == pytest.approx(design.effort_peak / 1e-3, rel=1e-3)
+    limits = DriveLimits.from_dc_bus(AMPERES, 48.0)
+    wound = strongest_braking(closed_form(), limits, np.array([3.0 / 2e-3])).torque[0]
+    assert design.braking_at(3.0) == pytest.approx(wound / 2e-3, rel=1e-6)
+    assert wound / 2e-3 > design.effort_at(3.0), "the resistance helps a brake and hinders a motor"
 
 
 # ---- requirements ---------------------------------------------------------------------------------------------------

@@ -123,7 +123,7 @@ def test_nothing_asked_for_holds(winding, field, gears, inputs):
 
 def test_tables_are_in_drawing_units(found):
     table = checks_table(found, Wheel()).set_index("requirement")
-    damping = table.loc["regenerative damping at low speed"]
+    damping = table.loc["short-circuit damping at low speed"]
     assert (damping.needed, damping.unit) == (40.0, "kNs/m")
     assert table.loc["diameter"].needed == 120.0 and table.loc["rotor speed"].unit == "rpm"
     assert table.loc["gears, safety static root"].holds == "NO"

@@ -58,7 +58,7 @@ def test_no_table_speaks_of_anything_else(run):
 
 def test_a_damping_of_zero_holds_by_itself(run):
     table = pd.read_csv(run.results.folder / "outcome_requirements.csv").set_index("requirement")
-    row = table.loc["regenerative damping at low speed"]
+    row = table.loc["short-circuit damping at low speed"]
     assert (row.needed, row.unit, row.holds) == (0.0, "Nms/rad", "yes")
 
 

@@ -1,16 +1,19 @@
 """What people read of flux map, winding and drive: files under their names, sections with the one peak torque."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from drivetrain.gear_views import braking_demand
 from drivetrain.output import Wheel
+from electrical.braking_stage import CopperHeat, braking_stage
 from electrical.drive_stage import drive_stage
 from electrical.winding_stage import winding_stage
 from figures.report import render_report
-from report import drive
+from report import braking, drive
 from report import flux_map as map_report
 from report import winding as winding_report
 from tests.electrical.analytic_map import (
@@ -88,3 +91,34 @@ def test_sections_can_be_printed(winding):
     sections = (map_report.section(MAP), winding_report.section(winding, INPUTS, match))
     page = render_report(sections, title="", subtitle="")
     assert "Newton iterations" in page and "instead of the 40.00 mm of the match, set by the peak torque" in page
+
+
+@pytest.fixture(scope="module")
+def brake(winding):
+    return braking_stage(MAP, winding, braking_demand(REQUIRED, TRANSMISSION), CopperHeat(20.0, 120.0, 1.0, 1.393))
+
+
+def test_files_of_the_brake(brake, tmp_path):
+    table = pd.read_csv(written(braking.files(brake, Wheel()), tmp_path) / "braking.csv")
+    assert table.velocity_m_per_s.iloc[-1] == pytest.approx(REQUIRED.velocity_peak)
+    shorted, controlled = table.force_shorted_hot_N, table.force_controlled_hot_N
+    assert controlled.iloc[0] > 10 * shorted.iloc[0] and (controlled.dropna() > 0).all()
+    slow = table.damping_shorted_cold_kNs_per_m.iloc[0] / table.damping_shorted_hot_kNs_per_m.iloc[0]
+    assert slow == pytest.approx(1.393, rel=0.02), "far below the pole the damping is that of the resistance"
+
+
+def test_the_section_says_up_to_where_the_damping_holds(brake):
+    assert (braking.summary_table(brake, Wheel())["holds up to"] == "no speed").iloc[0], "40 kNs/m are too much for it"
+    brake = replace(brake, demand=replace(brake.demand, damping=0.5 * brake.damping(brake.hot)[0]))
+    table = braking.summary_table(brake, Wheel())
+    cold, hot, controlled = (brake.held_up_to(one) for one in (brake.cold, brake.hot, brake.controlled))
+    assert brake.poles[0] < brake.poles[1] and max(cold, hot) < controlled
+    assert np.interp(hot, brake.speed, brake.damping(brake.hot)) == pytest.approx(brake.demand.damping, rel=1e-3)
+    assert list(table["holds up to"]) == [Wheel().at_speed(speed) for speed in (cold, hot, controlled)]
+    assert any(Wheel().at_speed(hot) in line for line in braking.remarks(brake, Wheel()))
+
+
+def test_a_back_emf_beyond_the_bus_is_said(brake):
+    (line,) = [line for line in braking.remarks(brake, Wheel()) if "back-EMF" in line]
+    assert f"{brake.back_emf:.0f} V" in line and "48 V" in line
+    assert not [line for line in braking.remarks(replace(brake, bus_voltage=1e4), Wheel()) if "back-EMF" in line]

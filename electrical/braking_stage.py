@@ -1,0 +1,100 @@
+"""The wound machine as a brake over the speed of the output: with shorted phases, cold and hot, and controlled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from electrical.braking import Braking, holds_up_to, short_circuit, strongest_braking
+from electrical.dq import Values
+from electrical.flux_map_machine import FluxMapMachine
+from electrical.winding_stage import WindingOutcome
+from magnetostatics.flux_map_stage import FluxMap
+
+_POINTS = 241  # speeds
+_SLOWEST = 2e-3  # of the fastest speed
+
+
+@dataclass(frozen=True)
+class CopperHeat:
+    """Temperatures between which the copper works [degC], and the resistance at each over that of the wound machine."""
+
+    cold: float
+    hot: float
+    cold_resistance: float
+    hot_resistance: float
+
+
+@dataclass(frozen=True)
+class BrakingDemand:
+    """What is asked of a brake.
+
+    damping: [Ns/m or Nms/rad], 0 where none is asked for; speed_rms, speed_peak: of the output [m/s or rad/s]
+    ratio: of output over rotor speed [m/rad or 1]
+    """
+
+    damping: float
+    speed_rms: float
+    speed_peak: float
+    ratio: float
+
+
+@dataclass(frozen=True, eq=False)
+class BrakingOutcome:
+    """Braking of the rotor at each speed of the output.
+
+    demand: what is asked; heat: of the copper; speed: of the output [m/s or rad/s], (n,)
+    cold, hot: with shorted phases; controlled: hot, inside the limits of current and voltage
+    back_emf: line to line peak at the peak speed [V]; bus_voltage [V]
+    """
+
+    demand: BrakingDemand
+    heat: CopperHeat
+    speed: np.ndarray
+    cold: Braking
+    hot: Braking
+    controlled: Braking
+    back_emf: float
+    bus_voltage: float
+
+    def damping(self, braking: Braking) -> np.ndarray:
+        """At the output [Ns/m or Nms/rad], (n,)."""
+        return braking.damping / self.demand.ratio**2
+
+    def held_up_to(self, braking: Braking) -> float:
+        """Speed of the output up to which the damping is reached that is asked for [m/s or rad/s]."""
+        return holds_up_to(self.speed, self.damping(braking), self.demand.damping)
+
+    @property
+    def poles(self) -> tuple[float, float]:
+        """Speed of the output at which the shorted machine brakes most, cold and hot [m/s or rad/s]."""
+        cold, hot = (self.speed[int(np.nanargmax(one.torque))] for one in (self.cold, self.hot))
+        return float(cold), float(hot)
+
+
+def braking_stage(
+    flux_map: FluxMap, winding: WindingOutcome, demand: BrakingDemand, heat: CopperHeat
+) -> BrakingOutcome:
+    """Follow the wound machine over the speeds that are asked of the output."""
+    machine, wound = winding.wound.on_map(flux_map.data), winding.wound
+    speed = np.geomspace(_SLOWEST, 1.0, _POINTS) * demand.speed_peak
+    rotor = speed / demand.ratio
+    cold, hot = (
+        machine.with_resistance(wound.phase_resistance * f) for f in (heat.cold_resistance, heat.hot_resistance)
+    )
+    return BrakingOutcome(
+        demand,
+        heat,
+        speed,
+        short_circuit(cold, rotor),
+        short_circuit(hot, rotor),
+        strongest_braking(hot, winding.limits, rotor),
+        line_back_emf(machine, float(rotor[-1])),
+        float(np.sqrt(3.0) * winding.limits.voltage_peak),
+    )
+
+
+def line_back_emf(machine: FluxMapMachine, speed: Values) -> float:
+    """Line to line peak of the no-load voltage [V] at a mechanical speed [rad/s]."""
+    return float(np.sqrt(3.0) * machine.pole_pairs * speed * float(machine.flux_linkage(0.0, 0.0)[0]))
