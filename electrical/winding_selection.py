@@ -217,7 +217,8 @@ def select_winding(
     """Chooses turns and wires in hand among the fullest slots.
 
     1. For every N_t only the largest N_h that fits competes: copper left out is torque left out.
-    2. Of those that meet base speed and power within the current limit, the one with the lowest current.
+    2. Of those that meet base speed and power within the current limit, the one with the lowest current, which is that
+       of the fewest wires; of equals the one with the most copper.
     3. Where none does, the one with the largest base speed within the current limit; the reason says what is relaxed.
 
     Raises WindingError when no pair fits the slot or none stays within the current limit.
@@ -305,9 +306,9 @@ def _affordable(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[W
 
 
 def _lowest_current(windings: tuple[Winding, ...], requirement: WindingRequirement) -> Winding | None:
-    """Lowest current among those that meet the requirement; of equals the one with the larger base speed."""
+    """Lowest current among those that meet the requirement, of equals the fullest slot: its length will be shortest."""
     meeting = [winding for winding in windings if winding.satisfies(requirement)]
-    return min(meeting, key=lambda winding: (winding.current_rms, -winding.base_speed), default=None)
+    return min(meeting, key=lambda winding: (winding.strands, -winding.packing), default=None)
 
 
 def _reason(

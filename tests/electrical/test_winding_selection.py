@@ -73,6 +73,15 @@ def test_without_a_current_limit_the_thesis_winding_is_found(free_choice):
     assert "lowest current" in free_choice.reason
 
 
+def test_of_equal_currents_the_fullest_slot_is_wound():
+    """A thick wire leaves many turns with as many wires: copper left out would be length added."""
+    needs = WindingRequirement(2000 * RPM, 1000.0, 0.0)
+    choice = select_winding(THESIS, Wire(1.0 * MILLIMETRE, WIRE.resistivity), LIMITS, needs)
+    rivals = [one for one in choice.fullest if one.strands == choice.chosen.strands and one.satisfies(needs)]
+    assert len(rivals) > 1 and choice.chosen is max(rivals, key=lambda one: one.packing)
+    assert choice.chosen.peak_torque == max(one.peak_torque for one in rivals)
+
+
 def test_with_its_current_limit_the_relaxed_thesis_winding_is_found(limited_choice):
     assert (limited_choice.chosen.turns, limited_choice.chosen.strands) == (7, 22)
     assert (limited_choice.unrestricted.turns, limited_choice.unrestricted.strands) == (4, 39)
