@@ -220,7 +220,7 @@ def requirements_of(
         PeakPower(required.power_peak, required.velocity_at_power_peak),
         ContinuousEffort(required.force_rms),
         LowSpeedDamping(required.maximum_damping),
-        *([ControlledDamping(required.maximum_damping, required.velocity_rms)] if required.maximum_damping else []),
+        *_braking_of(required),
         RotorSpeed(inputs.rotor_speed_max, required.velocity_peak),
         PhaseCurrent(inputs.phase_current_max),
         ActiveLength(inputs.active_length_max),
@@ -229,6 +229,14 @@ def requirements_of(
     if linkage.envelope_radius_max is not None:
         rows.append(Diameter(2 * linkage.envelope_radius_max, layout.diameter))
     return tuple(rows)
+
+
+def _braking_of(required: Requirements) -> tuple[Requirement, ...]:
+    """The damping at the RMS speed, of which no more than the peak effort is asked; none where none is."""
+    if not required.maximum_damping:
+        return ()
+    most = required.force_peak / required.velocity_rms
+    return (ControlledDamping(min(required.maximum_damping, most), required.velocity_rms),)
 
 
 def features_of(

@@ -33,7 +33,8 @@ def section(found: BrakingOutcome, output: Output) -> Section:
             *(Remark(line) for line in _warnings(found, output)),
             Table(summary_table(found, output), f"The brake {output.place}; the whole curves are in {TABLE}."),
             Picture(
-                picture_name(FIGURE), f"Damping, {output.effort} and current of the brake over the {output.speed}."
+                picture_name(FIGURE),
+                f"Damping, {output.effort} and phase current over the {output.speed}; the grey line is its RMS value.",
             ),
         ),
     )
@@ -102,8 +103,11 @@ def _warnings(found: BrakingOutcome, output: Output) -> Iterator[str]:
     demand, unit = found.demand, output.damping_unit
     if demand.damping:
         asked = f"{in_unit(demand.damping, unit):.4g} {written(unit)}"
-        shorted, controlled = (_held(found, one, output) for one in (found.hot, found.controlled))
-        yield f"The {asked} asked for hold up to: {shorted} with shorted hot phases, {controlled} controlled."
+        cold, hot, controlled = (_held(found, one, output) for one in (found.cold, found.hot, found.controlled))
+        yield (
+            f"The {asked} asked for hold up to: {cold} with shorted phases at {found.heat.cold:g} °C, {hot} at "
+            f"{found.heat.hot:g} °C, {controlled} controlled."
+        )
     if found.back_emf > found.bus_voltage:
         yield (
             f"At {output.at_speed(demand.speed_peak)} the back-EMF is {found.back_emf:.0f} V peak from line to line on "

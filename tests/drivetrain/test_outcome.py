@@ -121,6 +121,14 @@ def test_nothing_asked_for_holds(winding, field, gears, inputs):
     assert section(found, Wheel()).title == "Outcome"
 
 
+def test_controlled_damping_asks_for_no_more_than_the_peak_effort(found):
+    table = checks_table(found, Wheel()).set_index("requirement")
+    (name,) = [name for name in table.index if name.startswith("controlled damping at")]
+    most = ASKED.force_peak / ASKED.velocity_rms
+    assert most < ASKED.maximum_damping, "else this shows nothing"
+    assert table.loc[name].needed == pytest.approx(most / 1e3)
+
+
 def test_tables_are_in_drawing_units(found):
     table = checks_table(found, Wheel()).set_index("requirement")
     damping = table.loc["short-circuit damping at low speed"]
