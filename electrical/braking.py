@@ -14,12 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from electrical.dq import LIMIT_SLACK, DqMachine, DriveLimits, Values
-from electrical.flux_map_machine import FluxMapMachine
+from electrical.dq import LIMIT_SLACK, DqMachine, DriveLimits, Values, torque_of, voltage_of
+from electrical.flux_map_machine import FluxMapMachine, FluxMapMachineError
+from electrical.newton import damped_newton
 
-_STEPS = 60  # of Newton's method for the currents of a short circuit
 _CLOSE = 1e-12  # voltage that is left, of the back-EMF
-_HALVINGS = 8  # of a step that does not bring it nearer
 _CURRENTS, _ANGLES = 41, 61  # of a search for the strongest braking, over size and angle of the current
 _ZOOMS = 5  # around the best point, each time to the second neighbours on both sides
 
@@ -58,48 +57,33 @@ def short_circuit(machine: FluxMapMachine, speed: Values) -> Braking:
 
 
 def _shorted(machine: FluxMapMachine, omega: np.ndarray, resistance: np.ndarray) -> np.ndarray:
-    """Currents (2, n) at electrical speeds [rad/s] and resistances [ohm] (n,), by Newton's method."""
-    i = _without_saturation(machine, omega, resistance)
-    left = _voltage_left(machine, i, omega, resistance)
-    scale = omega * float(machine.flux_linkage(0.0, 0.0)[0])
-    for _ in range(_STEPS):
-        if np.all(np.hypot(*left) <= _CLOSE * scale):
-            break
+    """Currents (2, n) at electrical speeds [rad/s] and resistances [ohm] (n,).
+
+    Raises FluxMapMachineError where no steady state is found.
+    """
+
+    def missing(i: np.ndarray) -> np.ndarray:
+        psi_d, psi_q = machine.continued_flux_linkage(i)
+        return -np.stack(voltage_of(resistance, (psi_d, psi_q), i[0], i[1], omega))
+
+    def slope(i: np.ndarray) -> np.ndarray:
         (l_dd, l_dq), (l_qd, l_qq) = machine.continued_inductances(i)
-        a, b, c, d = resistance - omega * l_qd, -omega * l_qq, omega * l_dd, resistance + omega * l_dq
-        step = np.stack([b * left[1] - d * left[0], c * left[0] - a * left[1]]) / (a * d - b * c)
-        i, left = _nearer(machine, i, step, left, omega, resistance)
+        return np.array([[resistance - omega * l_qd, -omega * l_qq], [omega * l_dd, resistance + omega * l_dq]])
+
+    close = _CLOSE * omega * float(machine.flux_linkage(0.0, 0.0)[0])
+    i, found = damped_newton(missing, slope, _without_saturation(machine, omega, resistance), close)
+    if not found.all():
+        raise FluxMapMachineError(
+            f"no steady state with shorted phases was found at {np.count_nonzero(~found)} of {len(found)} speeds: "
+            "solve a finer map"
+        )
     return i
-
-
-def _nearer(
-    machine: FluxMapMachine,
-    i: np.ndarray,
-    step: np.ndarray,
-    left: np.ndarray,
-    omega: np.ndarray,
-    resistance: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """The longest of the steps 1, 1/2, 1/4 ... that leaves less voltage, each speed for itself."""
-    length = np.ones_like(omega)
-    for _ in range(_HALVINGS):
-        found = _voltage_left(machine, i + length * step, omega, resistance)
-        worse = np.hypot(*found) > np.hypot(*left)
-        if not worse.any():
-            break
-        length = np.where(worse, length / 2, length)
-    return i + length * step, found
 
 
 def _without_saturation(machine: FluxMapMachine, omega: np.ndarray, resistance: np.ndarray) -> np.ndarray:
     plain = machine.constant_parameters(0.5 * machine.reach)
     whole = resistance**2 + omega**2 * plain.inductance_d * plain.inductance_q
     return -omega * plain.psi_m / whole * np.stack([omega * plain.inductance_q, resistance])
-
-
-def _voltage_left(machine: FluxMapMachine, i: np.ndarray, omega: np.ndarray, resistance: np.ndarray) -> np.ndarray:
-    psi_d, psi_q = machine.continued_flux_linkage(i)
-    return np.stack([resistance * i[0] - omega * psi_q, resistance * i[1] + omega * psi_d])
 
 
 def strongest_braking(machine: DqMachine, limits: DriveLimits, speed: Values) -> Braking:
@@ -128,10 +112,9 @@ def _best_of(
     size, angle = np.broadcast_arrays(size[:, None], angle[None])
     size, angle = (v.reshape(-1, *speed.shape) for v in (size, angle))
     i_d, i_q = -size * np.sin(angle), size * np.cos(angle)
-    psi_d, psi_q = machine.flux_linkage(i_d, i_q)  # of the mirror image: i_q, psi_q and torque turn their sign
-    omega = machine.pole_pairs * speed
-    v_d, v_q = machine.resistance * i_d + omega * psi_q, omega * psi_d - machine.resistance * i_q
-    torque = 1.5 * machine.pole_pairs * (psi_d * i_q - psi_q * i_d)
+    psi = machine.flux_linkage(i_d, i_q)  # of the mirror image: i_q, psi_q and torque turn their sign, R its own
+    v_d, v_q = voltage_of(-machine.resistance, psi, i_d, i_q, machine.pole_pairs * speed)
+    torque = torque_of(machine.pole_pairs, psi, i_d, i_q)
     allowed = v_d**2 + v_q**2 <= np.square(limits.voltage_peak) * (1 + LIMIT_SLACK)
     torque = np.where(allowed, torque, -np.inf)
     best = np.argmax(torque, axis=0)[None]
@@ -145,9 +128,10 @@ def _around(at: np.ndarray, ends: np.ndarray, points: int) -> np.ndarray:
 
 
 def holds_up_to(speed: np.ndarray, damping: np.ndarray, needed: float) -> float:
-    """The speed up to which a damping is reached without a gap, linear between points; 0 where it never is.
+    """The speed [m/s or rad/s] up to which a damping is reached without a gap, linear between points; 0 where it never
+    is.
 
-    speed (n,), increasing; damping (n,): NaN counts as none; needed: [the unit of the damping]
+    speed: increasing [m/s or rad/s] (n,); damping, needed: [Ns/m or Nms/rad], damping (n,), NaN counts as none
     """
     enough = np.nan_to_num(damping) >= needed
     if enough.all():

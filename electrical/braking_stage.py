@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
 from electrical.braking import Braking, holds_up_to, short_circuit, strongest_braking
-from electrical.dq import Values
-from electrical.flux_map_machine import FluxMapMachine
-from electrical.winding_stage import WindingOutcome
+from electrical.winding_stage import WindingInputs, WindingOutcome
 from magnetostatics.flux_map_stage import FluxMap
 
 _POINTS = 241  # speeds
@@ -18,7 +17,10 @@ _SLOWEST = 2e-3  # of the fastest speed
 
 @dataclass(frozen=True)
 class CopperHeat:
-    """Temperatures between which the copper works [degC], and the resistance at each over that of the wound machine."""
+    """Between which temperatures the copper works.
+
+    cold, hot: [degC]; cold_resistance, hot_resistance: over that of the wound machine, dimensionless
+    """
 
     cold: float
     hot: float
@@ -74,7 +76,7 @@ class BrakingOutcome:
 
 
 def braking_stage(
-    flux_map: FluxMap, winding: WindingOutcome, demand: BrakingDemand, heat: CopperHeat
+    flux_map: FluxMap, winding: WindingOutcome, inputs: WindingInputs, demand: BrakingDemand, heat: CopperHeat
 ) -> BrakingOutcome:
     """Follow the wound machine over the speeds that are asked of the output."""
     machine, wound = winding.wound.on_map(flux_map.data), winding.wound
@@ -90,11 +92,6 @@ def braking_stage(
         short_circuit(cold, rotor),
         short_circuit(hot, rotor),
         strongest_braking(hot, winding.limits, rotor),
-        line_back_emf(machine, float(rotor[-1])),
-        float(np.sqrt(3.0) * winding.limits.voltage_peak),
+        sqrt(3.0) * float(np.hypot(*machine.voltage(0.0, 0.0, rotor[-1]))),
+        inputs.limits.dc_voltage,
     )
-
-
-def line_back_emf(machine: FluxMapMachine, speed: Values) -> float:
-    """Line to line peak of the no-load voltage [V] at a mechanical speed [rad/s]."""
-    return float(np.sqrt(3.0) * machine.pole_pairs * speed * float(machine.flux_linkage(0.0, 0.0)[0]))

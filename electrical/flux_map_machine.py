@@ -20,13 +20,13 @@ import xarray as xr
 from scipy.interpolate import RectBivariateSpline
 
 from electrical.dq import LIMIT_SLACK, Values, torque_of, voltage_of
+from electrical.newton import damped_newton
 from electrical.synchronous_machine import SynchronousMachine
 
 _FEWEST = 4  # points along an axis that a cubic spline needs
 _CHECKED_PER_CELL = 4  # where the Jacobian is looked at, points along each side of a cell
 _OUTSIDE = 1e-9  # relative to the span of the map; a current this far beyond its edge counts as on it
 _INVERSE_TOLERANCE = 1e-13  # of the flux linkage, relative to the largest in the map
-_MOST_ITERATIONS = 60
 _ON_EDGE = 1e-6  # relative to the width of the map
 
 
@@ -159,11 +159,11 @@ class FluxMapMachine:
         return np.all(np.abs(i - self._clip(i)) <= self._slack(i), axis=0)
 
     def continued_flux_linkage(self, i: np.ndarray) -> np.ndarray:
-        """(psi_d, psi_q) [Wb] (2, k) at any currents [A] (2, k), beyond the edge along the straight lines."""
+        """(psi_d, psi_q) [Wb] (2, k), beyond the edge along the straight lines; i: any i_d, i_q [A] (2, k)."""
         return -self._miss(i, np.zeros_like(i))
 
     def continued_inductances(self, i: np.ndarray) -> np.ndarray:
-        """Slopes of the same [H] (2, 2, k)."""
+        """Slopes of the same [H] (2, 2, k); i: any i_d, i_q [A] (2, k)."""
         return self._continued_jacobian(i)
 
     # ---- the constant-parameter machine -------------------------------------------------------------------------
@@ -270,33 +270,15 @@ class FluxMapMachine:
         return np.stack([self.i_d[row], self.i_q[column]])
 
     def _newton(self, psi: np.ndarray, i: np.ndarray) -> np.ndarray:
-        """Currents (2, k) of the continued map at flux linkages psi (2, k), every column with its own step length."""
-        scale = np.hypot(self.psi_d, self.psi_q).max()
-        miss = self._miss(i, psi)
-        for _ in range(_MOST_ITERATIONS):
-            size = np.hypot(*miss)
-            if np.all(size <= _INVERSE_TOLERANCE * scale):
-                return i
-            i, miss = self._step(i, miss, psi, size)
-        raise FluxMapMachineError(
-            f"the inverse of the map was not found to {_INVERSE_TOLERANCE:g} for "
-            f"{np.count_nonzero(size > _INVERSE_TOLERANCE * scale)} flux linkages in {_MOST_ITERATIONS} steps: "
-            "solve a finer map"
-        )
-
-    def _step(
-        self, i: np.ndarray, miss: np.ndarray, psi: np.ndarray, size: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        step = _solve_2x2(self._continued_jacobian(i), miss)
-        length = np.ones_like(size)
-        for _ in range(10):
-            trial = i + length * step
-            found = self._miss(trial, psi)
-            worse = np.hypot(*found) > np.maximum(size, _INVERSE_TOLERANCE * np.abs(psi).max())
-            if not worse.any():
-                break
-            length = np.where(worse, length / 2, length)
-        return trial, found
+        """Currents (2, k) of the continued map at flux linkages psi (2, k)."""
+        close = _INVERSE_TOLERANCE * np.hypot(self.psi_d, self.psi_q).max()
+        i, found = damped_newton(lambda trial: self._miss(trial, psi), self._continued_jacobian, i, close)
+        if not found.all():
+            raise FluxMapMachineError(
+                f"the inverse of the map was not found to {_INVERSE_TOLERANCE:g} for {np.count_nonzero(~found)} flux "
+                "linkages: solve a finer map"
+            )
+        return i
 
     def _miss(self, i: np.ndarray, psi: np.ndarray) -> np.ndarray:
         inside = self._clip(i)
@@ -329,9 +311,3 @@ def _refined(axis: np.ndarray) -> np.ndarray:
     """The axis with every interval divided."""
     count = _CHECKED_PER_CELL * (len(axis) - 1) + 1
     return np.interp(np.linspace(0, len(axis) - 1, count), np.arange(len(axis)), axis)
-
-
-def _solve_2x2(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions (2, k) of k systems (2, 2, k)."""
-    (a, b), (c, d) = matrix
-    return np.stack([d * right[0] - b * right[1], a * right[1] - c * right[0]]) / (a * d - b * c)

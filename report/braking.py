@@ -30,7 +30,7 @@ def section(found: BrakingOutcome, output: Output) -> Section:
         "Braking over speed",
         (
             _text(found, output),
-            *(Remark(line) for line in _warnings(found, output)),
+            *(Remark(line) for line in remarks(found, output)),
             Table(summary_table(found, output), f"The brake {output.place}; the whole curves are in {TABLE}."),
             Picture(
                 picture_name(FIGURE),
@@ -38,11 +38,6 @@ def section(found: BrakingOutcome, output: Output) -> Section:
             ),
         ),
     )
-
-
-def remarks(found: BrakingOutcome, output: Output) -> Iterator[str]:
-    """What the run says at once."""
-    yield from _warnings(found, output)
 
 
 def braking_table(found: BrakingOutcome, output: Output) -> pd.DataFrame:
@@ -99,7 +94,8 @@ def _text(found: BrakingOutcome, output: Output) -> str:
     )
 
 
-def _warnings(found: BrakingOutcome, output: Output) -> Iterator[str]:
+def remarks(found: BrakingOutcome, output: Output) -> Iterator[str]:
+    """What the run says at once: up to where the damping holds, and a back-EMF beyond the bus."""
     demand, unit = found.demand, output.damping_unit
     if demand.damping:
         asked = f"{in_unit(demand.damping, unit):.4g} {written(unit)}"

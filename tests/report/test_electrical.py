@@ -95,7 +95,9 @@ def test_sections_can_be_printed(winding):
 
 @pytest.fixture(scope="module")
 def brake(winding):
-    return braking_stage(MAP, winding, braking_demand(REQUIRED, TRANSMISSION), CopperHeat(20.0, 120.0, 1.0, 1.393))
+    return braking_stage(
+        MAP, winding, INPUTS, braking_demand(REQUIRED, TRANSMISSION), CopperHeat(20.0, 120.0, 1.0, 1.393)
+    )
 
 
 def test_files_of_the_brake(brake, tmp_path):
