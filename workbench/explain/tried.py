@@ -162,6 +162,7 @@ class Search:
 
 
 def label_of(names: Set) -> str:
+    """A set in words."""
     return " with ".join(sorted(names))
 
 
@@ -227,6 +228,7 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
 
 
 def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
+    """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
     names = Names(search.signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
     return Additions(search, hypothesis, names, names.catalogue.readings(at_zero(hypothesis)[:, None])[0])
 

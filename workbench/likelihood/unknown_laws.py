@@ -33,7 +33,7 @@ TURN = 0.01  # of where a law has its size, over which its sign turns
 
 @dataclass(frozen=True)
 class UnknownLaw(Effect):
-    """at: where the law has its size, SI;  scale: what the size is a share of, SI"""
+    """size: at ``reference``, as a share of ``scale``;  reference, scale: [SI], as the device has them"""
 
     goes_with: ClassVar[str]
     model_error = 0.1
@@ -48,6 +48,16 @@ class UnknownLaw(Effect):
     )
     reference: float = 1.0
     scale: float = 1.0
+
+    @staticmethod
+    def sized(design) -> tuple[float, float]:
+        """Reference and scale of the law for a device [SI]."""
+        raise NotImplementedError
+
+    @classmethod
+    def variants(cls, design):
+        reference, scale = cls.sized(design)
+        return (cls(reference=reference, scale=scale),)
 
     @property
     def is_null(self) -> bool:
@@ -77,9 +87,9 @@ class UnknownForceOfVelocity(UnknownLaw, ForceEffect):
 
     goes_with = "a force that goes with the velocity"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=VELOCITY, scale=design.force_constant * _short_circuit(design)),)
+    @staticmethod
+    def sized(design):
+        return VELOCITY, design.force_constant * _short_circuit(design)
 
     def force(self, position, velocity):
         return self.odd(velocity)
@@ -91,9 +101,9 @@ class UnknownForceOfPosition(UnknownLaw, ForceEffect):
 
     goes_with = "a force that goes with the position"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=TRAVEL, scale=design.force_constant * _short_circuit(design)),)
+    @staticmethod
+    def sized(design):
+        return TRAVEL, design.force_constant * _short_circuit(design)
 
     def force(self, position, velocity):
         return self.odd(position)
@@ -105,9 +115,9 @@ class UnknownCouplingOfCurrent(UnknownLaw, CouplingEffect):
 
     goes_with = "a force constant that changes with the current"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=_short_circuit(design)),)
+    @staticmethod
+    def sized(design):
+        return _short_circuit(design), 1.0
 
     def coupling(self, position, current):
         return np.exp(-np.clip(self.even(current), *MOST))
@@ -119,9 +129,9 @@ class UnknownCouplingOfPosition(UnknownLaw, CouplingEffect):
 
     goes_with = "a force constant that changes with the position"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=TRAVEL),)
+    @staticmethod
+    def sized(design):
+        return TRAVEL, 1.0
 
     def coupling(self, position, current):
         return np.exp(-np.clip(self.even(position), *MOST))
@@ -143,9 +153,9 @@ class UnknownTorqueOfSpeed(UnknownLaw, TorqueEffect):
 
     goes_with = "a torque that goes with the speed"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=FREQUENCY / design.pole_pairs, scale=_torque(design)),)
+    @staticmethod
+    def sized(design):
+        return FREQUENCY / design.pole_pairs, _torque(design)
 
     def lost_torque(self, speed, torque):
         return self.odd(speed)
@@ -157,9 +167,9 @@ class UnknownTorqueOfLoad(UnknownLaw, TorqueEffect):
 
     goes_with = "a loss of torque that goes with the torque"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=_torque(design), scale=_torque(design)),)
+    @staticmethod
+    def sized(design):
+        return _torque(design), _torque(design)
 
     def lost_torque(self, speed, torque):
         return self.even(torque) * np.tanh(speed)
@@ -171,9 +181,9 @@ class UnknownFluxOfDirectCurrent(UnknownLaw, FluxEffect):
 
     goes_with = "an inductance L_d that changes with the current"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=_load(design)),)
+    @staticmethod
+    def sized(design):
+        return _load(design), 1.0
 
     def flux(self, i_d, i_q, machine):
         return -machine.inductance_d * i_d * np.minimum(self.even(i_d), 1.0), np.zeros_like(i_q)
@@ -185,9 +195,9 @@ class UnknownFluxOfQuadratureCurrent(UnknownLaw, FluxEffect):
 
     goes_with = "an inductance L_q that changes with the current"
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=_load(design)),)
+    @staticmethod
+    def sized(design):
+        return _load(design), 1.0
 
     def flux(self, i_d, i_q, machine):
         return np.zeros_like(i_d), -machine.inductance_q * i_q * np.minimum(self.even(i_q), 1.0)
@@ -200,9 +210,9 @@ class UnknownDropOfCurrent(UnknownLaw, ResponseEffect):
     goes_with = "a voltage that goes with the current"
     designs = (DqMachine,)
 
-    @classmethod
-    def variants(cls, design):
-        return (cls(reference=_load(design), scale=0.1 * FREQUENCY * design.psi_m),)
+    @staticmethod
+    def sized(design):
+        return _load(design), 0.1 * FREQUENCY * design.psi_m
 
     def on_response(self, response, conditions, kind, design):
         if kind != "dq_operation":
@@ -220,11 +230,10 @@ class UnknownTorqueOfRotor(UnknownLaw, ResponseEffect):
     goes_with = "a torque that goes with the speed"
     designs = (MachineAsBuilt,)
 
-    @classmethod
-    def variants(cls, design):
-        section = design.cross_section
-        area = 2 * np.pi * section.mid_gap_radius * design.length
-        return (cls(reference=TURNING, scale=SHEAR * area * section.mid_gap_radius),)
+    @staticmethod
+    def sized(design):
+        radius = design.cross_section.mid_gap_radius
+        return TURNING, SHEAR * 2 * np.pi * radius**2 * design.length
 
     def on_response(self, response, conditions, kind, design):
         if "torque" not in response or "speed" not in conditions:
