@@ -235,6 +235,13 @@ def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):
     assert by_evidence(unsure) == (one, other)
 
 
+def test_what_is_likelier_there_than_not_is_tried_last_and_only_beside_names(diagnosed):
+    first, second, *rest = diagnosed.ranking
+    likely = (replace(first, probability=0.99), replace(second, probability=0.6), *rest)
+    assert by_evidence(replace(diagnosed, names=(first.name,), ranking=likely)) == (first.name, second.name)
+    assert by_evidence(replace(diagnosed, names=(), ranking=likely)) == ()
+
+
 def test_a_step_tells_the_error_of_each_channel_in_percent(hidden):
     step = try_effect(*hidden, LIBRARY, "hardening").step
     assert step.rms_error["pull.force"] < 1.2 * step.noise_floor["pull.force"]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from effects.base import Effect
+from workbench.believed import LIKELY
 from workbench.compare.comparison import comparison_of
 from workbench.data.table import Campaign
 from workbench.explain.diagnosis import SEED, diagnose
@@ -121,7 +122,8 @@ def walk(
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The names of a verdict, the one with the most evidence by itself first; then, of those that cannot be told apart,
-    the most probable one: without it what is named may not stand."""
+    the most probable one, and what is likelier there than not: without them what is named may not stand."""
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
     named = sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0))
-    return (*named, *diagnosis.alternatives)
+    likely = [ranked.name for ranked in diagnosis.ranking if named and ranked.probability > LIKELY]
+    return tuple(dict.fromkeys((*named, *diagnosis.alternatives, *likely)))
