@@ -222,6 +222,26 @@ class Diameter(Requirement):
 
 
 @dataclass(frozen=True)
+class LostMagnets(Requirement):
+    """Share of the magnets' volume that goes beyond the knee in the worst state, which no lever moves.
+
+    needed, reached, lost: dimensionless
+    """
+
+    lost: float
+    at_most = True
+
+    def reached(self, design: ActuatorDesign) -> Values:
+        return self.lost
+
+    def name(self, output: Output) -> str:
+        return "volume of the magnets beyond the knee"
+
+    def unit(self, output: Output) -> str:
+        return "percent"
+
+
+@dataclass(frozen=True)
 class Check:
     """A requirement and the value that a design reaches; reached: [unit of the demand, SI]."""
 

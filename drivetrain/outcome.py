@@ -16,6 +16,7 @@ from drivetrain.asked import (
     ControlledDamping,
     Diameter,
     EquivalentMass,
+    LostMagnets,
     LowSpeedDamping,
     PeakEffort,
     PeakEffortAtRest,
@@ -29,6 +30,7 @@ from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
 from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVERS, Remedy, remedies
 from drivetrain.requirements import Linkage, Requirements
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.magnets_stage import MagnetsOutcome
 from electrical.winding_stage import WindingOutcome
 from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
@@ -129,8 +131,11 @@ def outcome_stage(
     required: Requirements,
     linkage: Linkage,
     inputs: OutcomeInputs,
+    magnets: MagnetsOutcome | None = None,
 ) -> Outcome:
     """The actuator of machine, winding and gears against everything that is asked of it.
+
+    magnets: None where the study names no grade; then nothing is said of them.
 
     A requirement that does not hold is no error: the outcome says which input to move, by how much, and what would
     fail then. Raises GearError when the rotor does not fit its stator.
@@ -140,7 +145,8 @@ def outcome_stage(
     design = actuator_design(winding, flux_map, gears, masses, inputs)
     layout = actuator_layout(gears.train, machine_envelope(wound), inputs.housing)
     features = features_of(design, gears, linkage, layout, masses.total + gears.train.mass + inputs.casing_mass)
-    checks = tuple(one.check(design) for one in requirements_of(required, linkage, layout, inputs))
+    asked = (*requirements_of(required, linkage, layout, inputs), *_magnets_kept(magnets))
+    checks = tuple(one.check(design) for one in asked)
     return Outcome(
         features=features,
         stated=inputs.stated,
@@ -237,6 +243,11 @@ def _braking_of(required: Requirements) -> tuple[Requirement, ...]:
         return ()
     most = required.force_peak / required.velocity_rms
     return (ControlledDamping(min(required.maximum_damping, most), required.velocity_rms),)
+
+
+def _magnets_kept(magnets: MagnetsOutcome | None) -> tuple[Requirement, ...]:
+    """That short circuits and faults leave the magnets what they are; none where their grade is not known."""
+    return () if magnets is None else (LostMagnets(magnets.inputs.lost_max, magnets.lost),)
 
 
 def features_of(
