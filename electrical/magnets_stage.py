@@ -8,7 +8,7 @@ straight recoil line; see ``magnetostatics.demagnetisation`` and ``materials.mag
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -19,17 +19,13 @@ from electrical.braking_stage import BrakingOutcome
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.sudden_short_circuit import first_peak
 from electrical.winding_stage import WindingOutcome
-from electrical.wound_machine import WoundMachine
-from geometry.machine import Machine
 from magnetostatics.case import FieldCase
-from magnetostatics.demagnetisation import MagnetFlux, MagnetMap, magnet_flux, magnet_map
-from magnetostatics.flux_map import map_angles, operating_point
+from magnetostatics.demagnetisation import MagnetMap
 from magnetostatics.flux_map_stage import FluxMap
-from magnetostatics.model import FieldModel
+from magnetostatics.turning_magnets import TurningMagnets, magnet_maps, turning_magnets
 from materials.magnet_grade import MagnetGrade
 from tasks import Workers
 
-ANGLES = 10  # over 60 electrical degrees, each seen by every magnet of the sector at another place
 # Currents against the magnets, over the overload current, between which the demagnetising one is interpolated.
 _AGAINST = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 
@@ -37,7 +33,7 @@ NO_LOAD, OVERLOAD = "no load", "overload, on the q axis"
 STEADY, SUDDEN = "shorted, steady", "shorted at full speed, first peak"
 FAULT = "overload, against the magnets"
 
-Current = tuple[float, float]  # (i_d, i_q), peak [A]
+Current = tuple[float, float]  # (i_d, i_q), peak of a phase [A]
 
 
 @dataclass(frozen=True)
@@ -46,12 +42,14 @@ class MagnetInputs:
 
     grade: of the magnets; cold, hot: between which temperatures they work [degC]
     lost_max: share of their volume that may go beyond the knee
+    angles: of the rotor that are solved, over 60 electrical degrees
     """
 
     grade: MagnetGrade
     cold: float
     hot: float
     lost_max: float
+    angles: int
 
 
 @dataclass(frozen=True)
@@ -82,7 +80,7 @@ class MagnetsOutcome:
     states: no load first; demagnetising_current: against the magnets, at which the allowed share of their volume goes
         beyond the knee, peak [A]; 0 where it does without current, infinite where it does not up to largest_current [A]
     peak_in_map: whether the first peak of a sudden short circuit lies in the flux map that it was followed on
-    turn: one magnet in the worst state, the smallest over a turn; at_once: all magnets of the machine's sector at that
+    turn: one magnet in the worst state, upright, the smallest over a turn; at_once: all magnets of the sector at that
         state's worst angle
     """
 
@@ -111,45 +109,6 @@ class MagnetsOutcome:
         return state.exceeded - self.knee
 
 
-@dataclass(frozen=True)
-class MagnetTask:
-    """The magnets at one rotor angle [rad] under several currents; knee: of their grade [T].
-
-    currents: (i_d, i_q), ampere-turns of a coil [A peak]
-    """
-
-    case: FieldCase
-    machine: Machine
-    angle: float
-    currents: tuple[Current, ...]
-    knee: float
-
-
-@dataclass(frozen=True, eq=False)
-class SolvedMagnets:
-    """What they show there, in the order of the currents.
-
-    smallest: of the magnets of the sector, at the points of one [T], (n, Q, E); lost: share beyond the knee, (n,)
-    """
-
-    smallest: np.ndarray
-    lost: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class TurningMagnets:
-    """The magnets under one current, or its mirror image, over a turn of the rotor.
-
-    turn: one magnet, the smallest over the turn; lost: share beyond the knee at the worst angle alone
-    angle: that angle, mechanical [rad]; current: (i_d, i_q) there, of the two senses the worse [A]
-    """
-
-    turn: MagnetFlux
-    lost: float
-    angle: float
-    current: Current
-
-
 def magnets_stage(
     case: FieldCase,
     flux_map: FluxMap,
@@ -158,31 +117,31 @@ def magnets_stage(
     inputs: MagnetInputs,
     workers: Workers,
 ) -> MagnetsOutcome:
-    """Solve the magnets under no load, overload, both short circuits and a controller's fault; a task is one angle.
+    """Solve the magnets under no load, overload, both short circuits and a controller's fault.
 
     Raises MaterialError where the grade has nothing left at its temperatures, FieldSolutionError when a current does
     not converge.
     """
-    wound, largest = winding.wound, winding.limits.current_peak
-    temperature = inputs.grade.weaker_of(inputs.cold, inputs.hot)
-    knee, case = inputs.grade.knee_at(temperature), with_grade(case, inputs.grade, temperature)
+    wound, largest, grade = winding.wound, winding.limits.current_peak, inputs.grade
     machine = wound.on_map(flux_map.data).with_resistance(wound.phase_resistance * braking.heat.cold_resistance)
     named = currents_of(machine, largest, braking.cold)
     against = [(-share * largest, 0.0) for share in _AGAINST]
-    model = case.detailed_model(wound.machine)
-    seen = _solved(case, model, wound, [*named.values(), *against], knee, workers)
-    states = tuple(_state(name, one, seen[one], knee, inputs.lost_max) for name, one in named.items())
-    worst = seen[named[min(states, key=lambda state: state.exceeded).name]]
+    temperature = grade.weaker_of(inputs.cold, inputs.hot)
+    knee, case = grade.knee_at(temperature), with_grade(case, grade, temperature)
+    ampere_turns = [(wound.turns * i_d, wound.turns * i_q) for i_d, i_q in (*named.values(), *against)]
+    seen = turning_magnets(case, wound.machine, ampere_turns, knee, inputs.angles, workers)
+    under, weakened = seen[: len(named)], seen[len(named) :]
+    exceeded = [one.turn.exceeded(inputs.lost_max) for one in weakened]
+    worst = min(under, key=lambda one: one.turn.exceeded(inputs.lost_max))
     return MagnetsOutcome(
         inputs,
         temperature,
         knee,
-        states,
-        demagnetising_current(against, [seen[one].turn.exceeded(inputs.lost_max) for one in against], knee),
-        -against[-1][0],
+        tuple(_state(*one, found, knee, inputs.lost_max) for one, found in zip(named.items(), under, strict=True)),
+        demagnetising_current([-i_d for i_d, _ in against], exceeded, knee),
+        _AGAINST[-1] * largest,
         bool(machine.holds(*named[SUDDEN])),
-        magnet_map(model, worst.turn, 0.0),
-        magnet_map(model, _flux_at(model, worst.angle, wound.turns, worst.current), worst.angle),
+        *magnet_maps(case, wound.machine, worst),
     )
 
 
@@ -224,62 +183,16 @@ def with_grade(case: FieldCase, grade: MagnetGrade, temperature: float) -> Field
     )
 
 
-def solve_magnets(task: MagnetTask) -> SolvedMagnets:
-    """All currents at one rotor angle, each from the field of the one before."""
-    model, solution = task.case.detailed_model(task.machine), None
-    smallest, lost = [], []
-    for i_d, i_q in task.currents:
-        solution = model.solve(operating_point(model, task.angle, i_d, i_q), start=solution)
-        seen = magnet_flux(solution)
-        smallest.append(seen.smallest)
-        lost.append(seen.share_below(task.knee))
-    return SolvedMagnets(np.array(smallest), np.array(lost))
-
-
-def demagnetising_current(against: Sequence[Current], exceeded: Sequence[float], knee: float) -> float:
+def demagnetising_current(against: Sequence[float], exceeded: Sequence[float], knee: float) -> float:
     """The current [A] against the magnets at which the flux density that all but a share exceeds falls to the knee.
 
-    against: currents against the magnets, each larger than the one before [A]; exceeded: flux densities there [T]
-    knee: [T]. Linear between; infinite where it is not reached, 0 where it is without current.
+    against: rising currents against the magnets, peak [A]; exceeded: flux densities [T] there; knee: [T]
+    Linear between; infinite where it is not reached, 0 where it is without current.
     """
     falling = np.minimum.accumulate(exceeded)
     if falling[-1] > knee:
         return inf
-    return float(np.interp(-knee, -falling, [-i_d for i_d, _ in against]))
-
-
-def _solved(
-    case: FieldCase, model: FieldModel, wound: WoundMachine, currents: Iterable[Current], knee: float, workers: Workers
-) -> dict[Current, TurningMagnets]:
-    """The magnets under each current [A] and its mirror image: a machine drives and brakes, both ways round."""
-    wanted = tuple(dict.fromkeys(currents))
-    senses = tuple(dict.fromkeys(sense for one in wanted for sense in _senses(one)))
-    ampere_turns = tuple((wound.turns * i_d, wound.turns * i_q) for i_d, i_q in senses)
-    angles = map_angles(model, ANGLES).tolist()
-    tasks = {f"angle {k}": MagnetTask(case, wound.machine, at, ampere_turns, knee) for k, at in enumerate(angles)}
-    solved = list(workers.map("magnets", solve_magnets, tasks).values())
-    areas = model.magnet_elements(0).weights
-    return {one: _turning(one, senses, angles, solved, areas) for one in wanted}
-
-
-def _turning(
-    current: Current,
-    senses: tuple[Current, ...],
-    angles: Sequence[float],
-    solved: Sequence[SolvedMagnets],
-    areas: np.ndarray,
-) -> TurningMagnets:
-    rows = [senses.index(sense) for sense in _senses(current)]
-    smallest = np.min([one.smallest[rows].min(axis=0) for one in solved], axis=0)
-    lost = np.array([one.lost[rows] for one in solved])
-    angle, sense = divmod(int(np.argmax(lost)), len(rows))
-    return TurningMagnets(MagnetFlux(smallest[None], areas), float(lost.max()), angles[angle], senses[rows[sense]])
-
-
-def _senses(current: Current) -> tuple[Current, ...]:
-    """A current and its mirror image on the q axis, once where they are one."""
-    i_d, i_q = current
-    return tuple(dict.fromkeys(((i_d, i_q), (i_d, -i_q))))
+    return float(np.interp(-knee, -falling, against))
 
 
 def _state(name: str, current: Current, seen: TurningMagnets, knee: float, allowed: float) -> MagnetState:
@@ -287,8 +200,3 @@ def _state(name: str, current: Current, seen: TurningMagnets, knee: float, allow
     return MagnetState(
         name, *current, turn.least, turn.exceeded(allowed), turn.share_below(knee), seen.lost, seen.angle
     )
-
-
-def _flux_at(model: FieldModel, angle: float, turns: int, current: Current) -> MagnetFlux:
-    i_d, i_q = current
-    return magnet_flux(model.solve(operating_point(model, angle, turns * i_d, turns * i_q)))

@@ -26,8 +26,8 @@ def magnets_at_worst(found: MagnetsOutcome, section: CrossSection) -> Figure:
 
     section: meshed machine, for its outlines
     """
-    figure = new_figure(5.0)
-    whole, one = figure.subplots(1, 2)
+    figure = new_figure(4.8)
+    whole, one = figure.subplots(1, 2, width_ratios=(1.0, 1.1))
     flux = np.concatenate([found.at_once.flux.ravel(), found.turn.flux.ravel(), [found.knee]])
     ends = float(flux.min()), float(flux.max())
     draw_outlines(whole, whole_geometry(section, found.worst.angle), LIGHT_GREY, 0.8)
@@ -46,7 +46,8 @@ def magnets_at_worst(found: MagnetsOutcome, section: CrossSection) -> Figure:
     bar.set_label("flux density along the magnetisation / T")
     bar.ax.axhline(found.knee, color=VERMILION, linewidth=2.0)
     label = f"knee of {found.inputs.grade.name}, {found.knee:.3f} T"
-    figure.legend(handles=[Line2D([], [], color=VERMILION, linewidth=1.6, label=label)], loc="outside lower center", frameon=False)
+    line = Line2D([], [], color=VERMILION, linewidth=1.6, label=label)
+    figure.legend(handles=[line], loc="outside lower center", frameon=False)
     return figure
 
 

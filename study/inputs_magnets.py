@@ -7,7 +7,7 @@ from materials.errors import MaterialError
 from materials.magnet import Magnet
 from materials.magnet_grade import MagnetGrade, load_grade
 from study.errors import StudyError
-from study.inputs_electrical import HOT
+from study.inputs_electrical import HOT, flux_map_grid
 from study.schema import Study
 
 COLD = -15.0  # degC; the coldest air that a machine stands by IEC 60034-1 (site of operation); it counts for ferrites
@@ -54,7 +54,10 @@ def magnet_density(study: Study) -> float:
 
 
 def magnet_inputs(study: Study) -> MagnetInputs:
-    """Grade, temperatures and limit of the check against demagnetisation. Raises StudyError without a grade."""
+    """Grade, temperatures and limit of the check against demagnetisation, at the rotor angles of the flux map.
+
+    Raises StudyError without a grade.
+    """
     grade, section = magnet_grade(study), study.magnets.si
     if grade is None:
         raise StudyError(f"{study.path}: materials.magnet_grade is missing; add it for the check of the magnets.")
@@ -63,6 +66,7 @@ def magnet_inputs(study: Study) -> MagnetInputs:
         cold=COLD if section.cold_temperature is None else section.cold_temperature,
         hot=HOTTEST if section.hot_temperature is None else section.hot_temperature,
         lost_max=LOST_MAX if section.lost_volume_max is None else section.lost_volume_max,
+        angles=flux_map_grid(study).angles,
     )
 
 
