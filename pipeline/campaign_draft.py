@@ -24,7 +24,7 @@ from materials.conductor import Conductor
 from study.errors import StudyError
 from study.inputs_drive import friction_at
 from study.inputs_electrical import winding_resistivity
-from study.inputs_magnets import design_magnet
+from study.magnet_choice import design_magnet
 from study.schema import Study
 from units import DEGREE, MILLIMETRE, RPM
 

@@ -11,7 +11,7 @@ from materials.library import load_steel
 from optimisation.states import READINGS
 from optimisation.sweep import SaturationLimit, SweepGrid
 from study.inputs_machine import machine_family, mesh_density
-from study.inputs_magnets import design_magnet
+from study.magnet_choice import design_magnet
 from study.schema import Study
 
 # Twice the resolution of the sweep, for single states that are looked at.

@@ -1,13 +1,11 @@
-"""The magnets of a study in SI: as it states them, or of a grade, and what they must stand."""
+"""What the magnets of a study must stand, in SI."""
 
 from __future__ import annotations
 
 from electrical.magnets_stage import MagnetInputs
-from materials.errors import MaterialError
-from materials.magnet import Magnet
-from materials.magnet_grade import MagnetGrade, load_grade
 from study.errors import StudyError
 from study.inputs_electrical import HOT, flux_map_grid
+from study.magnet_choice import magnet_grade
 from study.schema import Study
 
 COLD = -15.0  # degC; the coldest air that a machine stands by IEC 60034-1 (site of operation); it counts for ferrites
@@ -15,42 +13,6 @@ COLD = -15.0  # degC; the coldest air that a machine stands by IEC 60034-1 (site
 HOTTEST = HOT  # degC
 # 1 % of the volume without remanence costs about as much flux, half of what remanence scatters between batches.
 LOST_MAX = 0.01
-# How far what a study states of its magnets may be from their grade, relative: scatter of makers and batches, and for
-# the permeability that of vacuum in the place of 1.05 to 1.1, which simple models take.
-_SAME_REMANENCE, _SAME_PERMEABILITY, _SAME_DENSITY = 0.03, 0.1, 0.05
-
-
-def magnet_grade(study: Study) -> MagnetGrade | None:
-    """The grade of the study's magnets, None where it names none.
-
-    Raises StudyError for an unknown one, and where the study states what the grade does not have.
-    """
-    name = study.materials.magnet_grade
-    if name is None:
-        return None
-    try:
-        grade = load_grade(name)
-    except MaterialError as error:
-        raise StudyError(f'{study.path}: materials.magnet_grade = "{name}": {error}.') from error
-    _check_stated(study, grade)
-    return grade
-
-
-def design_magnet(study: Study) -> Magnet:
-    """The magnet that the fields are solved with: what is not stated is that of the grade at its temperature."""
-    stated, grade = study.materials.si, magnet_grade(study)
-    if grade is None:
-        return Magnet(stated.remanence, stated.recoil_permeability)
-    permeability = grade.recoil_permeability if stated.recoil_permeability is None else stated.recoil_permeability
-    if stated.remanence is not None:
-        return Magnet(stated.remanence, permeability)
-    return Magnet(_remanence(study, grade, stated.magnet_temperature), permeability)
-
-
-def magnet_density(study: Study) -> float:
-    """Density of the magnets [kg/m^3], that of the grade where none is stated."""
-    stated, grade = study.materials.si.magnet_density, magnet_grade(study)
-    return float(grade.density if stated is None and grade is not None else stated)
 
 
 def magnet_inputs(study: Study) -> MagnetInputs:
@@ -68,27 +30,3 @@ def magnet_inputs(study: Study) -> MagnetInputs:
         lost_max=LOST_MAX if section.lost_volume_max is None else section.lost_volume_max,
         angles=flux_map_grid(study).angles,
     )
-
-
-def _remanence(study: Study, grade: MagnetGrade, temperature: float) -> float:
-    try:
-        return grade.remanence_at(temperature)
-    except MaterialError as error:
-        raise StudyError(f"{study.path}: materials.magnet_temperature_degC = {temperature:g}: {error}.") from error
-
-
-def _check_stated(study: Study, grade: MagnetGrade) -> None:
-    """What a study states beside a grade must be the grade's, the remanence at some temperature it works at."""
-    stated = study.materials.si
-    warm = grade.remanence_at(grade.largest_temperature)
-    for key, value, (low, high), same in (
-        ("remanence_T", stated.remanence, (warm, grade.remanence_at(COLD)), _SAME_REMANENCE),
-        ("recoil_permeability", stated.recoil_permeability, (grade.recoil_permeability,) * 2, _SAME_PERMEABILITY),
-        ("magnet_density_kg_per_m3", stated.magnet_density, (grade.density,) * 2, _SAME_DENSITY),
-    ):
-        if value is not None and not low * (1 - same) <= value <= high * (1 + same):
-            found = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
-            raise StudyError(
-                f'{study.path}: materials.{key} = {value:g} is not that of materials.magnet_grade = "{grade.name}", '
-                f"which has {found}; leave it out, or name another grade."
-            )

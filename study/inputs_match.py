@@ -19,7 +19,7 @@ from drivetrain.whole_search import WholeSearchInputs
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
 from study.inputs_electrical import winding_resistivity
-from study.inputs_magnets import magnet_density
+from study.magnet_choice import magnet_density
 from study.needed import needed
 from study.schema import MatchSection, Study
 

@@ -22,8 +22,8 @@ from study.chain import drives, searches_linkage
 from study.errors import StudyError
 from study.inputs_linkage import linkage_search, stated_hardpoints
 from study.inputs_machine import machine_family, mesh_density
-from study.inputs_magnets import design_magnet
 from study.inputs_vehicle import ride_case
+from study.magnet_choice import design_magnet
 from study.read import check_winding, sentence_part, with_keys
 from study.schema import Study
 from units import MILLIMETRE, SQUARE_MILLIMETRE

@@ -4,9 +4,11 @@ import pytest
 
 from materials.magnet_grade import load_grade
 from study.errors import StudyError
+from study.inputs_electrical import loss_inputs
 from study.inputs_field import machine_materials
-from study.inputs_magnets import design_magnet, magnet_density, magnet_inputs
+from study.inputs_magnets import magnet_inputs
 from study.inputs_match import part_materials
+from study.magnet_choice import design_magnet, magnet_density
 from study.read import STUDIES, read_study
 from study.usable import check_magnets
 
@@ -40,6 +42,7 @@ def test_a_grade_gives_what_is_not_stated(tmp_path):
     magnet, grade = design_magnet(study), load_grade("Y30H-1")
     assert magnet.remanence == pytest.approx(0.39 * (1 - 0.002 * 40)) and magnet.recoil_permeability == 1.08
     assert part_materials(study).magnet_density == grade.density
+    assert loss_inputs(study).magnet_resistivity == 1e4, "ferrite has no eddy currents to speak of"
 
 
 def test_without_a_grade_everything_is_stated(tmp_path):
