@@ -148,6 +148,7 @@ def magnets_stage(
 def currents_of(machine: FluxMapMachine, largest: float, shorted: Braking) -> dict[str, Current]:
     """The currents that the magnets must stand, by name.
 
+    They are those of the map's magnets, which are stronger than hot ones, so that a short circuit is rather too strong.
     machine: with the resistance of the cold copper, with which short circuits are strongest; largest: overload current,
     peak [A]; shorted: steady states of the same machine over the speed, the last the fastest
     """

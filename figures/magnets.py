@@ -30,13 +30,8 @@ def magnets_at_worst(found: MagnetsOutcome, section: CrossSection) -> Figure:
     whole, one = figure.subplots(1, 2, width_ratios=(1.0, 1.1))
     flux = np.concatenate([found.at_once.flux.ravel(), found.turn.flux.ravel(), [found.knee]])
     ends = float(flux.min()), float(flux.max())
-    draw_outlines(whole, whole_geometry(section, found.worst.angle), LIGHT_GREY, 0.8)
-    for turn in 2 * np.pi / section.sectors * np.arange(section.sectors):
-        _draw(whole, _turned(found.at_once, turn), found.knee, ends)
+    _draw_machine(whole, found, section, ends)
     colours = _draw(one, found.turn, found.knee, ends)
-    reach = _AROUND * section.machine.stator_inner_radius / MILLIMETRE
-    whole.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    whole.set_title(f"worst rotor angle, {degrees(found.worst.angle / DEGREE)}", loc="left")
     one.set_title("smallest over a turn, one magnet", loc="left")
     for axes in (whole, one):
         axes.set(xlabel="x / mm", ylabel="y / mm")
@@ -45,16 +40,23 @@ def magnets_at_worst(found: MagnetsOutcome, section: CrossSection) -> Figure:
     bar = figure.colorbar(colours, ax=(whole, one), pad=0.02, shrink=0.85)
     bar.set_label("flux density along the magnetisation / T")
     bar.ax.axhline(found.knee, color=VERMILION, linewidth=2.0)
-    label = f"knee of {found.inputs.grade.name}, {found.knee:.3f} T"
-    line = Line2D([], [], color=VERMILION, linewidth=1.6, label=label)
-    figure.legend(handles=[line], loc="outside lower center", frameon=False)
+    figure.legend(handles=[_knee_line(found)], loc="outside lower center", frameon=False)
     return figure
 
 
-def _turned(seen: MagnetMap, angle: float) -> MagnetMap:
-    """The magnets of another sector: along their magnetisation they see the same."""
-    (x, y), (c, s) = seen.corners, (np.cos(angle), np.sin(angle))
-    return MagnetMap(np.stack([c * x - s * y, s * x + c * y]), seen.flux)
+def _draw_machine(axes: Axes, found: MagnetsOutcome, section: CrossSection, ends: tuple[float, float]) -> None:
+    """All magnets between the outlines of teeth and rotor; in every sector they see the same along themselves."""
+    draw_outlines(axes, whole_geometry(section, found.worst.angle), LIGHT_GREY, 0.8)
+    for angle in 2 * np.pi / section.sectors * np.arange(section.sectors):
+        _draw(axes, found.at_once.turned(angle), found.knee, ends)
+    reach = _AROUND * section.machine.stator_inner_radius / MILLIMETRE
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
+    axes.set_title(f"worst rotor angle, {degrees(found.worst.angle / DEGREE)}", loc="left")
+
+
+def _knee_line(found: MagnetsOutcome) -> Line2D:
+    label = f"knee of {found.inputs.grade.name}, {found.knee:.3f} T".replace("-0", "\N{MINUS SIGN}0")
+    return Line2D([], [], color=VERMILION, linewidth=1.6, label=label)
 
 
 def _draw(axes: Axes, seen: MagnetMap, knee: float, ends: tuple[float, float]) -> Collection:

@@ -75,14 +75,18 @@ class MagnetMap:
     corners: np.ndarray
     flux: np.ndarray
 
+    def turned(self, angle: float) -> MagnetMap:
+        """The same turned about the axis by an angle [rad]."""
+        (x, y), (c, s) = self.corners, (np.cos(angle), np.sin(angle))
+        return MagnetMap(np.stack([c * x - s * y, s * x + c * y]), self.flux)
+
 
 def magnet_map(model: FieldModel, seen: MagnetFlux, angle: float) -> MagnetMap:
     """The magnets of the sector, or the first alone, with the rotor turned to an angle [rad]."""
     regions = [model.topology.regions[f"magnet_{number}"] for number in range(len(seen.values))]
-    mesh, (c, s) = model.section.mesh, (np.cos(angle), np.sin(angle))
+    mesh = model.section.mesh
     corners = mesh.p[:, mesh.t[:, np.concatenate(regions)]]
-    turned = np.stack([c * corners[0] - s * corners[1], s * corners[0] + c * corners[1]])
-    return MagnetMap(turned, np.hstack([_in_corners(model, one) for one in seen.values]))
+    return MagnetMap(corners, np.hstack([_in_corners(model, one) for one in seen.values])).turned(angle)
 
 
 def _in_corners(model: FieldModel, values: np.ndarray) -> np.ndarray:

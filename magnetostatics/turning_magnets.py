@@ -109,8 +109,13 @@ def _over_a_turn(
     solved: Sequence[SolvedMagnets],
     areas: np.ndarray,
 ) -> TurningMagnets:
-    """Of what was solved at the angles of a turn the rows of one current and its mirror image."""
-    smallest = np.min([one.smallest[rows].min(axis=0) for one in solved], axis=0)
-    lost = np.array([one.lost[rows] for one in solved])
-    angle, sense = divmod(int(np.argmax(lost)), len(rows))
-    return TurningMagnets(MagnetFlux(smallest[None], areas), float(lost.max()), turn[angle], senses[rows[sense]])
+    """Of what was solved at the angles of a turn the rows of one current and its mirror image.
+
+    The worst angle is the one where most is lost, and where nothing is, the one with the smallest flux density.
+    """
+    smallest = np.stack([one.smallest[rows] for one in solved])
+    lost = np.stack([one.lost[rows] for one in solved])
+    worst = np.lexsort((smallest.min(axis=(2, 3)).ravel(), -lost.ravel()))[0]
+    angle, sense = divmod(int(worst), len(rows))
+    turn_of_one = MagnetFlux(smallest.min(axis=(0, 1))[None], areas)
+    return TurningMagnets(turn_of_one, float(lost.max()), turn[angle], senses[rows[sense]])
