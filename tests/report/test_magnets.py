@@ -67,4 +67,4 @@ def test_the_section_can_be_printed_and_the_picture_has_its_scale(weak, tmp_path
     assert labels == ["y / mm", "y / mm", "flux density along the magnetisation / T"]
     figure.savefig(tmp_path / "figures" / "magnets.png")
     page = render_report((magnets.section(weak),), tmp_path, title="", subtitle="")
-    assert "i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d" in page and "volume" in page
+    assert "i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d" in page and "H_cJ at least 20 kOe" in page
