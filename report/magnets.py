@@ -77,7 +77,7 @@ def _text(found: MagnetsOutcome) -> str:
         f"{grade.coercivity_at(found.temperature) / 1e3:.0f} kA/m of intrinsic coercivity and a knee at "
         f"{found.knee:.3f} T, a squareness of {grade.knee_share:g} taken. Currents off the d axis count in both "
         "senses; short circuits are those of the cold winding. The first peak starts from the overload current on the "
-        "q axis at full speed; without resistance and saturation it is i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d. The field "
+        "q axis at full speed; without resistance and saturation i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d. The field "
         f"holds up to the knee; what is lost beyond is not fed back. {grade.name}: {grade.source}."
     )
 

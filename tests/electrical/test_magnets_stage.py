@@ -27,6 +27,7 @@ from geometry.half_cell import MeshDensity
 from magnetostatics.case import FieldCase
 from materials.magnet import Magnet
 from materials.magnet_grade import load_grade
+from report.magnets import remarks
 from tasks import InThisProcess
 from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, flux_map
 from tests.magnetostatics.reference_machine import MATERIALS
@@ -68,6 +69,7 @@ def test_a_strong_grade_holds_and_a_weak_one_fails(magnets):
     assert magnets[STRONG].lost < 0.01 < magnets[WEAK].lost < magnets[FERRITE].lost
     assert magnets[STRONG].margin(magnets[STRONG].worst) > 0 > magnets[WEAK].margin(magnets[WEAK].worst)
     assert states(magnets[FERRITE])[OVERLOAD].lost > 0.5, "ferrite at 20 A/mm2"
+    assert next(remarks(magnets[FERRITE])).startswith("THE MAGNETS FAIL")
 
 
 def test_the_requirement_says_so(magnets):
