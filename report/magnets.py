@@ -11,7 +11,7 @@ from electrical.magnets_stage import MagnetsOutcome, MagnetState
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
 from figures.magnets import magnets_at_worst
-from figures.report import Picture, Remark, Section, Table
+from figures.report import Picture, Remark, Section, Table, number_text
 from geometry.cross_section import mesh_cross_section
 from magnetostatics.case import FieldCase
 from units import DEGREE
@@ -70,14 +70,14 @@ def _row(found: MagnetsOutcome, state: MagnetState) -> dict[str, object]:
 
 
 def _text(found: MagnetsOutcome) -> str:
-    grade, inputs = found.inputs.grade, found.inputs
+    grade, inputs, temperature = found.inputs.grade, found.inputs, found.temperature
     return (
-        f"Magnets of {grade.name} ({grade.material}) between {inputs.cold:g} and {inputs.hot:g} °C; they stand least "
-        f"at {found.temperature:g} °C, with {grade.remanence_at(found.temperature):.3f} T of remanence, "
-        f"{grade.coercivity_at(found.temperature) / 1e3:.0f} kA/m of intrinsic coercivity and a knee at "
-        f"{found.knee:.3f} T, a squareness of {grade.knee_share:g} taken. Currents off the d axis count in both "
-        "senses; short circuits are those of the cold winding. The first peak starts from the overload current on the "
-        "q axis at full speed; without resistance and saturation i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d. The field "
+        f"Magnets of {grade.name} ({grade.material}) between {number_text(inputs.cold)} and {inputs.hot:g} °C; they "
+        f"stand least at {number_text(temperature)} °C, with {grade.remanence_at(temperature):.3f} T of remanence, "
+        f"{grade.coercivity_at(temperature) / 1e3:.0f} kA/m of intrinsic coercivity and a knee at "
+        f"{number_text(found.knee)} T, a squareness of {grade.knee_share:g} taken. Currents off the d axis count in "
+        "both senses; short circuits are those of the cold winding. The first peak starts from the overload current on "
+        "the q axis at full speed; without resistance and saturation i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d. The field "
         f"holds up to the knee; what is lost beyond is not fed back. {grade.name}: {grade.source}."
     )
 
@@ -85,18 +85,19 @@ def _text(found: MagnetsOutcome) -> str:
 def remarks(found: MagnetsOutcome) -> Iterator[str]:
     """What the run says at once: whether the magnets hold, and at which current they go."""
     allowed = f"{_PERCENT * found.inputs.lost_max:g} %"
+    which = f"{found.inputs.grade.name} at {number_text(found.temperature)} °C"
     failing = [state for state in found.states if state.lost > found.inputs.lost_max]
     if failing:
-        worst = ", ".join(f"{_PERCENT * state.lost:.3g} % ({state.name})" for state in failing)
+        lost = ", ".join(f"{_PERCENT * state.lost:.3g} % ({state.name})" for state in failing)
         yield (
-            f"THE MAGNETS FAIL: of the volume of {found.inputs.grade.name} at {found.temperature:g} °C goes beyond the "
-            f"knee and is lost: {worst}; {allowed} are allowed. Take a grade with more coercivity "
-            "(materials.magnet_grade), longer magnets (machine.magnet_length_mm), or less current."
+            f"THE MAGNETS FAIL: of the volume of {which} goes beyond the knee and is lost: {lost}; {allowed} are "
+            "allowed. Take a grade with more coercivity (materials.magnet_grade), longer magnets "
+            "(machine.magnet_length_mm), or less current."
         )
     else:
         yield (
-            f"The magnets ({found.inputs.grade.name} at {found.temperature:g} °C) hold: {_PERCENT * found.lost:.3g} % "
-            f"of their volume goes beyond the knee in the worst state ({found.worst.name}), {allowed} are allowed."
+            f"The magnets ({which}) hold: {_PERCENT * found.lost:.3g} % of their volume goes beyond the knee in the "
+            f"worst state ({found.worst.name}), {allowed} are allowed."
         )
     yield f"Demagnetising current, against the magnets: {_demagnetising(found, allowed)}."
     if found.inputs.hot > found.inputs.grade.largest_temperature:
