@@ -1,5 +1,6 @@
 """What people read of the magnets: that they hold or fail, loudly, and where."""
 
+import json
 from dataclasses import replace
 from math import inf
 
@@ -11,6 +12,7 @@ from figures.magnets import magnets_at_worst
 from figures.report import render_report
 from magnetostatics.demagnetisation import MagnetMap
 from materials.magnet_grade import load_grade
+from pipeline.codec import decoded, encoded
 from report import magnets
 from tests.magnetostatics.reference_machine import reference_machine, section_of
 
@@ -68,3 +70,10 @@ def test_the_section_can_be_printed_and_the_picture_has_its_scale(weak, tmp_path
     figure.savefig(tmp_path / "figures" / "magnets.png")
     page = render_report((magnets.section(weak),), tmp_path, title="", subtitle="")
     assert "i_d = \N{MINUS SIGN}(ψ_m + |ψ_0|)/L_d" in page and "H_cJ at least 20 kOe" in page
+
+
+def test_it_can_be_written_and_read_again(weak):
+    text = json.dumps(encoded(replace(weak, demagnetising_current=inf)))
+    found = decoded(json.loads(text), [])
+    assert found.states == weak.states and found.inputs == weak.inputs and found.demagnetising_current == inf
+    assert np.array_equal(found.turn.flux, SEEN.flux)
