@@ -25,6 +25,7 @@ QUANTITIES: tuple[dict[str, float | None], ...] = (
     {"T": 1.0, "mT": 1e-3, "G": 1e-4, "kG": 0.1},
     {"Wb": 1.0, "mWb": 1e-3, "Vs": 1.0, "mVs": 1e-3},
     {"Wb_per_m": 1.0},
+    {"A_per_m": 1.0, "kA_per_m": 1e3},
     {"A_per_mm2": 1e6, "A_per_m2": 1.0, "A_per_cm2": 1e4},
     {"N": 1.0, "kN": 1e3, "mN": 1e-3},
     {"Nm": 1.0, "mNm": 1e-3},

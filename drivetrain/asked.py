@@ -19,10 +19,12 @@ class Requirement:
     """One demand in SI; the concrete ones below say how it is read off a design, and in words what it is.
 
     needed: a lower bound, an upper one where ``at_most``; needed, reached: [unit of the demand, SI]
+    stays: whether no lever moves it
     """
 
     needed: float
     at_most: ClassVar[bool] = False
+    stays: ClassVar[bool] = False
 
     def reached(self, design: ActuatorDesign) -> Values:
         """What a design reaches [unit of the demand, SI], one value for each of a batch."""
@@ -210,6 +212,7 @@ class Diameter(Requirement):
 
     diameter: float
     at_most = True
+    stays = True
 
     def reached(self, design: ActuatorDesign) -> Values:
         return self.diameter
@@ -219,6 +222,27 @@ class Diameter(Requirement):
 
     def unit(self, output: Output) -> str:
         return "mm"
+
+
+@dataclass(frozen=True)
+class LostMagnets(Requirement):
+    """Share of the magnets' volume that goes beyond the knee in the worst state, which no lever moves.
+
+    needed, reached, lost: dimensionless
+    """
+
+    lost: float
+    at_most = True
+    stays = True
+
+    def reached(self, design: ActuatorDesign) -> Values:
+        return self.lost
+
+    def name(self, output: Output) -> str:
+        return "volume of the magnets beyond the knee"
+
+    def unit(self, output: Output) -> str:
+        return "percent"
 
 
 @dataclass(frozen=True)

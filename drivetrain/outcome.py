@@ -17,6 +17,7 @@ from drivetrain.asked import (
     ControlledDamping,
     Diameter,
     EquivalentMass,
+    LostMagnets,
     LowSpeedDamping,
     PeakEffort,
     PeakEffortAtRest,
@@ -31,6 +32,7 @@ from drivetrain.nearest import NearestDesign, nearest_design
 from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVERS, Lever, Remedy, remedies
 from drivetrain.requirements import Linkage, Requirements
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.magnets_stage import MagnetsOutcome
 from electrical.winding_stage import WindingOutcome
 from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
@@ -104,7 +106,7 @@ class Outcome:
     """The designed actuator and how it stands against what is asked of it.
 
     checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
-    nearest: all levers together, None where every check of the requirements holds
+    nearest: all levers together, None where every requirement holds that they move
     masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
     active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
     load_inertia_ratio: inertia of the load relative to that of the drive, at the output; None without a load inertia
@@ -133,8 +135,11 @@ def outcome_stage(
     required: Requirements,
     linkage: Linkage,
     inputs: OutcomeInputs,
+    magnets: MagnetsOutcome | None = None,
 ) -> Outcome:
     """The actuator of machine, winding and gears against everything that is asked of it.
+
+    magnets: None where the study names no grade; then nothing is said of them.
 
     A requirement that does not hold is no error: the outcome says which input to move, by how much, and what would
     fail then. Raises GearError when the rotor does not fit its stator.
@@ -144,7 +149,8 @@ def outcome_stage(
     design = actuator_design(winding, flux_map, gears, masses, inputs)
     layout = actuator_layout(gears.train, machine_envelope(wound), inputs.housing)
     features = features_of(design, gears, linkage, layout, masses.total + gears.train.mass + inputs.casing_mass)
-    checks = tuple(one.check(design) for one in requirements_of(required, linkage, layout, inputs))
+    asked = (*requirements_of(required, linkage, layout, inputs), *_magnets_kept(magnets))
+    checks = tuple(one.check(design) for one in asked)
     levers = LEVERS if gears.train.stages else DIRECT_DRIVE_LEVERS
     return Outcome(
         features=features,
@@ -165,11 +171,11 @@ def outcome_stage(
 
 
 def _nearest(design: ActuatorDesign, checks: Sequence[Check], levers: Sequence[Lever]) -> NearestDesign | None:
-    """Of the demands that a lever moves."""
-    if all(one.holds for one in checks):
+    """None where every demand holds that a lever moves."""
+    moved = [one for one in checks if not one.requirement.stays]
+    if all(one.holds for one in moved):
         return None
-    asked = [one.requirement for one in checks if not isinstance(one.requirement, Diameter)]
-    return nearest_design(design, asked, levers)
+    return nearest_design(design, [one.requirement for one in moved], levers)
 
 
 def actuator_limits(found: Outcome) -> ActuatorLimits:
@@ -251,6 +257,11 @@ def _braking_of(required: Requirements) -> tuple[Requirement, ...]:
         return ()
     most = required.force_peak / required.velocity_rms
     return (ControlledDamping(min(required.maximum_damping, most), required.velocity_rms),)
+
+
+def _magnets_kept(magnets: MagnetsOutcome | None) -> tuple[Requirement, ...]:
+    """That short circuits and faults leave the magnets what they are; none where their grade is not known."""
+    return () if magnets is None else (LostMagnets(magnets.inputs.lost_max, magnets.lost),)
 
 
 def features_of(

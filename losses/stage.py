@@ -11,6 +11,7 @@ from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
 from electrical.plane import plane_dataset, plane_record
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.machine import Machine
+from losses.magnet import NDFEB_RESISTIVITY
 from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
@@ -33,12 +34,14 @@ class LossInputs:
     steel: of the study; loss_grade: grade whose data stand for it, None where the study names none
     winding_temperature: of the copper [degC], in the resistivity of the wound machine already
     iron_factor: iron loss over that of the data, dimensionless; another one where a bench has shown it
+    magnet_resistivity: [ohm m]
     """
 
     steel: str
     loss_grade: str | None
     winding_temperature: float
     iron_factor: float = 1.0
+    magnet_resistivity: float = NDFEB_RESISTIVITY
 
 
 @dataclass(frozen=True)
@@ -81,13 +84,17 @@ class LossMap:
 
 @dataclass(frozen=True)
 class LossTask:
-    """Iron and magnet losses at one current; direct, quadrature: ampere-turns of a coil on the axes [A peak]."""
+    """Iron and magnet losses at one current; direct, quadrature: ampere-turns of a coil on the axes [A peak].
+
+    resistivity: of the magnets [ohm m]
+    """
 
     case: FieldCase
     machine: Machine
     direct: float
     quadrature: float
     law: IronLossLaw
+    resistivity: float = NDFEB_RESISTIVITY
 
 
 def losses_stage(
@@ -104,7 +111,10 @@ def losses_stage(
     """
     law, wound = loss_law(inputs), winding.wound
     largest = _LARGEST * wound.turns * winding.limits.current_peak
-    tasks = {f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law) for d, q in grid(largest)}
+    resistivity = inputs.magnet_resistivity
+    tasks = {
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid(largest)
+    }
     found = workers.map("losses", losses_at_current, tasks)
     operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
     losses = power_losses(operating, wound, table_of(largest, list(found.values())))
@@ -130,7 +140,8 @@ def loss_law(inputs: LossInputs) -> IronLossLaw:
 def losses_at_current(task: LossTask) -> FieldLosses:
     """Iron and magnet losses at one current, whole machine per metre."""
     model = kept_model(task.case, task.machine)
-    return field_losses(model, current_point(model.section, task.direct, task.quadrature, task.case.packing), task.law)
+    point = current_point(model.section, task.direct, task.quadrature, task.case.packing)
+    return field_losses(model, point, task.law, resistivity=task.resistivity)
 
 
 def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> OperatingMap:

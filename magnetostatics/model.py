@@ -178,10 +178,21 @@ class FieldModel:
         return np.stack([self._magnet_load(m) for m in range(self.section.magnets)])
 
     def _magnet_load(self, number: int) -> np.ndarray:
-        elements, magnet = self._region(f"magnet_{number}"), self.materials.magnet_at(number)
-        direction = self.section.magnetisation_angle(number, elements.points) + magnet.axis_error
-        strength = (-1) ** number * magnet.remanence / (MU_0 * magnet.recoil_permeability)
-        return elements.scatter(elements.forces(-strength * np.sin(direction), strength * np.cos(direction)), self.size)
+        elements, magnet = self.magnet_elements(number), self.materials.magnet_at(number)
+        strength = magnet.remanence / (MU_0 * magnet.recoil_permeability)
+        x, y = self.magnetisation(number)
+        return elements.scatter(elements.forces(-strength * y, strength * x), self.size)
+
+    def magnet_elements(self, number: int) -> Elements:
+        """The elements of a magnet."""
+        return self._region(f"magnet_{number}")
+
+    def magnetisation(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the unit vector of the magnetisation at the quadrature points of a magnet, dimensionless, each
+        (Q, E); magnets of odd number point inwards."""
+        angle = self.section.magnetisation_angle(number, self.magnet_elements(number).points)
+        angle = angle + self.materials.magnet_at(number).axis_error
+        return (-1) ** number * np.cos(angle), (-1) ** number * np.sin(angle)
 
     @cached_property
     def phase_loads(self) -> np.ndarray:

@@ -1,7 +1,9 @@
 """Is a magnetisation curve stated in other units than its columns say? Two numbers of it give that away.
 
 The polarisation at saturation belongs to the alloy, and so does the largest permeability; both are known for every soft
-magnetic material within narrow bounds, while the usual slips of unit are factors of 80 to 10 000.
+magnetic material within narrow bounds, while the usual slips of unit are factors of 80 to 10 000. One slip is not seen:
+fields in oersted of a steel whose relative permeability never exceeds some 2500, such as cast steel; they look like
+A/m of a grain-oriented sheet.
 """
 
 from __future__ import annotations

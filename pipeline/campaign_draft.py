@@ -24,6 +24,7 @@ from materials.conductor import Conductor
 from study.errors import StudyError
 from study.inputs_drive import friction_at
 from study.inputs_electrical import winding_resistivity
+from study.magnet_choice import design_magnet
 from study.schema import Study
 from units import DEGREE, MILLIMETRE, RPM
 
@@ -255,7 +256,7 @@ _DIMENSIONS = (
 
 
 def _machine_device(designed: Designed) -> tuple[Entry, ...]:
-    wound, materials = designed.winding.wound, designed.study.materials
+    wound, magnet = designed.winding.wound, design_magnet(designed.study)
     machine = wound.machine
     pattern = "radial" if isinstance(machine.magnetisation, RadialMagnetisation) else "parallel"
     return (
@@ -265,9 +266,9 @@ def _machine_device(designed: Designed) -> tuple[Entry, ...]:
         *(_number(f"{name}_mm", getattr(machine, name) / MILLIMETRE) for name in _DIMENSIONS),
         _number("magnet_arc_fraction", machine.magnet_arc_fraction),
         Entry("magnetisation", f'"{pattern}"'),
-        _number("remanence_T", materials.remanence_T, "as the study counts on, at the magnets' working temperature"),
-        _number("recoil_permeability", materials.recoil_permeability),
-        Entry("steel", f'"{materials.steel}"'),
+        _number("remanence_T", magnet.remanence, "as the study counts on, at the magnets' working temperature"),
+        _number("recoil_permeability", magnet.recoil_permeability),
+        Entry("steel", f'"{designed.study.materials.steel}"'),
         _number("stacking_factor", 1.0, "the field of the design counts on solid steel"),
         _number("active_length_mm", wound.active_length / MILLIMETRE),
         Entry("turns_per_coil", str(wound.turns)),

@@ -20,6 +20,7 @@ from drivetrain.whole_search import optimise_stage
 from electrical.braking_stage import braking_stage
 from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
+from electrical.magnets_stage import magnets_stage
 from electrical.winding_selection import WindingError
 from electrical.winding_stage import winding_stage
 from gearbox.errors import GearError
@@ -47,6 +48,7 @@ from report import (
     gearbox,
     linkage,
     losses,
+    magnets,
     match,
     optimise,
     outcome,
@@ -64,6 +66,7 @@ from study.inputs_gearbox import gear_inputs
 from study.inputs_learned import (
     field_case_as_learned,
     loss_inputs_as_learned,
+    magnet_inputs_as_learned,
     outcome_inputs_as_learned,
     study_itself,
     winding_inputs_as_learned,
@@ -109,6 +112,10 @@ _SEARCHED: tuple[Node, ...] = (
 _GEARS: tuple[Node, ...] = (
     View(gear_demand),
     Stage("gearbox", gearbox_stage, "all tooth sets, rated", gearbox.files, remarks=gearbox.remarks),
+)
+_MAGNETS: tuple[Node, ...] = (
+    View(magnet_inputs_as_learned),
+    Stage("magnets", magnets_stage, "what they stand", magnets.files, remarks=magnets.remarks),
 )
 _MACHINE: tuple[Node, ...] = (
     Stage("sweep", sweep_stage, "designs solved over slots and radii"),
@@ -158,6 +165,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_VEHICLE if driven else _STATED),
         *(_SEARCHED if searched else (Source(stated_linkage),)),
         *_MACHINE,
+        *(_MAGNETS if _has_grade(study) else ()),
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
@@ -170,6 +178,11 @@ def _has_loss_data(study: Study) -> bool:
     except LossError:
         return False
     return True
+
+
+def _has_grade(study: Study) -> bool:
+    """Whether the study says whose knee its magnets have; without it they are not held against demagnetisation."""
+    return study.materials.magnet_grade is not None
 
 
 def _sections(study: Study) -> tuple[Function, ...]:
@@ -189,6 +202,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         winding.section,
         drive.section,
         braking.section,
+        *((magnets.section,) if _has_grade(study) else ()),
         losses.section,
         *((ride.section,) if driven else ()),
     )

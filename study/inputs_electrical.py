@@ -10,6 +10,7 @@ from electrical.winding_stage import WindingInputs
 from losses.stage import LossInputs
 from magnetostatics.flux_map_stage import ANGLES, CURRENTS, FluxMapGrid
 from materials.conductor import Conductor
+from study.magnet_choice import magnet_resistivity
 from study.schema import Study
 
 
@@ -38,7 +39,12 @@ def winding_inputs(study: Study) -> WindingInputs:
 def loss_inputs(study: Study) -> LossInputs:
     """Whose loss data stand for the study's steel."""
     section = study.winding_selection.si
-    return LossInputs(study.materials.steel, study.materials.loss_grade, section.winding_temperature)
+    return LossInputs(
+        steel=study.materials.steel,
+        loss_grade=study.materials.loss_grade,
+        winding_temperature=section.winding_temperature,
+        magnet_resistivity=magnet_resistivity(study),
+    )
 
 
 COLD, HOT = 20.0, 120.0  # degC; a winding of class B (130 degC, IEC 60085) less ten for its hottest place

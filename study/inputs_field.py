@@ -8,10 +8,10 @@ from geometry.half_cell import MeshDensity
 from magnetostatics.case import FieldCase
 from magnetostatics.model import MachineMaterials
 from materials.library import load_steel
-from materials.magnet import Magnet
 from optimisation.states import READINGS
 from optimisation.sweep import SaturationLimit, SweepGrid
 from study.inputs_machine import machine_family, mesh_density
+from study.magnet_choice import design_magnet
 from study.schema import Study
 
 # Twice the resolution of the sweep, for single states that are looked at.
@@ -37,8 +37,7 @@ def field_case(study: Study) -> FieldCase:
 def machine_materials(study: Study) -> MachineMaterials:
     """Steel, whose path counts from the study file, and magnet with the remanence at the working temperature."""
     steel = load_steel(study.materials.steel, study.path.parent)
-    section = study.materials.si
-    return MachineMaterials(steel, steel, Magnet(section.remanence, section.recoil_permeability))
+    return MachineMaterials(steel, steel, design_magnet(study))
 
 
 def sweep_grid(study: Study) -> SweepGrid:

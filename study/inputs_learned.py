@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from drivetrain.learned import IRON_LOSS, RESISTANCE, Learned, case_as_learned
+from drivetrain.learned import IRON_LOSS, RECOIL, REMANENCE, RESISTANCE, Learned, case_as_learned
 from drivetrain.outcome import OutcomeInputs
+from electrical.magnets_stage import MagnetInputs
 from electrical.winding_stage import WindingInputs
 from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
 from study.inputs_electrical import loss_inputs, winding_inputs
 from study.inputs_field import field_case
+from study.inputs_magnets import magnet_inputs
 from study.inputs_outcome import outcome_inputs
 from study.schema import Study
 
@@ -36,6 +38,17 @@ def loss_inputs_as_learned(study: Study, learned: Learned) -> LossInputs:
     """The loss data with the iron loss of the bench."""
     inputs = loss_inputs(study)
     return replace(inputs, iron_factor=inputs.iron_factor * learned.of(IRON_LOSS))
+
+
+def magnet_inputs_as_learned(study: Study, learned: Learned) -> MagnetInputs:
+    """The grade with the remanence and the recoil line of the bench; its coercivity stays."""
+    inputs = magnet_inputs(study)
+    grade = replace(
+        inputs.grade,
+        remanence=inputs.grade.remanence * learned.of(REMANENCE),
+        recoil_permeability=inputs.grade.recoil_permeability * learned.of(RECOIL),
+    )
+    return replace(inputs, grade=grade)
 
 
 def outcome_inputs_as_learned(study: Study, learned: Learned) -> OutcomeInputs:

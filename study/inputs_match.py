@@ -19,6 +19,7 @@ from drivetrain.whole_search import WholeSearchInputs
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
 from study.inputs_electrical import winding_resistivity
+from study.magnet_choice import magnet_density
 from study.needed import needed
 from study.schema import MatchSection, Study
 
@@ -51,7 +52,7 @@ def part_materials(study: Study) -> PartMaterials:
     materials = study.materials.si
     return PartMaterials(
         lamination_density=materials.lamination_density,
-        magnet_density=materials.magnet_density,
+        magnet_density=magnet_density(study),
         copper_density=materials.copper_density,
         shaft_density=study.match.si.steel_density,
         stacking=study.machine.stacking_factor,

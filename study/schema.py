@@ -111,20 +111,55 @@ class MachineSection(Section):
 
 
 class MaterialsSection(Section):
-    """Steel, magnet and copper."""
+    """Steel, magnet and copper.
+
+    What is stated of the magnets holds for the field; what is not follows from their grade.
+    """
 
     steel: Annotated[str, Field(min_length=1)]
     loss_grade: str | None = None  # whose iron-loss data stand in for the steel's: losses, optimise
-    remanence_T: Annotated[float, Quantity("remanence of the magnets B_r", 0.05, 2)]
-    recoil_permeability: Annotated[float, Quantity("relative recoil permeability of the magnets", 1, 2)]
+    magnet_grade: Annotated[str | None, Field(min_length=1)] = None  # whose knee counts in demagnetisation: magnets
+    magnet_temperature_degC: Annotated[
+        float | None, Quantity("temperature of the magnets at which their grade gives the remanence", -60, 350)
+    ] = None
+    remanence_T: Annotated[float | None, Quantity("remanence of the magnets B_r", 0.05, 2)] = None
+    recoil_permeability: Annotated[float | None, Quantity("relative recoil permeability of the magnets", 1, 2)] = None
     copper_resistivity_Ohm_m: Annotated[float, Quantity("copper resistivity at its reference temperature", 1e-8, 1e-7)]
     copper_reference_temperature_degC: Annotated[float, Quantity("temperature of the copper resistivity", -50, 200)]
     copper_temperature_coefficient_per_K: Annotated[
         float, Quantity("linear temperature coefficient of the copper resistivity", 0, 0.02)
     ]
     lamination_density_kg_per_m3: Annotated[float, Quantity("density of the electrical steel", 1000, 20000)]
-    magnet_density_kg_per_m3: Annotated[float, Quantity("density of the magnets", 1000, 20000)]
+    magnet_density_kg_per_m3: Annotated[float | None, Quantity("density of the magnets", 1000, 20000)] = None
     copper_density_kg_per_m3: Annotated[float, Quantity("density of the copper", 1000, 20000)]
+
+    @model_validator(mode="after")
+    def _magnets_are_stated_or_of_a_grade(self) -> Self:
+        own = ("remanence_T", "recoil_permeability", "magnet_density_kg_per_m3")
+        missing = [key for key in own if getattr(self, key) is None]
+        if missing and self.magnet_grade is None:
+            raise ValueError(f"lacks {' and '.join(missing)}; add it, or magnet_grade, which has it")
+        if self.remanence_T is None and self.magnet_temperature_degC is None:
+            raise ValueError("has a magnet_grade without magnet_temperature_degC; add it, or state remanence_T itself")
+        if self.remanence_T is not None and self.magnet_temperature_degC is not None:
+            raise ValueError("states remanence_T and magnet_temperature_degC, which would give another; leave one out")
+        return self
+
+
+class MagnetsSection(Section):
+    """What the magnets must stand; what is not stated has the default of ``study.inputs_magnets``."""
+
+    cold_temperature_degC: Annotated[float | None, Quantity("coldest temperature of the magnets", -60, 100)] = None
+    hot_temperature_degC: Annotated[float | None, Quantity("hottest temperature of the magnets", 0, 350)] = None
+    lost_volume_max_percent: Annotated[
+        float | None, Quantity("share of the magnets' volume that may go beyond the knee", 0, 100)
+    ] = None
+
+    @model_validator(mode="after")
+    def _ends_are_in_order(self) -> Self:
+        if self.cold_temperature_degC is not None and self.hot_temperature_degC is not None:
+            _require_order(self, "cold_temperature_degC", "hot_temperature_degC", equal_allowed=True)
+        return self
 
 
 class WindingSection(Section):
@@ -530,6 +565,7 @@ class Study(Section):
     study: StudySection
     machine: MachineSection
     materials: MaterialsSection
+    magnets: MagnetsSection = MagnetsSection()
     winding: WindingSection
     mesh: MeshSection = MeshSection()
     sweep: SweepSection

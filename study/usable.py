@@ -23,6 +23,7 @@ from study.errors import StudyError
 from study.inputs_linkage import linkage_search, stated_hardpoints
 from study.inputs_machine import machine_family, mesh_density
 from study.inputs_vehicle import ride_case
+from study.magnet_choice import design_magnet
 from study.read import check_winding, sentence_part, with_keys
 from study.schema import Study
 from units import MILLIMETRE, SQUARE_MILLIMETRE
@@ -33,7 +34,7 @@ FEWEST_DIAMETERS = 4  # a quadratic through three points has no residual, so tha
 
 def check_study(study: Study) -> None:
     """Raise StudyError with one sentence for the first thing that would stop a run of the whole study."""
-    for check in (check_diameters, check_windings, check_steel, check_sweep, check_libraries):
+    for check in (check_diameters, check_windings, check_steel, check_magnets, check_sweep, check_libraries):
         check(study)
 
 
@@ -62,6 +63,11 @@ def check_steel(study: Study) -> None:
         raise StudyError(f"{key} cannot be used, {sentence_part(error)}.") from error
     except (OSError, UnicodeDecodeError) as error:
         raise StudyError(f"{key} cannot be read ({error}); give a readable csv file or a known grade.") from error
+
+
+def check_magnets(study: Study) -> None:
+    """The grade of the magnets must exist, and what the study states beside it must be its own."""
+    design_magnet(study)
 
 
 def check_sweep(study: Study) -> None:

@@ -2,6 +2,7 @@
 
 import json
 from math import pi
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -127,6 +128,14 @@ def test_controlled_damping_asks_for_no_more_than_the_peak_effort(found):
     most = ASKED.force_peak / ASKED.velocity_rms
     assert most < ASKED.maximum_damping, "else this shows nothing"
     assert table.loc[name].needed == pytest.approx(most / 1e3)
+
+
+@pytest.mark.parametrize("lost, holds", [(0.004, "yes"), (0.04, "NO")])
+def test_magnets_that_are_lost_are_a_requirement(winding, field, gears, inputs, lost, holds):
+    magnets = SimpleNamespace(inputs=SimpleNamespace(lost_max=0.01), lost=lost)
+    found = outcome_stage(winding, field, gears, ASKED, Linkage(0.170, 0.175), inputs, magnets)
+    row = checks_table(found, Wheel()).set_index("requirement").loc["volume of the magnets beyond the knee"]
+    assert (row.needed, row.reached, row.unit, row.sense, row.holds) == (1.0, 100 * lost, "%", "at most", holds)
 
 
 def test_tables_are_in_drawing_units(found):

@@ -36,6 +36,7 @@ def test_the_shipped_curves_look_right(curve):
         (1e-2, 1, ["H_A_per_m", "A/cm"]),
         (1 / OERSTED, 1, ["H_A_per_m", "oersted"]),
         (1e3, 1, ["H_A_per_m", "mA/m"]),
+        (1 / OERSTED, 1e4, ["B_T", "looks like gauss"]),  # a whole table in CGS
     ],
 )
 def test_a_slip_of_unit_names_its_column(curve, field, flux, named):

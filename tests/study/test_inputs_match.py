@@ -62,7 +62,7 @@ def test_stated_demands_stand_beside_those_of_a_vehicle(motorcycle):
     assert stated_demands(as_stated) is None  # they are the ones that are met
 
 
-@pytest.mark.parametrize("key", ["materials.magnet_density_kg_per_m3", "machine.stacking_factor"])
+@pytest.mark.parametrize("key", ["materials.lamination_density_kg_per_m3", "machine.stacking_factor"])
 def test_an_older_study_is_told_what_to_add(tmp_path, key):
     text = open("studies/motorcycle.toml", encoding="utf-8").read()
     path = tmp_path / "older.toml"
