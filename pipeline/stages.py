@@ -22,6 +22,7 @@ from electrical.drive_stage import drive_stage
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.winding_selection import WindingError
 from electrical.winding_stage import winding_stage
+from export.stage import package_stage
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.machine import GeometryError
@@ -40,6 +41,7 @@ from optimisation.sweep import sweep_stage
 from pipeline.graph import Function, Graph, Node, Source, Stage, View
 from report import (
     braking,
+    datasheet,
     drive,
     fields,
     fits,
@@ -50,6 +52,7 @@ from report import (
     match,
     optimise,
     outcome,
+    package,
     requirements,
     ride,
     sweep,
@@ -70,6 +73,7 @@ from study.inputs_learned import (
 )
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_package import part_prices
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from vehicle.demands import required, requirements_stage
@@ -84,7 +88,7 @@ REFUSALS = (
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat,
+    gear_inputs, output, copper_heat, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -159,6 +163,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_SEARCHED if searched else (Source(stated_linkage),)),
         *_MACHINE,
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
+        Stage("package", package_stage, "what parts are ordered by", package.files),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 
@@ -176,6 +181,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
     """Of the report, in reading order."""
     driven = drives(study)
     return (
+        datasheet.section,
         outcome.section,
         requirements.section if driven else requirements.stated_section,
         *_linkage_sections(study),
@@ -190,6 +196,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         drive.section,
         braking.section,
         losses.section,
+        package.section,
         *((ride.section,) if driven else ()),
     )
 

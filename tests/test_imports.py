@@ -26,8 +26,9 @@ ALLOWED = {
     "workbench": {"effects", *_FIELD, "figures"},
     "study": _DESIGN,
     "figures": _DESIGN - {"optimisation", "materials"},
-    "report": {*_DESIGN, "figures"} - {"materials"},
-    "pipeline": {*_DESIGN, "study", "figures", "report", "effects", "workbench"},
+    "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain"},
+    "report": {*_DESIGN, "figures", "export"} - {"materials"},
+    "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench"},
 }
 BOTTOM = {"units", "tasks", "disk", "processes"}
 
