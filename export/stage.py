@@ -14,6 +14,7 @@ from drivetrain.outcome import Outcome
 from electrical.braking_stage import BrakingOutcome
 from electrical.dq import mtpa_currents
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.connections import Connection, connections
 from geometry.winding import WindingLayout
@@ -68,6 +69,7 @@ class Package:
     continuous: at the nominal current density and the rated speed; overload: at full current and the rated speed
     losses: at the continuous point, None where the study has no loss data
     short_circuit: of the phases; cogging: largest torque without current [Nm], None where no field was solved for it
+    unsaturated: constant parameters without current, slopes of the flux map there
     """
 
     layout: WindingLayout
@@ -79,6 +81,7 @@ class Package:
     losses: PointLosses | None
     short_circuit: ShortCircuit
     cogging: float | None
+    unsaturated: SynchronousMachine
 
 
 def package_stage(
@@ -107,6 +110,7 @@ def package_stage(
         losses=None if losses is None else losses_at(losses.losses, continuous.torque, continuous.speed),
         short_circuit=short_circuit_of(braking),
         cogging=cogging_of(rotations, wound.active_length),
+        unsaturated=unsaturated_machine(machine),
     )
 
 
@@ -119,6 +123,13 @@ def least_current_state(machine: FluxMapMachine, current_peak: float, speed: flo
     v_d, v_q = (float(v) for v in machine.voltage(i_d, i_q, speed))
     torque, power = float(machine.torque(i_d, i_q)), 1.5 * (v_d * i_d + v_q * i_q)
     return OperatingState(torque, speed, i_d, i_q, float(np.hypot(v_d, v_q)), power)
+
+
+def unsaturated_machine(machine: FluxMapMachine) -> SynchronousMachine:
+    """Magnet flux linkage, and incremental inductances without current."""
+    (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
+    psi_m = float(machine.flux_linkage(0.0, 0.0)[0])
+    return SynchronousMachine(machine.pole_pairs, psi_m, float(l_dd), float(l_qq), machine.resistance)
 
 
 def short_circuit_of(braking: BrakingOutcome) -> ShortCircuit:

@@ -23,6 +23,7 @@ from electrical.flux_map_machine import FluxMapMachineError
 from electrical.winding_selection import WindingError
 from electrical.winding_stage import winding_stage
 from export.stage import package_stage
+from export.step import StepError
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.machine import GeometryError
@@ -83,7 +84,7 @@ from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
     FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, VehicleError, WindingError,
+    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (

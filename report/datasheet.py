@@ -26,7 +26,7 @@ from losses.stage import LossInputs, LossMap
 from magnetostatics.case import FieldCase
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
 
-DRAWING = "lamination"  # name of the picture
+DRAWING_PICTURE = "lamination"
 TABLE = "datasheet.csv"
 _THOUSAND_RPM = 1000 * RPM  # rad/s, at which data sheets state a back-EMF
 
@@ -80,8 +80,8 @@ def data_sheet(
         Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
         Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
         Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
-        Group("Losses at the rated point", tuple(loss_rows(package, winding, inputs))),
-        Group("Constants", tuple(constants(winding))),
+        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs))),
+        Group("Constants", tuple(constants(package, winding))),
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
         Group("Masses and inertia", tuple(mass_rows(outcome.masses))),
     )
@@ -106,7 +106,7 @@ def section(
         (
             _text(losses),
             Picture(
-                picture_name(DRAWING),
+                picture_name(DRAWING_PICTURE),
                 "Cross-section with its dimensions in mm; coil sides in the colours of phases A, B and C, light where "
                 "a positive phase current flows away from the viewer.",
             ),
@@ -140,8 +140,8 @@ def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Itera
     yield row("active length", wound.active_length, "mm", "stack")
     length = wound.active_length + 2 * envelope.end_winding_length
     yield row("length over the end windings", length, "mm", "half circles over the pitch of a coil")
-    yield row("magnet thickness", machine.magnet_length, "mm", f"{machine.poles} pieces on the rotor core")
     yield Row("electrical steel", steel.steel, "", "stator and rotor laminations")
+    yield row("magnet thickness", machine.magnet_length, "mm", f"{machine.poles} pieces on the rotor core")
     yield row("magnet arc", machine.magnet_arc_fraction, "", "of the pole pitch")
     yield Row("magnetisation", _pattern(machine), "", "of each magnet, outwards and inwards in turn")
     yield row("remanence", magnet.remanence, "T", "at the working temperature of the magnets")
@@ -162,17 +162,18 @@ def winding_rows(package: Package, winding: WindingOutcome, inputs: WindingInput
         yield row("phase resistance", wound.phase_resistance * factor, "mOhm", f"{temperature:g} °C, direct current")
 
 
-def constants(winding: WindingOutcome) -> Iterator[Row]:
+def constants(package: Package, winding: WindingOutcome) -> Iterator[Row]:
     """What a drive is set up with."""
-    chosen, pairs = winding.chosen, winding.wound.machine.pole_pairs
-    flux = chosen.no_load_torque_constant / (1.5 * pairs)
+    chosen, idle = winding.chosen, package.unsaturated
     full = f"at {chosen.current_peak:.4g} A"
-    yield row("magnet flux linkage", flux, "mWb", "of a phase, peak, no load")
-    yield row("L_d", chosen.inductance_d, "uH", f"{full} on the q axis and a quarter of it against the magnets")
-    yield row("L_q", chosen.inductance_q, "uH", f"{full} on the q axis")
+    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load")
+    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load")
+    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load")
+    yield row("L_d", chosen.inductance_d, "uH", f"phase, apparent, {full} on the q axis and a quarter of it against d")
+    yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis")
     yield row("torque constant", chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load")
     yield row("torque constant", chosen.torque_constant, "mNm_per_A", f"per peak ampere, {full} on the q axis")
-    emf = sqrt(3) * pairs * flux * _THOUSAND_RPM
+    emf = sqrt(3) * idle.pole_pairs * idle.psi_m * _THOUSAND_RPM
     yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm")
     yield row("back-EMF", emf / sqrt(2), "V", "line to line, RMS of the fundamental, at 1000 rpm")
 
@@ -201,14 +202,14 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
 
 
-def loss_rows(package: Package, winding: WindingOutcome, inputs: WindingInputs) -> Iterator[Row]:
+def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs) -> Iterator[Row]:
     """Losses and efficiency; none where the study has no loss data."""
     losses, rated = package.losses, package.continuous
     if losses is None:
         return
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     yield row("power", losses.power_out, "W", f"mechanical, {at}")
-    yield row("copper loss", losses.copper, "W", "at the temperature of the winding in the study")
+    yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
     yield row("stator iron loss", losses.stator_iron, "W")
     yield row("rotor iron loss", losses.rotor_iron, "W")
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
+from functools import partial
 
 import pandas as pd
 
@@ -11,18 +12,34 @@ from drivetrain.outcome import Outcome
 from drivetrain.output import Output
 from electrical.braking_stage import BrakingOutcome, CopperHeat
 from electrical.winding_stage import WindingInputs, WindingOutcome
+from export.dxf import laminations, write_dxf
+from export.motulator import parameter_text
 from export.stage import Package
-from figures.files import File, figure_file, picture_name, table_file
+from export.step import active_parts, write_step
+from figures.files import File, drawing_file, figure_file, picture_name, table_file, text_file
 from figures.lamination import lamination
 from figures.report import Picture, Section, Table
 from figures.style import PHASE_NAMES
 from figures.winding_diagram import winding_diagram
 from geometry.connections import Connection
+from geometry.outline import outline_of
 from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
-from report.datasheet import DRAWING, TABLE, data_sheet, table_of
+from report.datasheet import DRAWING_PICTURE, TABLE, data_sheet, table_of
 
 CONNECTIONS, COSTS, DIAGRAM = "winding_connections.csv", "mass_and_cost.csv", "winding_diagram"
+DRAWING, SOLIDS, PARAMETERS = "drawing.pdf", "active_parts.step", "motulator_parameters.json"
+_FILES = {
+    TABLE: "the data sheet",
+    DRAWING: "the lamination with its dimensions",
+    "lamination_stator.dxf": "outline of the stator lamination, mm, arcs and lines as closed polylines",
+    "lamination_rotor.dxf": "outline of the rotor lamination with the bore of the shaft",
+    "magnets.dxf": "every magnet in its place",
+    SOLIDS: "stator stack, rotor core, shaft and magnets as solids over the active length, mm",
+    CONNECTIONS: "connection of the coils",
+    COSTS: "masses and costs by part",
+    PARAMETERS: "the machine for drive simulation by the names of motulator's SynchronousMachinePars, SI",
+}
 
 
 def files(
@@ -41,8 +58,20 @@ def files(
     yield table_file(TABLE, table_of(tuple(row for group in sheet for row in group.rows)))
     yield table_file(CONNECTIONS, connections_table(package))
     yield table_file(COSTS, costs_table(package))
-    yield figure_file(DRAWING, lamination(winding.wound.machine, package.layout))
+    drawing = lamination(winding.wound.machine, package.layout)
+    yield figure_file(DRAWING_PICTURE, drawing)
+    yield drawing_file(DRAWING, drawing)
     yield figure_file(DIAGRAM, winding_diagram(package.layout, package.connections, _diagram_title(winding)))
+    yield from _for_the_workshop(winding)
+    yield text_file(PARAMETERS, parameter_text(winding.constant, package.unsaturated))
+
+
+def _for_the_workshop(winding: WindingOutcome) -> Iterator[File]:
+    """Outlines to cut by, and the solids."""
+    outline, length = outline_of(winding.wound.machine), winding.wound.active_length
+    for name, layers in laminations(outline).items():
+        yield File(name, partial(write_dxf, layers=layers))
+    yield File(SOLIDS, partial(write_step, parts=active_parts(outline), length=length))
 
 
 def section(package: Package) -> Section:
@@ -52,8 +81,8 @@ def section(package: Package) -> Section:
         (
             Picture(
                 picture_name(DIAGRAM),
-                "The stator unrolled, seen with the leads at the top: slots along the axis, numbers of the teeth on "
-                "them, of the coils below; arrows along a positive phase current.",
+                "The stator unrolled, seen from outside with the leads at the top: slots along x, numbers of the teeth "
+                "on them, of the coils below; arrows along a positive phase current.",
             ),
             Table(
                 connections_table(package),
@@ -62,6 +91,7 @@ def section(package: Package) -> Section:
                 f"other way round. In {CONNECTIONS} too.",
             ),
             Table(costs_table(package), _costs_caption(package)),
+            Table(pd.DataFrame(_FILES.items(), columns=["file", "what is in it"]), "Files beside this report."),
         ),
     )
 

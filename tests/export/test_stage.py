@@ -135,7 +135,7 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
     assert value(table, "turns") == winding.wound.turns and value(table, "poles") == 10
     cold, hot = table.value[table.quantity == "phase resistance"]
     assert cold == pytest.approx(1e3 * winding.wound.phase_resistance) and hot == pytest.approx(1.393 * cold)
-    assert value(table, "L_d") == pytest.approx(1e6 * winding.chosen.inductance_d)
+    assert value(table, "L_d", "apparent") == pytest.approx(1e6 * winding.chosen.inductance_d)
     assert value(table, "cogging torque") == pytest.approx(COGGING * winding.wound.active_length)
     assert value(table, "efficiency") == pytest.approx(100 * found.losses.efficiency)
     assert value(table, "active parts") == pytest.approx(outcome.masses.total)
@@ -183,4 +183,7 @@ def test_files(found, winding, brake, outcome, tmp_path):
     coils = pd.read_csv(tmp_path / "winding_connections.csv")
     assert len(coils) == 12 and set(coils.phase) == set("ABC")
     assert (coils["connected to"] == "star point").sum() == 3
-    assert {one.name for one in files} >= {"figures/lamination.png", "figures/winding_diagram.png"}
+    names = {one.name for one in files}
+    assert names - set(package_report._FILES) == {"figures/lamination.png", "figures/winding_diagram.png"}
+    assert set(package_report._FILES) <= names, "the report names files that are written"
+    assert (tmp_path / "drawing.pdf").read_bytes()[:5] == b"%PDF-"
