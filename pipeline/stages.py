@@ -165,6 +165,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *_MACHINE,
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
         Stage("package", package_stage, "what parts are ordered by", package.files),
+        View(datasheet.data_sheet),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 

@@ -1,7 +1,7 @@
 """The data sheet: everything that one asks of a machine before ordering it, one quantity a row.
 
-A group of rows is a function of what it reads. Another stage's numbers join as a function of their own, listed in
-``data_sheet``; each row says its condition, since a torque or a resistance is nothing without one.
+A group of rows is a function of what it reads. Another stage's numbers join as a row in a group, or as a function of
+their own in ``data_sheet``; a row says its condition, since a torque or a resistance is nothing without one.
 """
 
 from __future__ import annotations
@@ -22,12 +22,17 @@ from export.stage import Package
 from figures.files import picture_name
 from figures.report import Picture, Section, Table
 from geometry.machine import Machine
-from losses.stage import LossInputs, LossMap
+from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
 
 DRAWING_PICTURE = "lamination"
 TABLE = "datasheet.csv"
+_TEXT = (
+    "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star; peak "
+    "means amplitude. The rated point is the torque at the nominal current density, at the speed up to which the full "
+    f"current gives its torque. {TABLE} holds the same rows."
+)
 _THOUSAND_RPM = 1000 * RPM  # rad/s, at which data sheets state a back-EMF
 
 
@@ -54,6 +59,18 @@ class Group:
         return table_of(self.rows)
 
 
+@dataclass(frozen=True)
+class DataSheet:
+    """The whole sheet, group by group."""
+
+    groups: tuple[Group, ...]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Columns quantity, value, unit, condition."""
+        return table_of(tuple(one for group in self.groups for one in group.rows))
+
+
 def row(quantity: str, value: float, unit: str, condition: str = "") -> Row:
     """A row of a value in SI, shown in a unit of ``units.FACTORS``; empty for a pure number."""
     return Row(quantity, in_unit(value, unit) if unit else value, written(unit), condition)
@@ -74,9 +91,9 @@ def data_sheet(
     braking: BrakingOutcome,
     outcome: Outcome,
     output: Output,
-) -> tuple[Group, ...]:
-    """The whole sheet, group by group."""
-    return (
+) -> DataSheet:
+    """Every group of rows; a group without rows is left out."""
+    groups = (
         Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
         Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
         Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
@@ -85,42 +102,22 @@ def data_sheet(
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
         Group("Masses and inertia", tuple(mass_rows(outcome.masses))),
     )
+    return DataSheet(tuple(group for group in groups if group.rows))
 
 
-def section(
-    package: Package,
-    case: FieldCase,
-    steel: LossInputs,
-    winding: WindingOutcome,
-    inputs: WindingInputs,
-    heat: CopperHeat,
-    braking: BrakingOutcome,
-    outcome: Outcome,
-    losses: LossMap | None,
-    output: Output,
-) -> Section:
-    """The machine on one page, with the files that it is ordered by."""
-    groups = data_sheet(package, case, steel, winding, inputs, heat, braking, outcome, output)
+def section(sheet: DataSheet) -> Section:
+    """The machine on one page."""
     return Section(
         "Data sheet",
         (
-            _text(losses),
+            _TEXT,
             Picture(
                 picture_name(DRAWING_PICTURE),
                 "Cross-section with its dimensions in mm; coil sides in the colours of phases A, B and C, light where "
                 "a positive phase current flows away from the viewer.",
             ),
-            *(Table(group.table, f"{group.title}.") for group in groups if group.rows),
+            *(Table(group.table, f"{group.title}.") for group in sheet.groups),
         ),
-    )
-
-
-def _text(losses: LossMap | None) -> str:
-    iron = "" if losses is None else f" Iron losses rest on the loss data of {losses.law.grade}."
-    return (
-        "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star; "
-        "peak means amplitude. The rated point is the torque at the nominal current density, at the speed up to which "
-        f"the full current gives its torque. {TABLE} holds the same rows.{iron}"
     )
 
 
@@ -210,8 +207,8 @@ def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs) -> Ite
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     yield row("power", losses.power_out, "W", f"mechanical, {at}")
     yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
-    yield row("stator iron loss", losses.stator_iron, "W")
-    yield row("rotor iron loss", losses.rotor_iron, "W")
+    yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
+    yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
     yield row("losses", losses.total, "W", "without bearings, windage and inverter")
     yield row("efficiency", losses.efficiency, "percent", at)

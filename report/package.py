@@ -8,10 +8,7 @@ from functools import partial
 
 import pandas as pd
 
-from drivetrain.outcome import Outcome
-from drivetrain.output import Output
-from electrical.braking_stage import BrakingOutcome, CopperHeat
-from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.winding_stage import WindingOutcome
 from export.dxf import laminations, write_dxf
 from export.motulator import parameter_text
 from export.stage import Package
@@ -23,9 +20,7 @@ from figures.style import PHASE_NAMES
 from figures.winding_diagram import winding_diagram
 from geometry.connections import Connection
 from geometry.outline import outline_of
-from losses.stage import LossInputs
-from magnetostatics.case import FieldCase
-from report.datasheet import DRAWING_PICTURE, TABLE, data_sheet, table_of
+from report.datasheet import DRAWING_PICTURE, TABLE, DataSheet
 
 CONNECTIONS, COSTS, DIAGRAM = "winding_connections.csv", "mass_and_cost.csv", "winding_diagram"
 DRAWING, SOLIDS, PARAMETERS = "drawing.pdf", "active_parts.step", "motulator_parameters.json"
@@ -42,20 +37,9 @@ _FILES = {
 }
 
 
-def files(
-    package: Package,
-    case: FieldCase,
-    steel: LossInputs,
-    winding: WindingOutcome,
-    inputs: WindingInputs,
-    heat: CopperHeat,
-    braking: BrakingOutcome,
-    outcome: Outcome,
-    output: Output,
-) -> Iterator[File]:
-    """Data sheet, winding and costs as tables, and their figures."""
-    sheet = data_sheet(package, case, steel, winding, inputs, heat, braking, outcome, output)
-    yield table_file(TABLE, table_of(tuple(row for group in sheet for row in group.rows)))
+def files(package: Package, winding: WindingOutcome, sheet: DataSheet) -> Iterator[File]:
+    """Data sheet, winding, costs, drawing, and what the workshop and other tools read."""
+    yield table_file(TABLE, sheet.table)
     yield table_file(CONNECTIONS, connections_table(package))
     yield table_file(COSTS, costs_table(package))
     drawing = lamination(winding.wound.machine, package.layout)

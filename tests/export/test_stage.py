@@ -111,8 +111,7 @@ def test_the_brake_is_seen_at_the_rotor(found, brake):
 
 
 def sheet(package, winding, brake, outcome, output=Wheel()):
-    groups = datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, output)
-    return datasheet.table_of(tuple(row for group in groups for row in group.rows))
+    return datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, output)
 
 
 def value(table, quantity, condition=""):
@@ -121,7 +120,7 @@ def value(table, quantity, condition=""):
 
 
 def test_the_back_emf_is_the_voltage_of_the_idle_machine(found, winding, brake, outcome):
-    table = sheet(found, winding, brake, outcome)
+    table = sheet(found, winding, brake, outcome).table
     voltage = np.hypot(*winding.wound.on_map(MAP.data).voltage(0.0, 0.0, 1000 * RPM))
     assert value(table, "back-EMF", "peak") == pytest.approx(sqrt(3) * voltage, rel=1e-4)
     flux = winding.wound.on_map(MAP.data).flux_linkage(0.0, 0.0)[0]
@@ -129,7 +128,7 @@ def test_the_back_emf_is_the_voltage_of_the_idle_machine(found, winding, brake, 
 
 
 def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, outcome):
-    table = sheet(found, winding, brake, outcome)
+    table = sheet(found, winding, brake, outcome).table
     assert value(table, "active length") == pytest.approx(1e3 * winding.wound.active_length)
     assert value(table, "peak torque") == winding.peak_torque
     assert value(table, "turns") == winding.wound.turns and value(table, "poles") == 10
@@ -143,7 +142,7 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
 
 
 def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outcome):
-    table = sheet(found, winding, brake, outcome)
+    table = sheet(found, winding, brake, outcome).table
     assert value(table, "electrical steel") == "35PN270" and value(table, "magnetisation") == "parallel"
     pure = set(table.quantity[table.unit == ""])
     words = {"electrical steel", "magnetisation", "connection"}
@@ -153,14 +152,15 @@ def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outco
 
 
 def test_what_was_not_computed_is_not_on_the_sheet(bare, winding, brake, outcome):
-    quantities = set(sheet(bare, winding, brake, outcome).quantity)
+    found = sheet(bare, winding, brake, outcome)
+    quantities = set(found.table.quantity)
     assert not quantities & {"efficiency", "cogging torque"} and "continuous torque" in quantities
-    section = datasheet.section(bare, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, None, Wheel())
-    assert not [part for part in section.content if getattr(part, "caption", "").startswith("Losses")]
+    captions = [getattr(part, "caption", "") for part in datasheet.section(found).content]
+    assert "Constants." in captions and not [caption for caption in captions if caption.startswith("Losses")]
 
 
 def test_a_shaft_has_no_wheel(found, winding, brake, outcome):
-    text = sheet(found, winding, brake, outcome, Shaft()).to_csv()
+    text = sheet(found, winding, brake, outcome, Shaft()).table.to_csv()
     assert "wheel" not in text and "m/s" not in text and "at the shaft" in text
 
 
@@ -175,7 +175,7 @@ def test_costs_stand_where_prices_do(found, bare):
 
 def test_files(found, winding, brake, outcome, tmp_path):
     (tmp_path / "figures").mkdir()
-    files = list(package_report.files(found, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, Wheel()))
+    files = list(package_report.files(found, winding, sheet(found, winding, brake, outcome)))
     for one in files:
         one.write(tmp_path / one.name)
     table = pd.read_csv(tmp_path / "datasheet.csv")
