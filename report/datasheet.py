@@ -7,7 +7,7 @@ their own in ``data_sheet``; a row says its condition, since a torque or a resis
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from math import sqrt
 
 import pandas as pd
@@ -97,7 +97,7 @@ def data_sheet(
         Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
         Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
         Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
-        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs))),
+        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat))),
         Group("Constants", tuple(constants(package, winding))),
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
         Group("Masses and inertia", tuple(mass_rows(outcome.masses))),
@@ -148,7 +148,7 @@ def winding_rows(package: Package, winding: WindingOutcome, inputs: WindingInput
     """What is wound, and its resistance."""
     wound, layout = winding.wound, package.layout
     yield Row("connection", "star", "", f"{layout.coils_in_series} coils of a phase in series")
-    yield row("coil pitch", layout.coil_pitch, "", "slots")
+    yield Row("coil pitch", layout.coil_pitch, "slots")
     yield row("layers", layout.layers, "")
     yield row("winding factor", layout.winding_factor(), "", "fundamental")
     yield row("turns", wound.turns, "", "of one coil")
@@ -190,7 +190,7 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
         fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
         yield row("largest power", chosen.maximum_power, "W", fastest)
-    yield row("rated speed", rated.speed, "rpm")
+    yield row("rated speed", rated.speed, "rpm", "base speed, or the largest of the study where that is lower")
     yield row("bus voltage", bus, "V", "direct")
     yield row("peak phase current", chosen.current_peak, "A", f"amplitude, {overload}")
     yield row("peak phase current", chosen.current_rms, "A", f"RMS, {overload}")
@@ -199,19 +199,21 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
 
 
-def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs) -> Iterator[Row]:
-    """Losses and efficiency; none where the study has no loss data."""
+def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:
+    """Losses and efficiency, efficiency with hot copper too; none where the study has no loss data."""
     losses, rated = package.losses, package.continuous
     if losses is None:
         return
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
+    hot = replace(losses, copper=losses.copper * heat.hot_resistance)
     yield row("power", losses.power_out, "W", f"mechanical, {at}")
     yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
     yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
     yield row("losses", losses.total, "W", "without bearings, windage and inverter")
-    yield row("efficiency", losses.efficiency, "percent", at)
+    yield row("efficiency", losses.efficiency, "percent", f"{at}, copper at {steel.winding_temperature:g} °C")
+    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C")
     yield row("bus current", losses.power_in / inputs.limits.dc_voltage, "A", at)
 
 

@@ -136,7 +136,10 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
     assert cold == pytest.approx(1e3 * winding.wound.phase_resistance) and hot == pytest.approx(1.393 * cold)
     assert value(table, "L_d", "apparent") == pytest.approx(1e6 * winding.chosen.inductance_d)
     assert value(table, "cogging torque") == pytest.approx(COGGING * winding.wound.active_length)
-    assert value(table, "efficiency") == pytest.approx(100 * found.losses.efficiency)
+    cold, hot = table.value[table.quantity == "efficiency"]
+    more = 0.393 * 1.5 * winding.wound.phase_resistance * found.continuous.current_peak**2  # W of hot copper
+    assert cold == pytest.approx(100 * found.losses.efficiency)
+    assert 1 / hot - 1 / cold == pytest.approx(more / found.losses.power_out / 100, rel=1e-3)
     assert value(table, "active parts") == pytest.approx(outcome.masses.total)
     assert value(table, "bus current", "copper") == pytest.approx(found.overload.power_in / 48.0)
 
@@ -146,7 +149,7 @@ def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outco
     assert value(table, "electrical steel") == "35PN270" and value(table, "magnetisation") == "parallel"
     pure = set(table.quantity[table.unit == ""])
     words = {"electrical steel", "magnetisation", "connection"}
-    assert pure == words | {"slots", "poles", "magnet arc", "coil pitch", "layers", "winding factor", "turns",
+    assert pure == words | {"slots", "poles", "magnet arc", "layers", "winding factor", "turns",
                             "wires in hand", "packing factor"}  # fmt: skip
     assert not table.duplicated(["quantity", "condition"]).any()
 
