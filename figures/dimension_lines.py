@@ -11,12 +11,12 @@ Place = tuple[float, float]  # in the drawing [mm]
 TO_THE_POINT: Look = {"color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}  # arrows that end where they are told to
 
 
-def measure(axes: Axes, start: Place, end: Place, name: str, offset: Place, size: float = 11) -> None:
-    """A dimension line between two places [mm], its text beside the middle by an offset [mm]; size: of the text [pt]"""
+def measure(axes: Axes, start: Place, end: Place, name: str, offset: Place) -> None:
+    """A dimension line between two places [mm], its text beside the middle by an offset [mm]."""
     style: Look = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", **TO_THE_POINT}
     axes.annotate("", end, start, arrowprops=style)
     middle = (np.array(start) + np.array(end)) / 2 + np.array(offset)
-    axes.text(*place_of(middle), name, ha="center", va="center", fontsize=size)
+    axes.text(*place_of(middle), name, ha="center", va="center", fontsize=11)
 
 
 def place_of(vector: np.ndarray) -> Place:
