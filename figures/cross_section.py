@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from figures.dimension_lines import TO_THE_POINT, measure, place_of
 from figures.field_map import draw_outlines
 from figures.style import (
     BLACK,
@@ -32,8 +33,6 @@ from units import MILLIMETRE
 
 _IRON, _SHAFT, _MAGNET, _AIR = "#B5B9BD", "#8C9196", "#F3E3B3", "#FFFFFF"
 _ARROWS_PER_MAGNET = 3
-_TO_THE_POINT: Look = {"color": BLACK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}  # arrows that end where they are told to
-Place = tuple[float, float]  # in the drawing [mm]
 
 
 @styled
@@ -120,7 +119,7 @@ def _draw_magnetisation(axes: Axes, section: CrossSection, angle: float) -> None
 
 def _arrow(axes: Axes, centre: complex, vector: complex) -> None:
     tail, head = centre - vector / 2, centre + vector / 2
-    style: Look = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", **_TO_THE_POINT, "lw": 0.8}
+    style: Look = {"arrowstyle": "-|>,head_width=0.16,head_length=0.3", **TO_THE_POINT, "lw": 0.8}
     axes.annotate("", (head.real, head.imag), (tail.real, tail.imag), arrowprops=style)
 
 
@@ -199,14 +198,14 @@ def _upright(whole: WholeField) -> WholeField:
 def _draw_dimensions(axes: Axes, m: Machine) -> None:
     middle = (m.shoe_top_radius + m.slot_bottom_radius) / 2 / MILLIMETRE
     half_tooth = m.tooth_width / 2 / MILLIMETRE
-    _measure(axes, (-half_tooth, middle), (half_tooth, middle), "$w_{tb}$", (0.0, 0.7))
+    measure(axes, (-half_tooth, middle), (half_tooth, middle), "$w_{tb}$", (0.0, 0.7))
     _measure_radially(axes, m.slot_bottom_radius, m.stator_outer_radius, m.slot_pitch / 2, "$w_{bi}$")
     slot_axis = -m.slot_pitch / 2
     opening = m.opening_width / 2
     at = (m.stator_inner_radius + m.shoe_d1 * 0.5) / MILLIMETRE
     along, across = np.array([-sin(slot_axis), cos(slot_axis)]), np.array([cos(slot_axis), sin(slot_axis)])
-    left, right = (_place(at * along + side * opening / MILLIMETRE * across) for side in (-1, 1))
-    _measure(axes, left, right, "$w_s$", _place(2.0 * along))
+    left, right = (place_of(at * along + side * opening / MILLIMETRE * across) for side in (-1, 1))
+    measure(axes, left, right, "$w_s$", place_of(2.0 * along))
     _measure_radially(axes, m.rotor_core_radius, m.rotor_outer_radius, m.slot_pitch * 0.15, "$l_m$")
     _point_at_gap(axes, m)
 
@@ -214,7 +213,7 @@ def _draw_dimensions(axes: Axes, m: Machine) -> None:
 def _point_at_gap(axes: Axes, m: Machine) -> None:
     """The gap is too thin for a dimension line: a leader from the tooth points at it."""
     x = -0.22 * m.tooth_width / MILLIMETRE
-    style: Look = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
+    style: Look = {"arrowstyle": "-|>,head_width=0.15,head_length=0.3", **TO_THE_POINT}
     above = (m.shoe_top_radius + 0.8 * m.tooth_width) / MILLIMETRE
     look: Look = {"ha": "center", "va": "bottom", "fontsize": 11, "arrowprops": style}
     axes.annotate("$g$", (x, m.mid_gap_radius / MILLIMETRE), (x, above), **look)
@@ -223,20 +222,8 @@ def _point_at_gap(axes: Axes, m: Machine) -> None:
 def _measure_radially(axes: Axes, inner: float, outer: float, angle: float, name: str) -> None:
     along = np.array([-sin(angle), cos(angle)])
     across = np.array([cos(angle), sin(angle)])
-    ends = _place(inner / MILLIMETRE * along), _place(outer / MILLIMETRE * along)
-    _measure(axes, *ends, name, _place(1.7 * across))
-
-
-def _place(vector: np.ndarray) -> Place:
-    x, y = vector
-    return float(x), float(y)
-
-
-def _measure(axes: Axes, start: Place, end: Place, name: str, offset: Place) -> None:
-    style: Look = {"arrowstyle": "<|-|>,head_width=0.15,head_length=0.3", **_TO_THE_POINT}
-    axes.annotate("", end, start, arrowprops=style)
-    middle = (np.array(start) + np.array(end)) / 2 + np.array(offset)
-    axes.text(*_place(middle), name, ha="center", va="center", fontsize=11)
+    ends = place_of(inner / MILLIMETRE * along), place_of(outer / MILLIMETRE * along)
+    measure(axes, *ends, name, place_of(1.7 * across))
 
 
 def dimension_list(m: Machine) -> str:

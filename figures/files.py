@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from figures.style import save_png
+from figures.style import save_pdf, save_png
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,11 @@ def table_file(name: str, frame: pd.DataFrame) -> File:
 def figure_file(name: str, figure: Figure) -> File:
     """A figure as PNG, ``figures/<name>.png``."""
     return File(picture_name(name), lambda path: save_png(figure, path))
+
+
+def drawing_file(name: str, figure: Figure) -> File:
+    """A figure as PDF, for the workshop."""
+    return File(name, lambda path: save_pdf(figure, path))
 
 
 def picture_name(name: str) -> str:

@@ -108,3 +108,9 @@ def png_bytes(figure: Figure) -> bytes:
 def save_png(figure: Figure, path: Path) -> None:
     """Write the figure as a PNG file."""
     Path(path).write_bytes(png_bytes(figure))
+
+
+@styled
+def save_pdf(figure: Figure, path: Path) -> None:
+    """Write the figure as a PDF file, whose lines stay lines; without the time, so that it is the same every time."""
+    figure.savefig(path, format="pdf", metadata={"CreationDate": None})

@@ -63,28 +63,35 @@ def _ring_moment(inner: float, outer: float) -> float:
 def _half_slot_area(machine: Machine, first: int) -> float:
     """Half a slot [m^2] from its tooth to its centre line, from the outline's point number ``first`` outwards.
 
-    Half the integral of r^2 dphi around it: lines along the tooth, arcs at both ends, nothing on the centre line.
+    Half the integral of r^2 dphi around it: along the tooth, arcs at both ends, nothing on the centre line.
     """
     outline, axis = _tooth_side(machine)[first:], machine.slot_pitch / 2
     (r_in, from_in), (r_out, from_out) = outline[0], outline[-1]
-    straight = sum(_triangle(a, b) for a, b in pairwise(outline))
-    return straight + r_out**2 * (axis - from_out) / 2 - r_in**2 * (axis - from_in) / 2
+    side = sum(_swept(a, b) for a, b in pairwise(outline))
+    return side + r_out**2 * (axis - from_out) / 2 - r_in**2 * (axis - from_in) / 2
 
 
 def _tooth_side(machine: Machine) -> tuple[_Point, ...]:
-    """The slot's side of tooth 0: tip at the bore, end of the parallel opening, end of the taper, end of the flank."""
+    """The slot's side of tooth 0: tip at the bore, end of the parallel opening, ends of the taper, end of the flank.
+
+    End of the opening and start of the taper are one point unless the taper touches the shoe (``taper_angle``).
+    """
     axis, half, tooth = machine.slot_pitch / 2, machine.opening_width / 2, machine.tooth_width / 2
-    bore, opening = machine.stator_inner_radius, machine.stator_inner_radius + machine.shoe_d1
+    bore, opening = machine.stator_inner_radius, machine.opening_top_radius
     shoe, bottom = machine.shoe_top_radius, machine.slot_bottom_radius
     return (
         (bore, axis - asin(half / bore)),
-        (opening, axis - asin(half / opening)),
+        (opening, machine.opening_top_angle),
+        (opening, machine.taper_angle),
         (shoe, asin(tooth / shoe)),
         (bottom, asin(tooth / bottom)),
     )
 
 
-def _triangle(a: _Point, b: _Point) -> float:
-    """Signed area [m^2] of the triangle of the axis and two points, positive when b lies counter-clockwise of a."""
+def _swept(a: _Point, b: _Point) -> float:
+    """Signed area [m^2] between the axis and the way from a to b, positive counter-clockwise: a sector where both have
+    one radius, otherwise the triangle of a straight line."""
     (r_a, at_a), (r_b, at_b) = a, b
+    if r_a == r_b:
+        return r_a**2 * (at_b - at_a) / 2
     return r_a * r_b * (cos(at_a) * sin(at_b) - sin(at_a) * cos(at_b)) / 2

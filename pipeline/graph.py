@@ -164,7 +164,10 @@ class Graph:
         return tuple(found)
 
     def parents(self, function: Function) -> tuple[Stage, ...]:
-        """The stages whose artefacts a function reads, directly or through views."""
+        """The stages whose artefacts a function reads, directly or through views.
+
+        Not those that run on request only and whose artefact may be absent: nobody asks for them by asking for this.
+        """
         return tuple(dict.fromkeys(_parents(self, function)))
 
 
@@ -206,7 +209,8 @@ def _parents(graph: Graph, function: Function) -> Iterator[Stage]:
         if node is None and not parameter.optional:
             raise GraphError(f"{function.__qualname__} reads {parameter.kind.__name__}, which nothing makes")
         if isinstance(node, Stage):
-            yield node
+            if not (parameter.optional and node.on_request):
+                yield node
         elif isinstance(node, View):
             yield from _parents(graph, node.function)
 

@@ -23,6 +23,8 @@ from electrical.flux_map_machine import FluxMapMachineError
 from electrical.magnets_stage import magnets_stage
 from electrical.winding_selection import WindingError
 from electrical.winding_stage import winding_stage
+from export.stage import package_stage
+from export.step import StepError
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.machine import GeometryError
@@ -41,6 +43,7 @@ from optimisation.sweep import sweep_stage
 from pipeline.graph import Function, Graph, Node, Source, Stage, View
 from report import (
     braking,
+    datasheet,
     drive,
     fields,
     fits,
@@ -52,6 +55,7 @@ from report import (
     match,
     optimise,
     outcome,
+    package,
     requirements,
     ride,
     sweep,
@@ -73,6 +77,7 @@ from study.inputs_learned import (
 )
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_package import part_prices
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from vehicle.demands import required, requirements_stage
@@ -82,12 +87,12 @@ from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
     FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, VehicleError, WindingError,
+    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat,
+    gear_inputs, output, copper_heat, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -167,6 +172,8 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *_MACHINE,
         *(_MAGNETS if _has_grade(study) else ()),
         Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
+        Stage("package", package_stage, "what parts are ordered by", package.files),
+        View(datasheet.data_sheet),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 
@@ -189,6 +196,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
     """Of the report, in reading order."""
     driven = drives(study)
     return (
+        datasheet.section,
         outcome.section,
         requirements.section if driven else requirements.stated_section,
         *_linkage_sections(study),
@@ -204,6 +212,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         braking.section,
         *((magnets.section,) if _has_grade(study) else ()),
         losses.section,
+        package.section,
         *((ride.section,) if driven else ()),
     )
 

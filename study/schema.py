@@ -522,6 +522,16 @@ class AssemblySection(Section):
     coulomb_friction_N: Annotated[float | None, Quantity("dry friction at the wheel", 0, 1e5)] = None
 
 
+class PricesSection(Section):
+    """Optional: what the materials cost, in a currency per kilogram; a price that is not stated is not guessed."""
+
+    currency: Annotated[str, Field(min_length=1)]
+    lamination: Annotated[float | None, Quantity("price of the electrical steel per kilogram", 0, 1e6)] = None
+    magnet: Annotated[float | None, Quantity("price of the magnets per kilogram", 0, 1e6)] = None
+    copper: Annotated[float | None, Quantity("price of the copper per kilogram", 0, 1e6)] = None
+    shaft: Annotated[float | None, Quantity("price of the shaft's steel per kilogram", 0, 1e6)] = None
+
+
 class PrintedActuatorSection(Section):
     """The actuator of somebody else, for the comparison at the end (thesis Tables 3.12 and A.1)."""
 
@@ -587,6 +597,7 @@ class Study(Section):
     flux_map: FluxMapSection = FluxMapSection()
     gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
+    prices: PricesSection | None = None
     printed_actuator: PrintedActuatorSection | None = None
 
     _path: Path = PrivateAttr(default=Path("study.toml"))

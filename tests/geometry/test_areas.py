@@ -51,8 +51,9 @@ def meshed(machine):
         replace(THESIS, magnet_arc_fraction=0.8),
         replace(THESIS, slots=9, tooth_width=7 * MILLIMETRE, stator_outer_radius=30 * MILLIMETRE),
         replace(THESIS, slot_opening=6 * MILLIMETRE, tooth_width=3 * MILLIMETRE, shoe_d2=0.4 * MILLIMETRE),
+        replace(THESIS, slots=3, tooth_width=8 * MILLIMETRE, shoe_d2=0.5 * MILLIMETRE),
     ],
-    ids=["thesis", "short magnets", "nine slots", "open slots"],
+    ids=["thesis", "short magnets", "nine slots", "open slots", "taper that touches the shoe"],
 )
 def test_areas_are_those_of_the_meshed_regions(machine):
     found, (areas, shaft, core) = part_areas(machine), meshed(machine)

@@ -1,7 +1,7 @@
 """Order, readers and makers follow from the signatures; what is no graph is refused in a sentence."""
 
 import pytest
-from toy_graph import GRAPH, SQUARES, SUMMARY, Extra, Inputs, Never, after_stage, inputs, largest, never
+from toy_graph import GRAPH, SQUARES, SUMMARY, Extra, Inputs, Never, Squares, after_stage, inputs, largest, never
 
 from pipeline.graph import Graph, GraphError, Source, Stage, View, drawing, parameters, product, takes_workers
 
@@ -16,6 +16,16 @@ def test_stages_run_after_those_they_read_from_through_views_too():
     assert [stage.name for stage in GRAPH.stages] == ["squares", "summary"]
     assert [stage.name for stage in GRAPH.before(SQUARES)] == ["squares"]
     assert GRAPH.parents(SUMMARY.function) == (SQUARES,)
+
+
+@pytest.mark.parametrize("on_request", [True, False])
+def test_what_runs_on_request_and_may_be_absent_is_not_asked_for_by_its_readers(on_request):
+    def extra_stage(squares: Squares) -> Extra:
+        return Extra(str(squares))
+
+    graph = Graph((*GRAPH.nodes, Stage("extra", extra_stage, "", on_request=on_request)))
+    before = [stage.name for stage in graph.before(graph.stage("summary"))]
+    assert before == ["squares", "summary"] if on_request else ["squares", "extra", "summary"]
 
 
 def test_two_makers_of_one_type_are_refused():

@@ -68,7 +68,7 @@ def test_a_second_run_does_no_work_and_an_edited_byte_is_noticed(study, results)
 def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     html = (FOLDER / "report.html").read_text(encoding="utf-8")
     titles = [re.sub(r"^\d+\. ", "", title) for title in re.findall(r"<h2[^>]*>(.*?)</h2>", html, flags=re.S)]
-    assert titles[:3] == ["Outcome", "Requirements from the vehicle", "Linkage"]
+    assert titles[:4] == ["Data sheet", "Outcome", "Requirements from the vehicle", "Linkage"]
     assert titles.index("Planetary gearbox") < titles.index("Winding")  # whole teeth decide about the length
     assert titles[-1] == "The vehicle with the designed actuator"
     pictures = {path.stem for path in (FOLDER / "figures").glob("*.png")}

@@ -22,6 +22,7 @@ PURE_NUMBERS = set(
     linkage_search.ratio_weight linkage_search.seeds linkage_search.population linkage_search.generations
     match.weight_inertia match.weight_radius match.chosen_slots match.gearbox_stages match.gear_ring_diameter_fraction
     match.gear_overload_factor match.gear_contact_ratio_factor match.gear_poisson_ratio
+    prices.lamination prices.magnet prices.copper prices.shaft
     winding_selection.packing_tolerance flux_map.angles flux_map.currents
     gearbox.ratio_tolerance gearbox.planets gearbox.accuracy_grade gearbox.application_factor
     gearbox.friction_coefficient gearbox.safety_flank gearbox.safety_root gearbox.safety_static_flank

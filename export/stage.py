@@ -1,0 +1,147 @@
+"""The numbers of the data sheet that are read off artefacts at one point, and how the coils are connected.
+
+Nothing is designed or solved here: maps of the stages before are read at the rated point and at full current.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drivetrain.costs import PartCost, PartPrices, part_costs
+from drivetrain.outcome import Outcome
+from electrical.braking_stage import BrakingOutcome
+from electrical.dq import mtpa_currents
+from electrical.flux_map_machine import FluxMapMachine
+from electrical.synchronous_machine import SynchronousMachine
+from electrical.winding_stage import WindingInputs, WindingOutcome
+from geometry.connections import Connection, connections
+from geometry.winding import WindingLayout
+from losses.rated import PointLosses, losses_at
+from losses.stage import LossMap
+from magnetostatics.case import FieldCase
+from magnetostatics.flux_map_stage import FluxMap
+from magnetostatics.rotation_stage import Rotations
+
+
+@dataclass(frozen=True)
+class OperatingState:
+    """The machine at one torque [Nm] and mechanical speed [rad/s].
+
+    i_d, i_q: peak phase currents [A]; voltage_peak: of a phase [V]
+    power_in: electrical, without iron and magnet losses [W]
+    """
+
+    torque: float
+    speed: float
+    i_d: float
+    i_q: float
+    voltage_peak: float
+    power_in: float
+
+    @property
+    def current_peak(self) -> float:
+        """Peak phase current [A]."""
+        return float(np.hypot(self.i_d, self.i_q))
+
+
+@dataclass(frozen=True)
+class ShortCircuit:
+    """The machine with shorted phases.
+
+    current_peak: largest phase current over the speeds of the brake, peak [A]
+    torque: largest against the motion [Nm], the same cold and hot
+    best_speed_cold, best_speed_hot: of the rotor, at which it brakes most [rad/s]
+    """
+
+    current_peak: float
+    torque: float
+    best_speed_cold: float
+    best_speed_hot: float
+
+
+@dataclass(frozen=True)
+class Package:
+    """What a data sheet says beside the artefacts of the other stages.
+
+    layout, connections: of the winding; costs: of the parts, the sum last; currency: of the costs
+    continuous: at the nominal current density and the rated speed; overload: at full current and the rated speed
+    losses: at the continuous point, None where the study has no loss data
+    short_circuit: of the phases; cogging: largest torque without current [Nm], None where no field was solved for it
+    unsaturated: constant parameters without current, slopes of the flux map there
+    """
+
+    layout: WindingLayout
+    connections: tuple[Connection, ...]
+    costs: tuple[PartCost, ...]
+    currency: str
+    continuous: OperatingState
+    overload: OperatingState
+    losses: PointLosses | None
+    short_circuit: ShortCircuit
+    cogging: float | None
+    unsaturated: SynchronousMachine
+
+
+def package_stage(
+    case: FieldCase,
+    flux_map: FluxMap,
+    winding: WindingOutcome,
+    inputs: WindingInputs,
+    braking: BrakingOutcome,
+    outcome: Outcome,
+    losses: LossMap | None,
+    rotations: Rotations | None,
+    prices: PartPrices,
+) -> Package:
+    """Read the artefacts at the rated speed: the base speed, or the largest allowed one where that is lower."""
+    wound = winding.wound
+    machine, layout = wound.on_map(flux_map.data), case.layout(wound.machine)
+    speed = min(winding.chosen.base_speed, inputs.limits.maximum_speed)
+    continuous = least_current_state(machine, wound.current_peak(inputs.nominal_density), speed)
+    return Package(
+        layout=layout,
+        connections=connections(layout),
+        costs=part_costs(outcome.masses, prices),
+        currency=prices.currency,
+        continuous=continuous,
+        overload=least_current_state(machine, winding.limits.current_peak, speed),
+        losses=None if losses is None else losses_at(losses.losses, continuous.torque, continuous.speed),
+        short_circuit=short_circuit_of(braking),
+        cogging=cogging_of(rotations, wound.active_length),
+        unsaturated=unsaturated_machine(machine),
+    )
+
+
+def least_current_state(machine: FluxMapMachine, current_peak: float, speed: float) -> OperatingState:
+    """The largest torque that a peak phase current [A] gives, at a mechanical speed [rad/s].
+
+    P = 1.5 (v_d i_d + v_q i_q), amplitude-invariant
+    """
+    i_d, i_q = (float(i) for i in mtpa_currents(machine, current_peak))
+    v_d, v_q = (float(v) for v in machine.voltage(i_d, i_q, speed))
+    torque, power = float(machine.torque(i_d, i_q)), 1.5 * (v_d * i_d + v_q * i_q)
+    return OperatingState(torque, speed, i_d, i_q, float(np.hypot(v_d, v_q)), power)
+
+
+def unsaturated_machine(machine: FluxMapMachine) -> SynchronousMachine:
+    """Magnet flux linkage, and incremental inductances without current."""
+    (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
+    psi_m = float(machine.flux_linkage(0.0, 0.0)[0])
+    return SynchronousMachine(machine.pole_pairs, psi_m, float(l_dd), float(l_qq), machine.resistance)
+
+
+def short_circuit_of(braking: BrakingOutcome) -> ShortCircuit:
+    """The brake with shorted phases at the rotor."""
+    cold, hot = (speed / braking.demand.ratio for speed in braking.poles)
+    both = braking.cold, braking.hot
+    current = max(float(np.nanmax(one.current_peak)) for one in both)
+    return ShortCircuit(current, float(np.nanmax(braking.cold.torque)), cold, hot)
+
+
+def cogging_of(rotations: Rotations | None, active_length: float) -> float | None:
+    """Largest torque without current [Nm] at an active length [m], None where the machine was not turned."""
+    if rotations is None or rotations.matched is None:
+        return None
+    return rotations.matched.cogging * active_length

@@ -1,0 +1,247 @@
+"""The data sheet: everything that one asks of a machine before ordering it, one quantity a row.
+
+A group of rows is a function of what it reads. Another stage's numbers join as a row in a group, or as a function of
+their own in ``data_sheet``; a row says its condition, since a torque or a resistance is nothing without one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass, replace
+from math import sqrt
+
+import pandas as pd
+
+from drivetrain.masses import PartMasses
+from drivetrain.outcome import Outcome, machine_envelope
+from drivetrain.output import Output, in_unit
+from electrical.braking_stage import BrakingOutcome, CopperHeat
+from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.wound_machine import WoundMachine
+from export.stage import Package
+from figures.files import picture_name
+from figures.report import Picture, Section, Table
+from geometry.machine import Machine
+from losses.stage import LossInputs
+from magnetostatics.case import FieldCase
+from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
+
+DRAWING_PICTURE = "lamination"
+TABLE = "datasheet.csv"
+_TEXT = (
+    "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star; peak "
+    "means amplitude. The rated point is the torque at the nominal current density, at the speed up to which the full "
+    f"current gives its torque. {TABLE} holds the same rows."
+)
+_THOUSAND_RPM = 1000 * RPM  # rad/s, at which data sheets state a back-EMF
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the data sheet; value: in the unit that is written behind it."""
+
+    quantity: str
+    value: object
+    unit: str
+    condition: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Rows under one heading."""
+
+    title: str
+    rows: tuple[Row, ...]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Columns quantity, value, unit, condition."""
+        return table_of(self.rows)
+
+
+@dataclass(frozen=True)
+class DataSheet:
+    """The whole sheet, group by group."""
+
+    groups: tuple[Group, ...]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Columns quantity, value, unit, condition."""
+        return table_of(tuple(one for group in self.groups for one in group.rows))
+
+
+def row(quantity: str, value: float, unit: str, condition: str = "") -> Row:
+    """A row of a value in SI, shown in a unit of ``units.FACTORS``; empty for a pure number."""
+    return Row(quantity, in_unit(value, unit) if unit else value, written(unit), condition)
+
+
+def table_of(rows: tuple[Row, ...]) -> pd.DataFrame:
+    """Columns quantity, value, unit, condition."""
+    return pd.DataFrame([astuple(one) for one in rows], columns=["quantity", "value", "unit", "condition"])
+
+
+def data_sheet(
+    package: Package,
+    case: FieldCase,
+    steel: LossInputs,
+    winding: WindingOutcome,
+    inputs: WindingInputs,
+    heat: CopperHeat,
+    braking: BrakingOutcome,
+    outcome: Outcome,
+    output: Output,
+) -> DataSheet:
+    """Every group of rows; a group without rows is left out."""
+    groups = (
+        Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
+        Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
+        Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
+        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat))),
+        Group("Constants", tuple(constants(package, winding))),
+        Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
+        Group("Masses and inertia", tuple(mass_rows(outcome.masses))),
+    )
+    return DataSheet(tuple(group for group in groups if group.rows))
+
+
+def section(sheet: DataSheet) -> Section:
+    """The machine on one page."""
+    return Section(
+        "Data sheet",
+        (
+            _TEXT,
+            Picture(
+                picture_name(DRAWING_PICTURE),
+                "Cross-section with its dimensions in mm; coil sides in the colours of phases A, B and C, light where "
+                "a positive phase current flows away from the viewer.",
+            ),
+            *(Table(group.table, f"{group.title}.") for group in sheet.groups),
+        ),
+    )
+
+
+# ---- groups ---------------------------------------------------------------------------------------------------------
+
+
+def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Iterator[Row]:
+    """What is bought and cut."""
+    machine, envelope, magnet = wound.machine, machine_envelope(wound), case.materials.magnet
+    yield row("slots", machine.slots, "")
+    yield row("poles", machine.poles, "")
+    yield row("stator outer diameter", 2 * machine.stator_outer_radius, "mm")
+    yield row("bore diameter", 2 * machine.stator_inner_radius, "mm")
+    yield row("rotor diameter over the magnets", 2 * machine.rotor_outer_radius, "mm")
+    yield row("air gap", machine.airgap, "mm", "radial, to the magnets")
+    yield row("shaft diameter", 2 * machine.shaft_radius, "mm")
+    yield row("active length", wound.active_length, "mm", "stack")
+    length = wound.active_length + 2 * envelope.end_winding_length
+    yield row("length over the end windings", length, "mm", "half circles over the pitch of a coil")
+    yield Row("electrical steel", steel.steel, "", "stator and rotor laminations")
+    yield row("magnet thickness", machine.magnet_length, "mm", f"{machine.poles} pieces on the rotor core")
+    yield row("magnet arc", machine.magnet_arc_fraction, "", "of the pole pitch")
+    yield Row("magnetisation", _pattern(machine), "", "of each magnet, outwards and inwards in turn")
+    yield row("remanence", magnet.remanence, "T", "at the working temperature of the magnets")
+
+
+def winding_rows(package: Package, winding: WindingOutcome, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:
+    """What is wound, and its resistance."""
+    wound, layout = winding.wound, package.layout
+    yield Row("connection", "star", "", f"{layout.coils_in_series} coils of a phase in series")
+    yield Row("coil pitch", layout.coil_pitch, "slots")
+    yield row("layers", layout.layers, "")
+    yield row("winding factor", layout.winding_factor(), "", "fundamental")
+    yield row("turns", wound.turns, "", "of one coil")
+    yield row("wires in hand", wound.strands, "")
+    yield row("wire diameter", inputs.wire.copper_diameter, "mm", "bare copper")
+    yield row("packing factor", winding.chosen.packing, "", "copper over the area of a coil side")
+    for temperature, factor in ((heat.cold, heat.cold_resistance), (heat.hot, heat.hot_resistance)):
+        yield row("phase resistance", wound.phase_resistance * factor, "mOhm", f"{temperature:g} °C, direct current")
+
+
+def constants(package: Package, winding: WindingOutcome) -> Iterator[Row]:
+    """What a drive is set up with."""
+    chosen, idle = winding.chosen, package.unsaturated
+    full = f"at {chosen.current_peak:.4g} A"
+    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load")
+    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load")
+    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load")
+    yield row("L_d", chosen.inductance_d, "uH", f"phase, apparent, {full} on the q axis and a quarter of it against d")
+    yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis")
+    yield row("torque constant", chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load")
+    yield row("torque constant", chosen.torque_constant, "mNm_per_A", f"per peak ampere, {full} on the q axis")
+    emf = sqrt(3) * idle.pole_pairs * idle.psi_m * _THOUSAND_RPM
+    yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm")
+    yield row("back-EMF", emf / sqrt(2), "V", "line to line, RMS of the fundamental, at 1000 rpm")
+
+
+def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs) -> Iterator[Row]:
+    """Torques, speeds, currents and the supply."""
+    chosen, bus = winding.chosen, inputs.limits.dc_voltage
+    rated, full = package.continuous, package.overload
+    nominal, overload = (_density(one) for one in (inputs.nominal_density, inputs.limits.overload_current_density))
+    yield row("peak torque", winding.peak_torque, "Nm", f"{overload}, ± {winding.peak_torque_error:.3f} Nm by the mesh")
+    yield row("torque ripple", winding.peak_torque_ripple, "Nm", "peak to peak, at the peak torque")
+    if package.cogging is not None:
+        yield row("cogging torque", package.cogging, "Nm", "largest, without current")
+    yield row("continuous torque", rated.torque, "Nm", nominal)
+    yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given")
+    yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque")
+    if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
+        fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
+        yield row("largest power", chosen.maximum_power, "W", fastest)
+    yield row("rated speed", rated.speed, "rpm", "base speed, or the largest of the study where that is lower")
+    yield row("bus voltage", bus, "V", "direct")
+    yield row("peak phase current", chosen.current_peak, "A", f"amplitude, {overload}")
+    yield row("peak phase current", chosen.current_rms, "A", f"RMS, {overload}")
+    yield row("continuous phase current", rated.current_peak / sqrt(2), "A", f"RMS, {nominal}")
+    speed = f"{full.speed / RPM:.0f} rpm"
+    yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
+
+
+def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:
+    """Losses and efficiency, efficiency with hot copper too; none where the study has no loss data."""
+    losses, rated = package.losses, package.continuous
+    if losses is None:
+        return
+    at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
+    hot = replace(losses, copper=losses.copper * heat.hot_resistance)
+    yield row("power", losses.power_out, "W", f"mechanical, {at}")
+    yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
+    yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
+    yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
+    yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
+    yield row("losses", losses.total, "W", "without bearings, windage and inverter")
+    yield row("efficiency", losses.efficiency, "percent", f"{at}, copper at {steel.winding_temperature:g} °C")
+    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C")
+    yield row("bus current", losses.power_in / inputs.limits.dc_voltage, "A", at)
+
+
+def braking_rows(package: Package, braking: BrakingOutcome, output: Output) -> Iterator[Row]:
+    """The machine as a brake."""
+    found, (cold, hot) = package.short_circuit, braking.poles
+    asked = output.at_speed(braking.demand.speed_peak)
+    yield row("short-circuit current", found.current_peak, "A", f"peak, largest up to {asked} {output.place}")
+    yield row("largest braking torque", found.torque, "Nm", "shorted, without iron loss and friction")
+    for speed, at, degrees in (
+        (found.best_speed_cold, cold, braking.heat.cold),
+        (found.best_speed_hot, hot, braking.heat.hot),
+    ):
+        where = f"{degrees:g} °C, {output.at_speed(at)} {output.place}"
+        yield row("speed of the largest braking torque", speed, "rpm", where)
+    yield row("back-EMF at the largest speed", braking.back_emf, "V", f"line to line, peak, at {asked} {output.place}")
+
+
+def mass_rows(masses: PartMasses) -> Iterator[Row]:
+    """By part, and what turns."""
+    for part, mass, _ in masses.rows:
+        yield row(part, mass, "kg")
+    yield row("rotor inertia", masses.rotor_inertia, "kg_mm2", "laminations, magnets and shaft over the active length")
+
+
+def _pattern(machine: Machine) -> str:
+    return type(machine.magnetisation).__name__.removesuffix("Magnetisation").lower()
+
+
+def _density(density: float) -> str:
+    return f"{density / AMPERE_PER_SQUARE_MILLIMETRE:g} A/mm² RMS in the copper"

@@ -1,0 +1,192 @@
+"""What the package reads at the rated point, against other routes to the same numbers; and its data sheet."""
+
+from dataclasses import replace
+from math import sqrt
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from drivetrain.costs import PartPrices
+from drivetrain.gear_views import braking_demand
+from drivetrain.masses import PartMaterials
+from drivetrain.outcome import active_masses
+from drivetrain.output import Shaft, Wheel
+from electrical.braking_stage import CopperHeat, braking_stage
+from electrical.winding_stage import winding_stage
+from export.stage import package_stage
+from losses.stage import losses_stage
+from report import datasheet
+from report import package as package_report
+from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
+from tests.losses.test_stage_and_figure import LOSSES, Computed
+from tests.magnetostatics.test_flux_map_stage import CASE
+from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM
+
+MAP = flux_map(Saturating())
+HEAT = CopperHeat(20.0, 120.0, 1.0, 1.393)
+NO_PRICES = PartPrices("", None, None, None, None)
+PRICES = PartPrices("EUR", 3.0, 80.0, 12.0, 2.0)
+COGGING = 0.7  # Nm/m
+TURNED = SimpleNamespace(matched=SimpleNamespace(cogging=COGGING))
+
+
+@pytest.fixture(scope="module")
+def winding():
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+
+
+@pytest.fixture(scope="module")
+def brake(winding):
+    return braking_stage(MAP, winding, INPUTS, braking_demand(REQUIRED, TRANSMISSION), HEAT)
+
+
+@pytest.fixture(scope="module")
+def outcome(winding):
+    return SimpleNamespace(masses=active_masses(winding.wound, PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)))
+
+
+@pytest.fixture(scope="module")
+def losses(winding):
+    return losses_stage(CASE, MAP, winding, INPUTS, LOSSES, Computed())
+
+
+@pytest.fixture(scope="module")
+def found(winding, brake, outcome, losses):
+    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, losses, TURNED, PRICES)
+
+
+@pytest.fixture(scope="module")
+def bare(winding, brake, outcome):
+    """Without losses, fields and prices."""
+    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, None, None, NO_PRICES)
+
+
+def test_the_overload_is_the_peak_torque_of_the_winding(found, winding):
+    assert found.overload.torque == pytest.approx(winding.peak_torque, rel=1e-9)
+    assert found.overload.speed == winding.chosen.base_speed
+    assert found.overload.voltage_peak == pytest.approx(winding.limits.voltage_peak, rel=1e-6), "that is the base speed"
+
+
+@pytest.mark.physics
+def test_power_in_is_power_out_and_copper_loss(found, winding):
+    for state in (found.continuous, found.overload):
+        copper = 1.5 * winding.wound.phase_resistance * state.current_peak**2
+        assert state.power_in == pytest.approx(state.torque * state.speed + copper, rel=1e-9)
+
+
+def test_the_continuous_current_is_that_of_the_nominal_density(found, winding):
+    density = found.continuous.current_peak / sqrt(2) / (winding.wound.strands * winding.wound.wire_area)
+    assert density == pytest.approx(6 * AMPERE_PER_SQUARE_MILLIMETRE)
+
+
+def test_losses_are_those_of_the_map_around_the_point(found, winding, losses):
+    copper = 1.5 * winding.wound.phase_resistance * found.continuous.current_peak**2
+    assert found.losses.copper == pytest.approx(copper, rel=1e-3)
+    plane, at = losses.losses, found.continuous
+    row, column = np.searchsorted(plane.torque[:, 0], at.torque), np.searchsorted(plane.speed[0], at.speed)
+    corners = plane.stator_iron[row - 1 : row + 1, column - 1 : column + 1]
+    assert corners.min() < found.losses.stator_iron < corners.max()
+    assert found.losses.power_in - found.losses.power_out == pytest.approx(found.losses.total)
+    efficiency = plane.efficiency[row - 1 : row + 1, column - 1 : column + 1]
+    assert efficiency.min() < found.losses.efficiency < efficiency.max()
+
+
+def test_the_rated_speed_is_no_faster_than_what_is_allowed(winding, brake, outcome):
+    slow = replace(INPUTS, limits=replace(INPUTS.limits, maximum_speed=1000 * RPM))
+    found = package_stage(CASE, MAP, winding, slow, brake, outcome, None, None, NO_PRICES)
+    assert found.continuous.speed == pytest.approx(1000 * RPM)
+
+
+def test_the_brake_is_seen_at_the_rotor(found, brake):
+    """At its best speed the shorted machine brakes with the largest torque of the whole curve."""
+    speeds, shorted = brake.speed / brake.demand.ratio, found.short_circuit
+    for best, one in ((shorted.best_speed_cold, brake.cold), (shorted.best_speed_hot, brake.hot)):
+        assert np.interp(best, speeds, one.torque) == pytest.approx(np.nanmax(one.torque))
+    assert shorted.current_peak == pytest.approx(brake.cold.current_peak[-1], rel=1e-6)
+
+
+# ---- data sheet -----------------------------------------------------------------------------------------------------
+
+
+def sheet(package, winding, brake, outcome, output=Wheel()):
+    return datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, output)
+
+
+def value(table, quantity, condition=""):
+    (one,) = table[(table.quantity == quantity) & table.condition.str.contains(condition, regex=False)].value
+    return one
+
+
+def test_the_back_emf_is_the_voltage_of_the_idle_machine(found, winding, brake, outcome):
+    table = sheet(found, winding, brake, outcome).table
+    voltage = np.hypot(*winding.wound.on_map(MAP.data).voltage(0.0, 0.0, 1000 * RPM))
+    assert value(table, "back-EMF", "peak") == pytest.approx(sqrt(3) * voltage, rel=1e-4)
+    flux = winding.wound.on_map(MAP.data).flux_linkage(0.0, 0.0)[0]
+    assert value(table, "magnet flux linkage") == pytest.approx(1e3 * flux, rel=1e-4)
+
+
+def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, outcome):
+    table = sheet(found, winding, brake, outcome).table
+    assert value(table, "active length") == pytest.approx(1e3 * winding.wound.active_length)
+    assert value(table, "peak torque") == winding.peak_torque
+    assert value(table, "turns") == winding.wound.turns and value(table, "poles") == 10
+    cold, hot = table.value[table.quantity == "phase resistance"]
+    assert cold == pytest.approx(1e3 * winding.wound.phase_resistance) and hot == pytest.approx(1.393 * cold)
+    assert value(table, "L_d", "apparent") == pytest.approx(1e6 * winding.chosen.inductance_d)
+    assert value(table, "cogging torque") == pytest.approx(COGGING * winding.wound.active_length)
+    cold, hot = table.value[table.quantity == "efficiency"]
+    more = 0.393 * 1.5 * winding.wound.phase_resistance * found.continuous.current_peak**2  # W of hot copper
+    assert cold == pytest.approx(100 * found.losses.efficiency)
+    assert 1 / hot - 1 / cold == pytest.approx(more / found.losses.power_out / 100, rel=1e-3)
+    assert value(table, "active parts") == pytest.approx(outcome.masses.total)
+    assert value(table, "bus current", "copper") == pytest.approx(found.overload.power_in / 48.0)
+
+
+def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outcome):
+    table = sheet(found, winding, brake, outcome).table
+    assert value(table, "electrical steel") == "35PN270" and value(table, "magnetisation") == "parallel"
+    pure = set(table.quantity[table.unit == ""])
+    words = {"electrical steel", "magnetisation", "connection"}
+    assert pure == words | {"slots", "poles", "magnet arc", "layers", "winding factor", "turns",
+                            "wires in hand", "packing factor"}  # fmt: skip
+    assert not table.duplicated(["quantity", "condition"]).any()
+
+
+def test_what_was_not_computed_is_not_on_the_sheet(bare, winding, brake, outcome):
+    found = sheet(bare, winding, brake, outcome)
+    quantities = set(found.table.quantity)
+    assert not quantities & {"efficiency", "cogging torque"} and "continuous torque" in quantities
+    captions = [getattr(part, "caption", "") for part in datasheet.section(found).content]
+    assert "Constants." in captions and not [caption for caption in captions if caption.startswith("Losses")]
+
+
+def test_a_shaft_has_no_wheel(found, winding, brake, outcome):
+    text = sheet(found, winding, brake, outcome, Shaft()).table.to_csv()
+    assert "wheel" not in text and "m/s" not in text and "at the shaft" in text
+
+
+# ---- files ----------------------------------------------------------------------------------------------------------
+
+
+def test_costs_stand_where_prices_do(found, bare):
+    table = package_report.costs_table(found)
+    assert table["cost EUR"].iloc[-1] == pytest.approx(table["cost EUR"].iloc[:-1].sum())
+    assert list(package_report.costs_table(bare)) == ["part", "mass_kg", "inertia_kg_m2"]
+
+
+def test_files(found, winding, brake, outcome, tmp_path):
+    (tmp_path / "figures").mkdir()
+    files = list(package_report.files(found, winding, sheet(found, winding, brake, outcome)))
+    for one in files:
+        one.write(tmp_path / one.name)
+    table = pd.read_csv(tmp_path / "datasheet.csv")
+    assert list(table) == ["quantity", "value", "unit", "condition"] and len(table) > 50
+    coils = pd.read_csv(tmp_path / "winding_connections.csv")
+    assert len(coils) == 12 and set(coils.phase) == set("ABC")
+    assert (coils["connected to"] == "star point").sum() == 3
+    names = {one.name for one in files}
+    assert names - set(package_report._FILES) == {"figures/lamination.png", "figures/winding_diagram.png"}
+    assert set(package_report._FILES) <= names, "the report names files that are written"
+    assert (tmp_path / "drawing.pdf").read_bytes()[:5] == b"%PDF-"
