@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
+from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -45,6 +46,7 @@ from report import (
     fits,
     flux_map,
     gearbox,
+    heat,
     linkage,
     losses,
     match,
@@ -61,6 +63,7 @@ from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
 from study.inputs_field import saturation_limit, sweep_grid
 from study.inputs_gearbox import gear_inputs
+from study.inputs_heat import heat_inputs, no_loss_data
 from study.inputs_learned import (
     field_case_as_learned,
     loss_inputs_as_learned,
@@ -72,19 +75,22 @@ from study.inputs_linkage import installation_space, linkage_search, stated_link
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
+from thermal.errors import ThermalError
+from thermal.stage import heat_stage
 from vehicle.demands import required, requirements_stage
 from vehicle.errors import VehicleError
 from vehicle.gear_loads import road_loads
+from vehicle.heat_duty import road_duty
 from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
     FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, VehicleError, WindingError,
+    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, ThermalError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat,
+    gear_inputs, output, copper_heat, heat_inputs,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -96,10 +102,11 @@ _VEHICLE: tuple[Node, ...] = (
     Stage("requirements", requirements_stage, "the vehicle asks", requirements.files, remarks=requirements.remarks),
     View(required),
     View(road_loads),
+    View(road_duty),
     Stage("ride", ride_again_stage, "the vehicle with what was designed", ride.files),
     View(actuator_limits),
 )
-_STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads))
+_STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))
 _SEARCHED: tuple[Node, ...] = (
     Source(linkage_search),
     Source(installation_space),
@@ -109,6 +116,14 @@ _SEARCHED: tuple[Node, ...] = (
 _GEARS: tuple[Node, ...] = (
     View(gear_demand),
     Stage("gearbox", gearbox_stage, "all tooth sets, rated", gearbox.files, remarks=gearbox.remarks),
+)
+_LOSSES: tuple[Node, ...] = (
+    Stage("losses", losses_stage, "loss and efficiency map", losses.files),
+    View(mapped_loss),
+)
+_NO_LOSSES: tuple[Node, ...] = (
+    Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=True),
+    Source(no_loss_data),
 )
 _MACHINE: tuple[Node, ...] = (
     Stage("sweep", sweep_stage, "designs solved over slots and radii"),
@@ -123,6 +138,8 @@ _MACHINE: tuple[Node, ...] = (
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),
+    View(built_machine),
+    Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
@@ -158,7 +175,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_VEHICLE if driven else _STATED),
         *(_SEARCHED if searched else (Source(stated_linkage),)),
         *_MACHINE,
-        Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
+        *(_LOSSES if _has_loss_data(study) else _NO_LOSSES),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 
@@ -190,6 +207,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         drive.section,
         braking.section,
         losses.section,
+        heat.section,
         *((ride.section,) if driven else ()),
     )
 
