@@ -74,7 +74,8 @@ GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 # How the parts of a unit are written that are not their own names.
 _WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "m3": "m³", "cm3": "cm³",
             "s2": "s²", "rad2": "rad²", "deg2": "deg²", "percent": "%", "ohm": "Ω", "Ohm": "Ω", "mOhm": "mΩ",
-            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm", "mK": "(m K)", "m2K": "(m² K)"}  # fmt: skip
+            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm",
+            "mK": "(m K)", "m2K": "(m² K)"}  # fmt: skip
 
 
 def split_unit(name: str) -> tuple[str, str]:
