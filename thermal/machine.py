@@ -111,12 +111,8 @@ class CooledMachine:
 
     def hottest_copper(self, temperature: Temperatures) -> float:
         """The hottest place of the winding [degC] at the mean temperatures of the parts [degC]."""
-        slot = self.slot
-        inside = (
-            slot.flank.hottest(temperature[SLOT], temperature[TEETH]),
-            slot.bottom.hottest(temperature[SLOT], temperature[YOKE]),
-        )
-        return max(*inside, temperature[SLOT], temperature[ENDS])
+        slot = self.slot.hottest(temperature[SLOT], temperature[TEETH], temperature[YOKE])
+        return max(slot, temperature[ENDS])
 
     # ---- stores -----------------------------------------------------------------------------------------------------
 
@@ -159,23 +155,21 @@ class CooledMachine:
         along = MEAN_OF_SLAB * (wound.active_length + wound.end_turn_length) / 2
         paths = 2 * self._sides * wound.copper_area
         return (
-            Link(SLOT, TEETH, slot.flank.conductance),
-            Link(SLOT, YOKE, slot.bottom.conductance),
+            Link(SLOT, TEETH, slot.flank),
+            Link(SLOT, YOKE, slot.bottom),
             Link(SLOT, ENDS, COPPER_CONDUCTIVITY * paths / along),
         )
 
     def _iron_links(self) -> tuple[Link, ...]:
+        """Along the teeth and from their roots around the yoke; outwards through the yoke and its contact."""
         machine, length = self.wound.machine, self.wound.active_length
         middle = (machine.slot_bottom_radius + machine.stator_outer_radius) / 2
         steel = STEEL_CONDUCTIVITY * self.stacking
-        tooth = MEAN_OF_SLAB * (machine.slot_bottom_radius - machine.stator_inner_radius)
-        tooth /= steel * machine.slots * machine.tooth_width * length
         inner = shell_resistance(machine.slot_bottom_radius, middle, steel, length)
         outer = shell_resistance(middle, machine.stator_outer_radius, steel, length)
-        contact = self.cooling.casing_gap / (
-            Air(self.cooling.ambient).conductivity * 2 * pi * machine.stator_outer_radius * length
-        )
-        return Link(TEETH, YOKE, 1 / (tooth + inner)), Link(YOKE, CASING, 1 / (outer + contact))
+        gap = Air(self.cooling.ambient).conductivity * 2 * pi * machine.stator_outer_radius * length
+        along = tooth_resistance(machine, steel, length) + spreading_resistance(machine, steel, length)
+        return Link(TEETH, YOKE, 1 / (along + inner)), Link(YOKE, CASING, 1 / (outer + self.cooling.casing_gap / gap))
 
     def _rotor_links(self, temperature: Temperatures) -> tuple[Link, ...]:
         machine, length = self.wound.machine, self.wound.active_length
@@ -223,6 +217,29 @@ def shell_resistance(inner: float, outer: float, conductivity: float, length: fl
     inner, outer: radii [m]; conductivity [W/(m K)]; length [m]
     """
     return log(outer / inner) / (2 * pi * conductivity * length)
+
+
+def tooth_resistance(machine: Machine, conductivity: float, length: float) -> float:
+    """From the mean of the teeth to their roots, heated evenly along their flanks, all in parallel [K/W].
+
+    conductivity: of the stack [W/(m K)]; length [m]
+    """
+    height = machine.slot_bottom_radius - machine.stator_inner_radius
+    return MEAN_OF_SLAB * height / (conductivity * machine.slots * machine.tooth_width * length)
+
+
+def spreading_resistance(machine: Machine, conductivity: float, length: float) -> float:
+    """From the roots of the teeth around the yoke to its mean, all in parallel [K/W].
+
+    Behind a slot the yoke is a slab on either side, heated at the root and cooled outside: f^2 b / (3 k w l), where b is
+    half the bottom of the slot, w the yoke and f the share of its length that lies behind slots. Estimate.
+
+    conductivity: of the stack [W/(m K)]; length [m]
+    """
+    half_pitch = machine.slot_pitch / 2 * machine.slot_bottom_radius
+    bottom = half_pitch - machine.tooth_width / 2
+    around = conductivity * machine.back_iron_width * length * 2 * machine.slots
+    return (bottom / half_pitch) ** 2 * MEAN_OF_SLAB * bottom / around
 
 
 def yoke_share(machine: Machine) -> float:
