@@ -231,7 +231,7 @@ def tooth_resistance(machine: Machine, conductivity: float, length: float) -> fl
 def spreading_resistance(machine: Machine, conductivity: float, length: float) -> float:
     """From the roots of the teeth around the yoke to its mean, all in parallel [K/W].
 
-    Behind a slot the yoke is a slab on either side, heated at the root and cooled outside: f^2 b / (3 k w l), where b is
+    Behind a slot the yoke is a slab on either side, heated at the root, cooled outside: f^2 b / (3 k w l), where b is
     half the bottom of the slot, w the yoke and f the share of its length that lies behind slots. Estimate.
 
     conductivity: of the stack [W/(m K)]; length [m]

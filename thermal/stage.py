@@ -145,7 +145,7 @@ def heat_stage(
     minutes with one phase at its peak heats that phase up to twice as much.
     Raises ThermalError where speed or losses of the duty are out of reach.
     """
-    bench = _Bench(flux_map, winding, built, field, inputs)
+    bench = Bench(flux_map, winding, built, field, inputs)
     slow, fast = bench.heated(0.0), bench.heated(duty.speed_rms)
     history = bench.history(duty, fast.operation)
     state = _state(bench.under(duty, history))
@@ -187,8 +187,8 @@ def _state(load: LoadedMachine) -> State | None:
 
 
 @dataclass(frozen=True, eq=False)
-class _Bench:
-    """Everything that is the same at every speed."""
+class Bench:
+    """Machine, casing and losses: everything that is the same at every speed."""
 
     flux_map: FluxMap
     winding: WindingOutcome
