@@ -21,7 +21,7 @@ def heat_of_machine(found: HeatOutcome, output: Output) -> Figure:
     figure = new_figure(4.8)
     axes = figure.subplots(1, 2)
     _draw_overloads(axes[0], found, output)
-    _draw_temperatures(axes[1], found)
+    _draw_temperatures(axes[1], found, output)
     letter(axes)
     show_grid(*axes)
     return figure
@@ -55,7 +55,7 @@ def _continued(overload: Overload, continuous: float) -> tuple[np.ndarray, np.nd
     return duration, np.array([continuous, *overload.torque, overload.torque[-1]])
 
 
-def _draw_temperatures(axes: Axes, found: HeatOutcome) -> None:
+def _draw_temperatures(axes: Axes, found: HeatOutcome, output: Output) -> None:
     state, limits = found.slow.state, found.inputs.limits
     rows = [("hottest copper", state.hottest_copper), *((name, state.temperature[name]) for name in PARTS)]
     names, values = zip(*rows)
@@ -65,5 +65,7 @@ def _draw_temperatures(axes: Axes, found: HeatOutcome) -> None:
     for limit, words, look in ((limits.copper, "winding", "-"), (limits.magnets, "magnets", "--")):
         axes.axvline(limit, color=VERMILION, linestyle=look, label=f"limit of the {words}")
     axes.axvline(found.inputs.cooling.ambient, color=BLUE, linewidth=0.8, label="ambient")
-    axes.set(xlabel="temperature / °C at the continuous effort", xlim=(0.0, 1.12 * max(*values, limits.copper)))
+    axes.set(
+        xlabel=f"temperature at the continuous {output.effort} / °C", xlim=(0.0, 1.12 * max(*values, limits.copper))
+    )
     axes.legend(loc="upper center", bbox_to_anchor=(0.4, -0.16), ncols=3, frameon=False)

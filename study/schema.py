@@ -539,7 +539,7 @@ class ThermalSection(Section):
     slot_filler_conductivity_W_per_mK: Annotated[
         float | None, Quantity("heat conductivity of what fills the slot between the wires", 0.02, 5)
     ] = None
-    slot_liner_mm: Annotated[float | None, Quantity("thickness of the slot liner", 0, 5)] = None
+    slot_liner_mm: Annotated[float | None, Quantity("thickness of the slot liner", 1e-3, 5)] = None
     slot_liner_conductivity_W_per_mK: Annotated[float | None, Quantity("heat conductivity of the liner", 0.02, 5)] = (
         None
     )

@@ -16,8 +16,8 @@ EMISSIVITY = 0.9  # painted or anodised; bare machined aluminium 0.05 to 0.1 (In
 FILLER_CONDUCTIVITY = 0.2  # W/(m K), unfilled varnish or epoxy; 0.03 where nothing is impregnated, to 1 where potted
 LINER_THICKNESS = 0.25 * MILLIMETRE  # usual for low voltage; estimate
 LINER_CONDUCTIVITY = 0.14  # W/(m K), aramid paper of 0.25 mm (maker's data)
-# Of shrunk and pressed laminations: 0.01 to 0.04 mm in casings of aluminium (Staton, Boglietti and Cavagnino, IEEE
-# Trans. Energy Convers. 20(3) (2005)).
+# Of shrunk and pressed laminations in aluminium: 0.01 to 0.04 mm (Staton, Boglietti and Cavagnino, IEEE Trans. Energy
+# Convers. 20(3) (2005)); 0.03 mm is what Altair FluxMotor takes where nothing is stated.
 CASING_GAP = 0.03 * MILLIMETRE
 
 

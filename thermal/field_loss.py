@@ -8,7 +8,6 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from losses.map import PowerLosses
-from thermal.errors import ThermalError
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,27 +38,20 @@ class FieldLoss:
 class MappedLoss(FieldLoss):
     """Linear between the points of a loss map; plane: torque along the first index, speed from 0 along the second.
 
-    Beyond the largest torque of a speed its last value counts. Half the map, motoring: braking differs by the voltage
-    limit alone. Magnets as warm as the map was solved for, which is colder, so that iron loss is on the safe side.
+    Beyond the largest torque of a speed its last value counts, beyond the largest speed that of the largest: the
+    machine does not get there. Half the map, motoring: braking differs by the voltage limit alone. Magnets as warm as
+    the map was solved for, which is colder, so that iron loss is on the safe side.
     """
 
     plane: PowerLosses
     known = True
 
     def at(self, torque: np.ndarray, speed: np.ndarray) -> IronAndMagnets:
-        """See ``FieldLoss``: torque [Nm], speed [rad/s], arrays of shapes that broadcast.
-
-        Raises ThermalError beyond the speeds of the map.
-        """
+        """See ``FieldLoss``: torque [Nm], speed [rad/s], arrays of shapes that broadcast."""
         torques, speeds = self.plane.torque[:, 0], self.plane.speed[0]
-        if np.max(np.abs(speed)) > speeds[-1]:
-            raise ThermalError(
-                f"no loss is known at {np.max(np.abs(speed)):.4g} rad/s of the rotor: the loss map ends at "
-                f"{speeds[-1]:.4g} rad/s; raise winding_selection.speed_max_rpm"
-            )
         motoring = torques >= 0
         points = np.stack(np.broadcast_arrays(np.abs(torque), np.abs(speed)), axis=-1)
-        points[..., 0] = np.minimum(points[..., 0], torques[-1])
+        points = np.minimum(points, [torques[-1], speeds[-1]])
         tables = (self.plane.stator_iron, self.plane.rotor_iron, self.plane.magnet)
         axes = (torques[motoring], speeds)
         found = (RegularGridInterpolator(axes, _continued(one[motoring]))(points) for one in tables)

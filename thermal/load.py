@@ -12,7 +12,6 @@ from electrical.flux_map_machine import FluxMapMachine
 from losses.copper import copper_loss, proximity_ratio
 from materials.conductor import Conductor
 from thermal.cooling import HotMagnets
-from thermal.errors import ThermalError
 from thermal.field_loss import FieldLoss, IronAndMagnets
 from thermal.machine import CASING, COPPER_HEAT, ENDS, MAGNETS, ROTOR, SLOT, TEETH, YOKE, CooledMachine, yoke_share
 from thermal.network import Heat, Network, Temperatures
@@ -67,18 +66,12 @@ class Operation:
 
 
 def operation(machine: FluxMapMachine, limits: DriveLimits, speed: float, magnets: HotMagnets) -> Operation:
-    """Of a machine with its hot resistance at a rotor speed [rad/s].
-
-    Raises ThermalError where the voltage does not allow the speed.
-    """
+    """Of a machine with its hot resistance at a rotor speed [rad/s]; no torque where the voltage does not allow it."""
     current = np.linspace(0.0, float(limits.current_peak), _CURRENTS)
     family = machine.with_resistance(np.full(_CURRENTS - 1, machine.resistance))
     envelope = torque_speed_envelope(family, DriveLimits(current[1:], np.full(_CURRENTS - 1, limits.voltage_peak)),
                                      np.full(_CURRENTS - 1, speed))  # fmt: skip
-    reached = np.isfinite(envelope.torque)
-    if not reached.any():
-        raise ThermalError(f"the bus voltage does not reach {speed:.4g} rad/s of the rotor; raise dc_bus_voltage_V")
-    torque = np.append(0.0, np.where(reached, envelope.torque, 0.0))
+    torque = np.append(0.0, np.nan_to_num(envelope.torque, nan=0.0))
     return Operation(speed, machine.pole_pairs, current, np.maximum.accumulate(torque), magnets)
 
 

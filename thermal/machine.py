@@ -11,7 +11,7 @@ or a hollow cylinder does. The casing has one temperature, too: of aluminium and
 over sqrt(k t / h), 0.3 m and more, so that its ends over gears and sensor count as cooled surface.
 
 Left out: radiation inside, heat of the teeth into the air gap's ends, glue under the magnets, gears as a store of heat,
-and what fills the slot as one (short overloads come out on the safe side).
+and what fills the slot as one (short overloads come out on the safe side). All mass of the casing counts as aluminium.
 """
 
 from __future__ import annotations
@@ -40,9 +40,7 @@ STEEL_CONDUCTIVITY, STEEL_HEAT = 25.0, 490.0
 MAGNET_CONDUCTIVITY, MAGNET_HEAT = 8.0, 450.0  # sintered NdFeB, makers' data 7 to 9 and 350 to 500
 SHAFT_CONDUCTIVITY = 45.0  # low-alloy steel, standard textbook value
 ALUMINIUM_HEAT = 900.0  # standard textbook value
-# A bearing conducts like a gap of air of this size over its seat: measured mean of small machines (Staton, Boglietti
-# and Cavagnino, as in ``cooling``).
-BEARING_GAP = 0.3e-3  # m
+BEARING_GAP = 0.3e-3  # m of air over its seat, as which a bearing conducts; estimate
 
 
 @dataclass(frozen=True)

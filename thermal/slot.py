@@ -45,8 +45,8 @@ class Filling:
         k = k_f ((1 + v) k_c + (1 - v) k_f) / ((1 - v) k_c + (1 + v) k_f)      Hashin-Shtrikman, lower bound
         k_f = (v_e k_e + v_r k_r) / (v_e + v_r)                               enamel and filler side by side
 
-        v: share of copper. Round wires that do not touch, anywhere; within 10 % of the measured up to v = 0.6 where the
-        filler holds no bubbles. Source: Simpson, Wrobel and Mellor, IEEE Trans. Ind. Appl. 49(6) (2013) 2505.
+        v: share of copper. Round wires that do not touch, anywhere, and no bubbles in the filler; within 3 % of a
+        square array up to v = 0.4. Source: Simpson, Wrobel and Mellor, IEEE Trans. Ind. Appl. 49(6) (2013) 2505.
         """
         v, rest = self.copper, 1 - self.copper
         around = (self.enamel * ENAMEL_CONDUCTIVITY + (rest - self.enamel) * self.filler_conductivity) / rest
@@ -69,9 +69,9 @@ class Liner:
     thickness: float
     conductivity: float
 
-    def resistance(self, area: float) -> float:
-        """[K/W]; area: of it [m^2]."""
-        return self.thickness / (self.conductivity * area)
+    def conductance(self, area: float) -> float:
+        """[W/K]; area: of it [m^2]."""
+        return self.conductivity * area / self.thickness
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,9 @@ def half_slot(machine: Machine, conductivity: float, liner: Liner) -> HeatedSlic
 
 def heated_slices(width: np.ndarray, step: float, conductivity: float, liner: Liner) -> HeatedSlices:
     """Slices of widths [m] (n,), the last at the bottom; step: their thickness [m]; conductivity [W/(m K)]."""
-    inside, behind = MEAN_OF_SLAB * width / (conductivity * step), np.full(len(width), liner.resistance(step))
+    inside, behind = MEAN_OF_SLAB * width / (conductivity * step), np.full(len(width), 1 / liner.conductance(step))
     along = conductivity * (width[1:] + width[:-1]) / 2 / step
-    bottom = 1 / (step / 2 / (conductivity * width[-1]) + liner.resistance(width[-1]))
+    bottom = 1 / (step / 2 / (conductivity * width[-1]) + 1 / liner.conductance(width[-1]))
     matrix = np.diag(1 / (inside + behind)) - np.diag(along, 1) - np.diag(along, -1)
     matrix += np.diag(np.append(along, bottom)) + np.diag(np.append(0.0, along))
     return HeatedSlices(width * step, inside, behind, np.linalg.solve(matrix, width * step))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from electrical.dq import DriveLimits, mtpa_currents
+from electrical.dq import mtpa_currents
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from magnetostatics.flux_map_stage import FluxMap
@@ -28,6 +28,7 @@ _FILLERS = (
 )
 _GAPS = ((1e-5, "laminations close to the casing, 0.01 mm"), (6e-5, "laminations loose in the casing, 0.06 mm"))
 _BARE = 0.1  # emissivity of machined aluminium
+_NO_OVERLOAD = Overload(np.empty(0), np.empty(0))
 _MOUNT = 2.0  # W/K, an aluminium flange on a plate of some 0.1 m^2 in still air; estimate
 
 
@@ -143,12 +144,11 @@ def heat_stage(
 
     Slowly turning means: at no speed, the current shared by the phases over time. A machine that stands still for
     minutes with one phase at its peak heats that phase up to twice as much.
-    Raises ThermalError where speed or losses of the duty are out of reach.
     """
-    bench = Bench(flux_map, winding, built, field, inputs)
-    slow, fast = bench.heated(0.0), bench.heated(duty.speed_rms)
-    history = bench.history(duty, fast.operation)
-    state = _state(bench.under(duty, history))
+    assembled = Assembled(flux_map, winding, built, field, inputs)
+    slow, fast = assembled.heated(0.0), assembled.heated(duty.speed_rms)
+    history = assembled.history(duty, fast.operation)
+    state = _state(assembled.under(duty, history))
     rating = continuous(slow)
     start = slow.machine.cold() if state is None else state.temperature
     cold, density = slow.machine.cold(), windings.nominal_density
@@ -158,7 +158,7 @@ def heat_stage(
         slow=rating,
         at_speed=continuous(fast),
         duty=state,
-        nominal_effort=_nominal(bench.machine, winding.wound.current_peak(density)) / built.ratio,
+        nominal_effort=_nominal(assembled.machine, winding.wound.current_peak(density)) / built.ratio,
         nominal_density=density,
         slow_density=rating.current / winding.wound.current_peak(1.0),
         cold=overload(slow, cold, rating),
@@ -166,13 +166,10 @@ def heat_stage(
         cold_short=allowed_for(slow, cold, SHORT) / built.ratio,
         warm_short=0.0 if state is None else allowed_for(slow, start, SHORT) / built.ratio,
         peak_effort=float(slow.operation.cold_torque[-1]) / built.ratio,
-        ripple=copper_ripple(fast.machine, bench.copper, history, duty.step, start),
+        ripple=copper_ripple(fast.machine, assembled.copper, history, duty.step, start),
         field_known=field.known,
         what_ifs=tuple(what_ifs(slow, built.ratio)),
     )
-
-
-_NO_OVERLOAD = Overload(np.empty(0), np.empty(0))
 
 
 def _nominal(machine: FluxMapMachine, current: float) -> float:
@@ -187,7 +184,7 @@ def _state(load: LoadedMachine) -> State | None:
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
+class Assembled:
     """Machine, casing and losses: everything that is the same at every speed."""
 
     flux_map: FluxMap
@@ -198,6 +195,7 @@ class Bench:
 
     @property
     def copper(self) -> HotCopper:
+        """How its resistance goes with the temperature."""
         return HotCopper(self.inputs.conductor, self.inputs.winding_temperature)
 
     @property
@@ -207,17 +205,13 @@ class Bench:
         hot = wound.phase_resistance * self.copper.factor(self.inputs.limits.copper)
         return wound.on_map(self.flux_map.data).with_resistance(hot)
 
-    @property
-    def limits(self) -> DriveLimits:
-        return self.winding.limits
-
     def heated(self, speed: float) -> Heated:
         """Machine and currents at a speed of the output [m/s or rad/s]."""
         rotor = speed / self.built.ratio
         return Heated(
             self.cooled(rotor),
             self.copper,
-            operation(self.machine, self.limits, rotor, self.inputs.magnets),
+            operation(self.machine, self.winding.limits, rotor, self.inputs.magnets),
             self.field,
             self.built.friction(np.array(speed)),
             self.inputs.limits,
