@@ -52,6 +52,16 @@ def test_round_wires_conduct_as_a_solved_cell_does(share):
     assert Filling(share, 0.0, 393.0, 0.2).conductivity == pytest.approx(solved, rel=0.03)
 
 
+@pytest.mark.reference
+@pytest.mark.parametrize(("share", "close"), ((0.1, 1e-4), (0.2, 1e-3), (0.4, 0.012)))
+def test_round_wires_conduct_as_rayleigh_found(share, close):
+    """Square array, k = k_f (1 + 2 v / (1/b - v - 0.3058 b v^4)), b = (k_c - k_f)/(k_c + k_f): Lord Rayleigh, Phil.
+    Mag. 34 (1892) 481, to its second term."""
+    b = (393.0 - 0.2) / (393.0 + 0.2)
+    exact = 0.2 * (1 + 2 * share / (1 / b - share - 0.3058 * b * share**4))
+    assert Filling(share, 0.0, 393.0, 0.2).conductivity == pytest.approx(exact, rel=close)
+
+
 def test_enamel_and_filler_lie_side_by_side():
     assert Filling(0.3, 0.2, 393.0, 0.22).conductivity == pytest.approx(Filling(0.3, 0.0, 393.0, 0.22).conductivity)
     assert Filling(0.3, 0.2, 393.0, 0.03).conductivity > Filling(0.3, 0.0, 393.0, 0.03).conductivity
