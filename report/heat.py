@@ -17,6 +17,7 @@ from units import written
 
 TEMPERATURES, FLOWS, OVERLOAD, FIGURE = "heat_temperatures.csv", "heat_flows.csv", "heat_overload.csv", "heat"
 HOTTEST = "hottest copper"
+_TEMPERATURES = "Mean temperatures of the parts, and the heat that arises in them (friction in the casing), in the end: at both continuous ratings and"
 _BOUND = {
     COPPER_LIMIT: "the winding",
     MAGNET_LIMIT: "the magnets",
@@ -36,12 +37,12 @@ def section(found: HeatOutcome, output: Output) -> Section:
     """What the temperatures allow, and what that rests on."""
     speed = _speed(found, output)
     return Section(
-        "Heat and continuous effort".replace("effort", output.effort),
+        f"Heat and continuous {output.effort}",
         (
             _text(found, output),
             *(Remark(line) for line in remarks(found, output)),
             Table(rating_table(found, output), f"What the temperatures allow, {output.place}."),
-            Table(temperature_table(found, output), "Mean temperatures of the parts in the end, and their limits."),
+            Table(temperature_table(found, output), f"{_TEMPERATURES} {output.duty}, and the limits."),
             Picture(
                 picture_name(FIGURE),
                 f"{output.effort.capitalize()} over the time for which it is allowed, and the temperatures in the end.",
@@ -60,7 +61,7 @@ def remarks(found: HeatOutcome, output: Output) -> Iterator[str]:
         f"Continuous {output.effort}: {_effort(found, slow.torque, output)} slowly turning ({density:.3g} A/mm² RMS), "
         f"{_effort(found, found.at_speed.torque, output)} {_speed(found, output)}; {_BOUND[slow.bound_by]} "
         f"{'bind' if slow.bound_by == MAGNET_LIMIT else 'binds'}{_at_limit(found, slow)}. "
-        f"{in_unit(found.nominal_density, 'A_per_mm2'):g} A/mm² at 20 °C would be "
+        f"{in_unit(found.nominal_density, 'A_per_mm2'):g} A/mm² with cold magnets would be "
         f"{amount(found.nominal_effort, output.effort_unit)}."
     )
     if found.duty is None:
@@ -109,22 +110,19 @@ def temperature_table(found: HeatOutcome, output: Output) -> pd.DataFrame:
     limits = {HOTTEST: found.inputs.limits.copper, MAGNETS: found.inputs.limits.magnets}
     columns: dict[str, list[object]] = {"part": [HOTTEST, *PARTS]}
     for words, state in _states(found, output):
-        columns[f"{words} / °C"] = [_temperature(state, name) for name in columns["part"]]
+        columns[f"{words}_degC"] = [state.hottest_copper, *(state.temperature[name] for name in PARTS)]
     for words, state in _states(found, output):
-        columns[f"heat {words} / W"] = [None, *(state.heat.get(name, 0.0) for name in PARTS)]
-    columns["limit / °C"] = [limits.get(str(name)) for name in columns["part"]]
+        columns[f"heat_{words}_W"] = [None, *(state.heat.get(name, 0.0) for name in PARTS)]
+    columns["limit_degC"] = [limits.get(str(name)) for name in columns["part"]]
     return pd.DataFrame(columns)
 
 
 def _states(found: HeatOutcome, output: Output) -> Iterator[tuple[str, State]]:
-    yield "slowly turning", found.slow.state
-    yield _speed(found, output), found.at_speed.state
+    """States with their names in columns."""
+    yield "slowly_turning", found.slow.state
+    yield "at_RMS_speed", found.at_speed.state
     if found.duty is not None:
-        yield output.duty, found.duty
-
-
-def _temperature(state: State, name: object) -> float:
-    return state.hottest_copper if name == HOTTEST else state.temperature[str(name)]
+        yield output.duty_name, found.duty
 
 
 def flow_table(state: State) -> pd.DataFrame:
@@ -163,16 +161,21 @@ def what_if_table(found: HeatOutcome, output: Output) -> pd.DataFrame:
 
 
 def _text(found: HeatOutcome, output: Output) -> str:
-    cooling, longest = found.inputs.cooling, found.slow.state.time_constants[0]
+    cooling = found.inputs.cooling
     sources = "copper with its warm resistance" + (", iron, magnets" if found.field_known else "")
     return (
         f"A thermal network of the machine in its casing, at {cooling.ambient:g} °C around it: {sources} and friction "
-        "warm it, the remanence falls with the temperature of the magnets, and both are found together. It settles "
-        f"within some {longest / 60:.0f} minutes (its longest time constant).{_ripple(found, output)} Films, gaps and "
-        "fillers are from the literature; until a machine is measured the rise of the temperatures is known to some "
+        "warm it, the remanence falls with the temperature of the magnets, and both are found together. "
+        f"{_time_constants(found)}{_ripple(found, output)} Films, gaps and fillers are from the literature; until a machine is measured the rise of the temperatures is known to some "
         "20 % (estimate). Slowly turning means that the phases share the current: one that holds still at its peak "
         "warms up to twice as much."
     )
+
+
+def _time_constants(found: HeatOutcome) -> str:
+    first, *others = found.slow.state.time_constants[:3]
+    fast = " and ".join(f"{one:.0f} s" for one in others)
+    return f"Its longest time constant is {first / 60:.0f} minutes, the next are {fast}."
 
 
 def _ripple(found: HeatOutcome, output: Output) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from drivetrain.asked import ContinuousEffort
+from drivetrain.heat_views import built_machine, stated_duty
 from drivetrain.masses import PartMaterials
 from drivetrain.outcome import (
     Features,
@@ -177,6 +178,15 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, heat, inputs):
 def test_the_continuous_effort_is_what_the_temperatures_allow(found, heat):
     (check,) = [one for one in found.checks if isinstance(one.requirement, ContinuousEffort)]
     assert check.reached == pytest.approx(heat.at_speed.torque / found.features.transmission_ratio)
+
+
+def test_the_machine_is_cooled_by_the_casing_of_the_whole(found, winding, gears, inputs):
+    built = built_machine(winding, gears, inputs)
+    assert built.casing.diameter == pytest.approx(found.features.diameter)
+    assert built.casing.length == pytest.approx(found.features.length) and built.casing.mass == 2.4
+    assert built.weights.copper == found.masses.copper and built.weights.magnets == found.masses.magnets
+    assert built.friction(np.array([0.1, -0.3])) == pytest.approx(250.0 * (0.01 + 0.09) / 2 + 3.0 * 0.2)
+    assert stated_duty(ASKED).speed_rms == ASKED.velocity_rms and stated_duty(ASKED).effort == [ASKED.force_rms]
 
 
 def test_every_requirement_is_said_with_its_verdict(found):

@@ -161,7 +161,7 @@ def test_the_report_of_a_drive_speaks_of_no_wheel(found):
 def test_tables_say_what_the_outcome_holds(found):
     ratings = rating_table(found, Wheel()).set_index("what")["force / N"]
     assert ratings["continuous, slowly turning"] == pytest.approx(found.slow.torque / 2.3e-3)
-    warm = temperature_table(found, Wheel()).set_index("part")["slowly turning / °C"]
+    warm = temperature_table(found, Wheel()).set_index("part")["slowly_turning_degC"]
     assert warm["hottest copper"] == pytest.approx(found.slow.state.hottest_copper)
     flows = flow_table(found.at_speed.state)
     assert flows[flows.to == "ambient"].share_percent.sum() == pytest.approx(100.0) and (flows.heat_W >= 0).all()
