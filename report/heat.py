@@ -17,7 +17,7 @@ from units import written
 
 TEMPERATURES, FLOWS, OVERLOAD, FIGURE = "heat_temperatures.csv", "heat_flows.csv", "heat_overload.csv", "heat"
 HOTTEST = "hottest copper"
-_TEMPERATURES = "Mean temperatures of the parts, and the heat that arises in them (friction in the casing), in the end: at both continuous ratings and"
+_TEMPERATURES = "Mean temperatures and heat (friction: in the casing) in the end, at both continuous ratings and"
 _BOUND = {
     COPPER_LIMIT: "the winding",
     MAGNET_LIMIT: "the magnets",
@@ -166,9 +166,9 @@ def _text(found: HeatOutcome, output: Output) -> str:
     return (
         f"A thermal network of the machine in its casing, at {cooling.ambient:g} °C around it: {sources} and friction "
         "warm it, the remanence falls with the temperature of the magnets, and both are found together. "
-        f"{_time_constants(found)}{_ripple(found, output)} Films, gaps and fillers are from the literature; until a machine is measured the rise of the temperatures is known to some "
-        "20 % (estimate). Slowly turning means that the phases share the current: one that holds still at its peak "
-        "warms up to twice as much."
+        f"{_time_constants(found)}{_ripple(found, output)} Films, gaps and fillers are from the literature; until a "
+        "machine is measured the rise of the temperatures is known to some 20 % (estimate). Slowly turning means that "
+        "the phases share the current: one that holds still at its peak warms up to twice as much."
     )
 
 
