@@ -33,7 +33,8 @@ class ActuatorDesign:
     peak_torque_per_length: at the overload current density [Nm/m], as the winding stage states it
     turns, strands: wires of one turn, need not be whole while a lever is moved; wire_area [m^2]; resistivity [ohm m]
     coils_in_series of a phase; active_length, end_turn_length [m]
-    continuous_torque_per_length: what the temperatures allow at the RMS speed [Nm/m], as the heat stage states it
+    continuous_torque: what the temperatures allow at the RMS speed [Nm], as the heat stage states it; rated_length: at
+        which it does [m]
     overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
     transmission_ratio: tau_t [m/rad or 1]
     rotor_inertia_per_length [kg m]; gearbox_inertia: at the rotor shaft [kg m^2]
@@ -52,7 +53,8 @@ class ActuatorDesign:
     coils_in_series: int
     active_length: Values
     end_turn_length: float
-    continuous_torque_per_length: float
+    continuous_torque: float
+    rated_length: float
     overload_density: float
     dc_voltage: Values
     transmission_ratio: Values
@@ -133,9 +135,13 @@ class ActuatorDesign:
 
     @property
     def effort_continuous(self) -> Values:
-        """Effort that the temperatures allow for ever [N or Nm], in proportion to the length: a longer machine has as
-        much more copper and iron to cool it."""
-        made = self.continuous_torque_per_length * self.active_length / self.transmission_ratio
+        """Effort that the temperatures allow for ever [N or Nm].
+
+        At another length in proportion to it where the ways inside the machine are the bottleneck, to its root where
+        the casing is, which stays: the smaller of the two, on the safe side.
+        """
+        longer = self.active_length / self.rated_length
+        made = self.continuous_torque * np.minimum(longer, np.sqrt(longer)) / self.transmission_ratio
         return self.friction.left(made, 0.0, self.transmission_ratio)
 
     @property
