@@ -37,6 +37,10 @@ QUANTITIES: tuple[dict[str, float | None], ...] = (
     {"N_per_A": 1.0},
     {"Vs_per_m": 1.0},
     {"W": 1.0, "kW": 1e3, "mW": 1e-3},
+    {"W_per_K": 1.0},
+    {"W_per_mK": 1.0},
+    {"W_per_m2K": 1.0},
+    {"J_per_K": 1.0, "kJ_per_K": 1e3},
     {"MPa": 1e6, "GPa": 1e9, "Pa": 1.0, "N_per_mm2": 1e6},
     {"kg": 1.0, "g": 1e-3},
     {"kg_m2": 1.0, "kg_mm2": 1e-6, "g_m2": 1e-3, "g_cm2": 1e-7},
@@ -71,7 +75,8 @@ GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 # How the parts of a unit are written that are not their own names.
 _WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "m3": "m³", "cm3": "cm³",
             "s2": "s²", "rad2": "rad²", "deg2": "deg²", "percent": "%", "ohm": "Ω", "Ohm": "Ω", "mOhm": "mΩ",
-            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm"}  # fmt: skip
+            "mohm": "mΩ", "kOhm": "kΩ", "kohm": "kΩ", "uOhm": "µΩ", "nOhm": "nΩ", "uH": "µH", "um": "µm",
+            "mK": "(m K)", "m2K": "(m² K)"}  # fmt: skip
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -157,6 +162,10 @@ SYMBOLS: dict[str, str] = {
         "s": "time duration",
         "degC": "temperature",
         "m/rad": "transmission_ratio linkage_ratio",
+        "W/K": "conductance",
+        "W/(m K)": "conductivity",
+        "W/(m^2 K)": "film",
+        "J/K": "capacity",
         "1": "fraction factor share packing efficiency teeth planets slots poles pairs order turns strands layers "
         "count",
     }.items()

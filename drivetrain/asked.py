@@ -97,13 +97,13 @@ class PeakPower(Requirement):
 
 @dataclass(frozen=True)
 class ContinuousEffort(Requirement):
-    """RMS force or torque at the nominal current density; needed, reached: [N or Nm]."""
+    """RMS force or torque that the temperatures allow for ever at the RMS speed; needed, reached: [N or Nm]."""
 
     def reached(self, design: ActuatorDesign) -> Values:
         return design.effort_continuous
 
     def name(self, output: Output) -> str:
-        return f"continuous {output.effort}"
+        return f"continuous {output.effort} by temperature"
 
     def unit(self, output: Output) -> str:
         return output.effort_unit

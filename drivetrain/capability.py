@@ -16,7 +16,7 @@ import numpy as np
 
 from drivetrain.added_friction import NO_FRICTION, AddedFriction
 from electrical.braking import strongest_braking
-from electrical.dq import DriveLimits, mtpa_currents, torque_speed_envelope
+from electrical.dq import DriveLimits, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
 from electrical.short_circuit import winding_damping
@@ -33,7 +33,9 @@ class ActuatorDesign:
     peak_torque_per_length: at the overload current density [Nm/m], as the winding stage states it
     turns, strands: wires of one turn, need not be whole while a lever is moved; wire_area [m^2]; resistivity [ohm m]
     coils_in_series of a phase; active_length, end_turn_length [m]
-    nominal_density, overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
+    continuous_torque: what the temperatures allow at the RMS speed [Nm], as the heat stage states it; rated_length: at
+        which it does [m]
+    overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
     transmission_ratio: tau_t [m/rad or 1]
     rotor_inertia_per_length [kg m]; gearbox_inertia: at the rotor shaft [kg m^2]
     friction: losses on the way to the output that a bench has shown
@@ -51,7 +53,8 @@ class ActuatorDesign:
     coils_in_series: int
     active_length: Values
     end_turn_length: float
-    nominal_density: float
+    continuous_torque: float
+    rated_length: float
     overload_density: float
     dc_voltage: Values
     transmission_ratio: Values
@@ -132,9 +135,13 @@ class ActuatorDesign:
 
     @property
     def effort_continuous(self) -> Values:
-        """Effort at the nominal current density [N or Nm]."""
-        currents = mtpa_currents(self.per_turn, self._ampere_turns(self.nominal_density))
-        made = float(self.per_turn.torque(*currents)) * self.active_length / self.transmission_ratio
+        """Effort that the temperatures allow for ever [N or Nm].
+
+        At another length in proportion to it where the ways inside the machine are the bottleneck, to its root where
+        the casing is, which stays: the smaller of the two, on the safe side.
+        """
+        longer = self.active_length / self.rated_length
+        made = self.continuous_torque * np.minimum(longer, np.sqrt(longer)) / self.transmission_ratio
         return self.friction.left(made, 0.0, self.transmission_ratio)
 
     @property

@@ -38,6 +38,7 @@ from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
 from gearbox.stage import GearboxOutcome, SafetyCheck
 from magnetostatics.flux_map_stage import FluxMap
+from thermal.stage import HeatOutcome
 
 LIMIT_SPEEDS = 61  # points of the curve of effort over speed
 
@@ -75,7 +76,7 @@ class StatedActuator:
 class OutcomeInputs:
     """What a study says about supply, limits, materials and assembly, SI.
 
-    nominal_density, overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
+    overload_density: current density in the copper, RMS [A/m^2]; dc_voltage [V]
     phase_current_max: RMS [A]; rotor_speed_max [rad/s]; active_length_max [m]; equivalent_mass_max: at the output [kg
         or kg m^2]
     housing: what the casing adds; casing_mass: casing, bearings, shafts and lever [kg]; materials: of the drawn parts
@@ -84,7 +85,6 @@ class OutcomeInputs:
     added_friction: losses beyond what the study states, as a bench has shown them
     """
 
-    nominal_density: float
     overload_density: float
     dc_voltage: float
     phase_current_max: float
@@ -131,6 +131,7 @@ class Outcome:
 def outcome_stage(
     winding: WindingOutcome,
     flux_map: FluxMap,
+    heat: HeatOutcome,
     gears: GearboxOutcome,
     required: Requirements,
     linkage: Linkage,
@@ -146,7 +147,7 @@ def outcome_stage(
     """
     wound = winding.wound
     masses = active_masses(wound, inputs.materials)
-    design = actuator_design(winding, flux_map, gears, masses, inputs)
+    design = actuator_design(winding, flux_map, heat, gears, masses, inputs)
     layout = actuator_layout(gears.train, machine_envelope(wound), inputs.housing)
     features = features_of(design, gears, linkage, layout, masses.total + gears.train.mass + inputs.casing_mass)
     asked = (*requirements_of(required, linkage, layout, inputs), *_magnets_kept(magnets))
@@ -194,7 +195,12 @@ def active_masses(wound: WoundMachine, materials: PartMaterials) -> PartMasses:
 
 
 def actuator_design(
-    winding: WindingOutcome, flux_map: FluxMap, gears: GearboxOutcome, masses: PartMasses, inputs: OutcomeInputs
+    winding: WindingOutcome,
+    flux_map: FluxMap,
+    heat: HeatOutcome,
+    gears: GearboxOutcome,
+    masses: PartMasses,
+    inputs: OutcomeInputs,
 ) -> ActuatorDesign:
     """What can be moved to see what would help."""
     wound = winding.wound
@@ -208,7 +214,8 @@ def actuator_design(
         coils_in_series=wound.coils_in_series,
         active_length=wound.active_length,
         end_turn_length=wound.end_turn_length,
-        nominal_density=inputs.nominal_density,
+        continuous_torque=heat.at_speed.torque,
+        rated_length=wound.active_length,
         overload_density=inputs.overload_density,
         dc_voltage=inputs.dc_voltage,
         transmission_ratio=gears.transmission_ratio,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
+from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -49,6 +50,7 @@ from report import (
     fits,
     flux_map,
     gearbox,
+    heat,
     linkage,
     losses,
     magnets,
@@ -67,6 +69,7 @@ from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
 from study.inputs_field import saturation_limit, sweep_grid
 from study.inputs_gearbox import gear_inputs
+from study.inputs_heat import heat_inputs, no_loss_data
 from study.inputs_learned import (
     field_case_as_learned,
     loss_inputs_as_learned,
@@ -80,19 +83,23 @@ from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
 from study.inputs_package import part_prices
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
+from thermal.errors import ThermalError
+from thermal.stage import heat_stage
 from vehicle.demands import required, requirements_stage
 from vehicle.errors import VehicleError
 from vehicle.gear_loads import road_loads
+from vehicle.heat_duty import road_duty
 from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
     FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, VehicleError, WindingError,
+    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, ThermalError, VehicleError,
+    WindingError,
 )  # fmt: skip
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat, part_prices,
+    gear_inputs, output, copper_heat, heat_inputs, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -104,10 +111,11 @@ _VEHICLE: tuple[Node, ...] = (
     Stage("requirements", requirements_stage, "the vehicle asks", requirements.files, remarks=requirements.remarks),
     View(required),
     View(road_loads),
+    View(road_duty),
     Stage("ride", ride_again_stage, "the vehicle with what was designed", ride.files),
     View(actuator_limits),
 )
-_STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads))
+_STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))
 _SEARCHED: tuple[Node, ...] = (
     Source(linkage_search),
     Source(installation_space),
@@ -122,6 +130,14 @@ _MAGNETS: tuple[Node, ...] = (
     View(magnet_inputs_as_learned),
     Stage("magnets", magnets_stage, "what they stand", magnets.files, remarks=magnets.remarks),
 )
+_LOSSES: tuple[Node, ...] = (
+    Stage("losses", losses_stage, "loss and efficiency map", losses.files),
+    View(mapped_loss),
+)
+_NO_LOSSES: tuple[Node, ...] = (
+    Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=True),
+    Source(no_loss_data),
+)
 _MACHINE: tuple[Node, ...] = (
     Stage("sweep", sweep_stage, "designs solved over slots and radii"),
     Stage("optima", optima_stage, "the best under the limit", sweep.optima_files, remarks=sweep.remarks),
@@ -135,6 +151,8 @@ _MACHINE: tuple[Node, ...] = (
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),
+    View(built_machine),
+    Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
@@ -171,7 +189,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_SEARCHED if searched else (Source(stated_linkage),)),
         *_MACHINE,
         *(_MAGNETS if _has_grade(study) else ()),
-        Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=not _has_loss_data(study)),
+        *(_LOSSES if _has_loss_data(study) else _NO_LOSSES),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
@@ -212,6 +230,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         braking.section,
         *((magnets.section,) if _has_grade(study) else ()),
         losses.section,
+        heat.section,
         package.section,
         *((ride.section,) if driven else ()),
     )

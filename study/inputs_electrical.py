@@ -52,7 +52,7 @@ COLD, HOT = 20.0, 120.0  # degC; a winding of class B (130 degC, IEC 60085) less
 
 def copper_heat(study: Study) -> CopperHeat:
     """How the resistance of the copper changes between a cold and a hot machine."""
-    now, copper = winding_resistivity(study), _copper(study)
+    now, copper = winding_resistivity(study), winding_conductor(study)
     return CopperHeat(COLD, HOT, *(float(copper.resistivity(one)) / now for one in (COLD, HOT)))
 
 
@@ -71,10 +71,11 @@ def winding_limits(study: Study) -> WindingLimits:
 
 def winding_resistivity(study: Study) -> float:
     """Resistivity of the copper at the temperature of the winding [ohm m]."""
-    return float(_copper(study).resistivity(study.winding_selection.si.winding_temperature))
+    return float(winding_conductor(study).resistivity(study.winding_selection.si.winding_temperature))
 
 
-def _copper(study: Study) -> Conductor:
+def winding_conductor(study: Study) -> Conductor:
+    """The law of the copper, as the study states it."""
     materials = study.materials.si
     return Conductor(
         reference_resistivity=materials.copper_resistivity,

@@ -13,7 +13,6 @@ def outcome_inputs(study: Study) -> OutcomeInputs:
     """Currents, supply, limits, materials, casing and friction."""
     sweep, match, supply, friction = study.sweep.si, study.match.si, study.winding_selection.si, friction_at(study)
     return OutcomeInputs(
-        nominal_density=sweep.j_nominal_rms,
         overload_density=sweep.j_overload_rms,
         dc_voltage=supply.dc_bus_voltage,
         phase_current_max=supply.phase_current_max_rms,

@@ -569,6 +569,37 @@ class WindingSelectionSection(Section):
     winding_temperature_degC: Annotated[float, Quantity("temperature of the winding", -50, 300)]
 
 
+class ThermalSection(Section):
+    """How the machine is cooled and how warm it may become; what is not stated has the default of
+    ``thermal.cooling``."""
+
+    ambient_temperature_degC: Annotated[float | None, Quantity("temperature of the surroundings", -60, 200)] = None
+    copper_temperature_max_degC: Annotated[
+        float | None, Quantity("hottest place of the winding, by its insulation class", 50, 400)
+    ] = None
+    magnet_temperature_max_degC: Annotated[float | None, Quantity("warmest magnets", 50, 400)] = None
+    remanence_temperature_coefficient_per_K: Annotated[
+        float | None, Quantity("reversible temperature coefficient of the remanence", -0.01, 0)
+    ] = None
+    slot_filler_conductivity_W_per_mK: Annotated[
+        float | None, Quantity("heat conductivity of what fills the slot between the wires", 0.02, 5)
+    ] = None
+    slot_liner_mm: Annotated[float | None, Quantity("thickness of the slot liner", 1e-3, 5)] = None
+    slot_liner_conductivity_W_per_mK: Annotated[float | None, Quantity("heat conductivity of the liner", 0.02, 5)] = (
+        None
+    )
+    casing_gap_mm: Annotated[
+        float | None, Quantity("gap of air that stands for the contact of laminations and casing", 1e-4, 1)
+    ] = None
+    emissivity: Annotated[float | None, Quantity("emissivity of the casing", 0, 1)] = None
+    film_W_per_m2K: Annotated[
+        float | None, Quantity("film coefficient of the casing, in the place of still air", 0, 1e5)
+    ] = None
+    mount_conductance_W_per_K: Annotated[
+        float | None, Quantity("conductance from the casing to what it is mounted on", 0, 1e5)
+    ] = None
+
+
 class Study(Section):
     """A whole study file."""
 
@@ -595,6 +626,7 @@ class Study(Section):
     printed_machine: PrintedMachineSection | None = None
     winding_selection: WindingSelectionSection
     flux_map: FluxMapSection = FluxMapSection()
+    thermal: ThermalSection = ThermalSection()
     gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
     prices: PricesSection | None = None

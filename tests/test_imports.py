@@ -7,7 +7,7 @@ PROJECT = Path(__file__).resolve().parent.parent
 # Each room may import those named after it; everything may import units, tasks and disk. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
-_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "gearbox", "drivetrain", "vehicle"}
+_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain", "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
@@ -19,9 +19,10 @@ ALLOWED = {
     "optimisation": {"magnetostatics", "geometry"},
     "electrical": _FIELD,
     "losses": {*_FIELD, "electrical"},
+    "thermal": {*_FIELD, "electrical", "losses"},
     "gearbox": set(),
-    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "gearbox"},
-    "vehicle": {"drivetrain", "gearbox"},
+    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox"},
+    "vehicle": {"thermal", "drivetrain", "gearbox"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
     "study": _DESIGN,

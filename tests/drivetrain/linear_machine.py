@@ -45,6 +45,6 @@ def actuator():
     return ActuatorDesign(
         per_turn=per_turn(), peak_torque_per_length=1.5 * POLES * PSI * AMPERES * TURNS, turns=TURNS, strands=STRANDS,
         wire_area=AREA, resistivity=RHO, coils_in_series=4, active_length=LENGTH, end_turn_length=END,
-        nominal_density=6e6, overload_density=20e6, dc_voltage=48.0, transmission_ratio=2e-3,
+        continuous_torque=1.5, rated_length=LENGTH, overload_density=20e6, dc_voltage=48.0, transmission_ratio=2e-3,
         rotor_inertia_per_length=8e-4, gearbox_inertia=2e-6,
     )  # fmt: skip

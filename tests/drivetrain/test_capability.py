@@ -55,11 +55,16 @@ def design():
 def test_efforts_are_those_of_the_constant_parameters(design):
     plain = closed_form()
     assert design.effort_peak == pytest.approx(1.5 * POLES * plain.psi_m * AMPERES / 2e-3, rel=1e-9)
-    assert design.effort_continuous == pytest.approx(design.effort_peak * 6 / 20, rel=1e-6)
+    assert design.effort_continuous == pytest.approx(1.5 / 2e-3, rel=1e-12)
     speed = np.array([0.5, 2.0, 4.0])
     expected = torque_speed_envelope(plain, DriveLimits.from_dc_bus(AMPERES, 48.0), speed / 2e-3).torque / 2e-3
     assert design.effort_over(speed) == pytest.approx(np.nan_to_num(expected), rel=1e-4)
     assert design.effort_at(-2.0) == pytest.approx(expected[1], rel=1e-4)
+
+
+def test_a_longer_machine_is_cooled_by_the_same_casing_and_a_shorter_one_has_less_to_cool(design):
+    efforts = replace(design, active_length=LENGTH * np.array([0.5, 1.0, 2.0])).effort_continuous
+    assert efforts == pytest.approx(design.effort_continuous * np.array([0.5, 1.0, 2**0.5]))
 
 
 def test_the_envelope_at_rest_is_the_stated_peak(design):

@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from drivetrain.asked import ContinuousEffort
+from drivetrain.heat_views import built_machine, stated_duty
 from drivetrain.masses import PartMaterials
 from drivetrain.outcome import (
     Features,
@@ -30,6 +32,8 @@ from magnetostatics.flux_map_stage import FluxMap
 from pipeline.codec import decoded, digest, encoded
 from report.outcome import checks_table, features_table, files, masses_table, remarks, remedies_table, section
 from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
+from thermal.rating import COPPER_LIMIT, Rating
+from thermal.stage import HeatOutcome
 
 MM = 1e-3
 BUILD = Construction(bore_fraction=0.45, flange_fraction=0.25, least_flange=1.5 * MM, axial_gap=0.5 * MM)
@@ -61,9 +65,16 @@ def winding(wound, field):
 
 
 @pytest.fixture(scope="module")
+def heat(winding):
+    """Only what the outcome reads of it: 30 % of the peak torque for ever."""
+    rating = Rating(45.0, 1.0, 0.3 * winding.peak_torque, COPPER_LIMIT, None)
+    return HeatOutcome(**{name: None for name in HeatOutcome.__dataclass_fields__} | {"at_speed": rating})
+
+
+@pytest.fixture(scope="module")
 def inputs():
     return OutcomeInputs(
-        nominal_density=6e6, overload_density=20e6, dc_voltage=48.0, phase_current_max=90.0, rotor_speed_max=2618.0,
+        overload_density=20e6, dc_voltage=48.0, phase_current_max=90.0, rotor_speed_max=2618.0,
         active_length_max=70 * MM, equivalent_mass_max=15.0,
         housing=Housing(wall=12.5 * MM, lever_side=55 * MM, bearing_seat=14 * MM, sensor_cover=25 * MM),
         casing_mass=2.4, materials=PartMaterials(7650.0, 7500.0, 8960.0, 7800.0, 0.95),
@@ -80,8 +91,8 @@ def gears():
 
 
 @pytest.fixture(scope="module")
-def found(winding, field, gears, inputs):
-    return outcome_stage(winding, field, gears, ASKED, Linkage(0.170, 0.175, 60 * MM), inputs)
+def found(winding, field, heat, gears, inputs):
+    return outcome_stage(winding, field, heat, gears, ASKED, Linkage(0.170, 0.175, 60 * MM), inputs)
 
 
 def test_the_features_agree_with_each_other(found, winding, wound, gears, inputs):
@@ -114,8 +125,8 @@ def test_a_check_at_speed_is_on_the_limits(found):
     assert check.reached == pytest.approx(np.interp(1.6, found.limits.speed, found.limits.force), rel=0.01)
 
 
-def test_nothing_asked_for_holds(winding, field, gears, inputs):
-    found = outcome_stage(winding, field, gears, NOTHING, Linkage(0.170, 0.175), inputs)
+def test_nothing_asked_for_holds(winding, field, heat, gears, inputs):
+    found = outcome_stage(winding, field, heat, gears, NOTHING, Linkage(0.170, 0.175), inputs)
     assert all(one.holds for one in found.checks[:6]) and len(found.checks) == 9
     table = checks_table(found, Wheel())
     assert list(table.margin_percent[:5]) == [np.inf] * 5
@@ -159,11 +170,11 @@ def test_a_failing_requirement_is_a_remark(found):
     assert all("does not hold" in text for text in said)
 
 
-def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
+def test_a_direct_drive_speaks_of_no_wheel(winding, field, heat, inputs):
     """A torque of the machine itself, no gears, a load on the shaft."""
     drive = Requirements(0.0, 1.0, 100.0, 100.0, 300.0, 4.0, 100.0, 500.0, 2.0, 250.0)
     plain = OutcomeInputs(**{**vars(inputs), "stated": None, "load_inertia": 1e-3, "equivalent_mass_max": 1e-2})
-    found = outcome_stage(winding, field, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain)
+    found = outcome_stage(winding, field, heat, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain)
     assert found.features.effort_peak == pytest.approx(winding.peak_torque)
     assert found.load_inertia_ratio == pytest.approx(1e-3 / found.features.equivalent_mass)
     words = repr([part if isinstance(part, str) else part.frame.to_string() if hasattr(part, "frame") else part
@@ -171,6 +182,20 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
     for absent in ("wheel", "lever", "force", "m/s", "linkage", "gears"):
         assert absent not in words
     assert "peak torque" in words and "rpm" in words and "kg m²" in words
+
+
+def test_the_continuous_effort_is_what_the_temperatures_allow(found, heat):
+    (check,) = [one for one in found.checks if isinstance(one.requirement, ContinuousEffort)]
+    assert check.reached == pytest.approx(heat.at_speed.torque / found.features.transmission_ratio)
+
+
+def test_the_machine_is_cooled_by_the_casing_of_the_whole(found, winding, gears, inputs):
+    built = built_machine(winding, gears, inputs)
+    assert built.casing.diameter == pytest.approx(found.features.diameter)
+    assert built.casing.length == pytest.approx(found.features.length) and built.casing.mass == 2.4
+    assert built.weights.copper == found.masses.copper and built.weights.magnets == found.masses.magnets
+    assert built.friction(np.array([0.1, -0.3])) == pytest.approx(250.0 * (0.01 + 0.09) / 2 + 3.0 * 0.2)
+    assert stated_duty(ASKED).speed_rms == ASKED.velocity_rms and stated_duty(ASKED).effort == [ASKED.force_rms]
 
 
 def test_every_requirement_is_said_with_its_verdict(found):

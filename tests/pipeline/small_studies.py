@@ -10,13 +10,15 @@ from dataclasses import replace
 import numpy as np
 from pool_here import Here
 
+from drivetrain.heat_views import mapped_loss
 from optimisation.fits import QUANTITIES, SectionFits, SlotFits
 from optimisation.polynomial_fits import fit_polynomial
-from pipeline.graph import Stage, View
+from pipeline.graph import Source, Stage, View
 from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.run_command import page_of
 from pipeline.stages import graph_of
+from study.inputs_heat import no_loss_data
 from study.read import STUDIES, read_study
 from tests.drivetrain.fitted_machines import MotorcycleFits
 
@@ -63,9 +65,14 @@ def _fits(sections):
 
 
 def fitted(study, without=(), graph=None):
-    """The graph of a study, or another one, with ``fitted_sections`` from the start, and without some stages."""
+    """The graph of a study, or another one, with ``fitted_sections`` from the start, and without some stages.
+
+    Without losses the heat of the machine counts none in iron and magnets.
+    """
     graph, gone = graph or graph_of(study), {"sweep", "optima", "limits", "fits", *without}
-    kept = tuple(node for node in graph.nodes if not (isinstance(node, Stage) and node.name in gone))
+    kept = [node for node in graph.nodes if not (isinstance(node, Stage) and node.name in gone)]
+    if "losses" in gone:
+        kept = [Source(no_loss_data) if node == View(mapped_loss) else node for node in kept]
     return replace(graph, nodes=(*kept, View(fitted_sections)))
 
 

@@ -144,6 +144,13 @@ def test_make_knows_the_stages_of_the_graph():
     assert sorted(named) == sorted(name for name in stages if name != "optimise")
 
 
+@pytest.mark.parametrize(("name", "counted"), (("motorcycle", True), ("template", False)))
+def test_heat_waits_for_losses_only_where_the_steel_has_data(name, counted):
+    graph = graph_of(read_study(name))
+    before = [stage.name for stage in graph.before(graph.stage("heat"))]
+    assert ("losses" in before) == counted and {"winding", "flux_map"} <= set(before)
+
+
 def test_readme_shows_the_graph_as_it_is():
     from pipeline.graph import drawing
 

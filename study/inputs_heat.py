@@ -1,0 +1,74 @@
+"""How the machine is cooled and how warm it may become, in SI; what a study does not state has the rooms' defaults."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from study.inputs_electrical import winding_conductor
+from study.schema import Study
+from thermal.air import Film, GivenFilm, StillAir
+from thermal.cooling import (
+    AMBIENT,
+    CASING_GAP,
+    CLASS_F,
+    EMISSIVITY,
+    FILLER_CONDUCTIVITY,
+    LINER_CONDUCTIVITY,
+    LINER_THICKNESS,
+    MAGNET_LIMIT,
+    Cooling,
+    HeatLimits,
+    HotMagnets,
+)
+from thermal.field_loss import FieldLoss, NoLossData
+from thermal.slot import Liner
+from thermal.stage import HeatInputs
+
+
+def heat_inputs(study: Study) -> HeatInputs:
+    """Cooling, limits, and how copper and magnets change as they warm up."""
+    section, winding = study.thermal.si, study.winding_selection.si
+    return HeatInputs(
+        cooling(study),
+        HeatLimits(
+            _or(section.copper_temperature_max, CLASS_F),
+            _or(section.magnet_temperature_max, MAGNET_LIMIT),
+        ),
+        hot_magnets(study),
+        winding_conductor(study),
+        winding.winding_temperature,
+    )
+
+
+def cooling(study: Study) -> Cooling:
+    """What leads the heat away beside the machine itself."""
+    section, winding = study.thermal.si, study.winding_selection.si
+    return Cooling(
+        wire_diameter=winding.wire_diameter,
+        wire_insulation=winding.wire_insulation,
+        ambient=_or(section.ambient_temperature, AMBIENT),
+        film=_film(section.film, _or(section.emissivity, EMISSIVITY)),
+        mount=_or(section.mount_conductance, 0.0),
+        filler_conductivity=_or(section.slot_filler_conductivity, FILLER_CONDUCTIVITY),
+        liner=Liner(_or(section.slot_liner, LINER_THICKNESS), _or(section.slot_liner_conductivity, LINER_CONDUCTIVITY)),
+        casing_gap=_or(section.casing_gap, CASING_GAP),
+    )
+
+
+def hot_magnets(study: Study) -> HotMagnets:
+    """How the remanence falls: the study's coefficient, else that of sintered NdFeB."""
+    coefficient = study.thermal.si.remanence_temperature_coefficient
+    return HotMagnets() if coefficient is None else HotMagnets(coefficient)
+
+
+def no_loss_data(study: Study) -> FieldLoss:
+    """In the place of a loss map, for a steel without loss data."""
+    return NoLossData()
+
+
+def _film(stated: float | None, emissivity: float) -> Film:
+    return StillAir(emissivity) if stated is None else GivenFilm(stated)
+
+
+def _or(stated: Any, otherwise: float) -> float:
+    return otherwise if stated is None else float(stated)
