@@ -34,6 +34,8 @@ from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
 from gearbox.stage import GearboxOutcome, SafetyCheck
 from magnetostatics.flux_map_stage import FluxMap
+from mechanics.checks import LoadCheck
+from mechanics.stage import MechanicsOutcome
 
 LIMIT_SPEEDS = 61  # points of the curve of effort over speed
 
@@ -101,7 +103,8 @@ class OutcomeInputs:
 class Outcome:
     """The designed actuator and how it stands against what is asked of it.
 
-    checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
+    checks: of the requirements; gear_checks: of the safety factors; strength_checks: of rotor, shafts and bearings
+    remedies: for the checks of requirements that do not hold
     masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
     active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
     load_inertia_ratio: inertia of the load relative to that of the drive, at the output; None without a load inertia
@@ -111,6 +114,7 @@ class Outcome:
     stated: StatedActuator | None
     checks: tuple[Check, ...]
     gear_checks: tuple[SafetyCheck, ...]
+    strength_checks: tuple[LoadCheck, ...]
     remedies: tuple[Remedy, ...]
     masses: PartMasses
     gearbox_mass: float
@@ -129,11 +133,14 @@ def outcome_stage(
     required: Requirements,
     linkage: Linkage,
     inputs: OutcomeInputs,
+    mechanics: MechanicsOutcome | None,
 ) -> Outcome:
     """The actuator of machine, winding and gears against everything that is asked of it.
 
     A requirement that does not hold is no error: the outcome says which input to move, by how much, and what would
     fail then. Raises GearError when the rotor does not fit its stator.
+
+    mechanics: None where the rotor could not be checked
     """
     wound = winding.wound
     masses = active_masses(wound, inputs.materials)
@@ -146,6 +153,7 @@ def outcome_stage(
         stated=inputs.stated,
         checks=checks,
         gear_checks=gears.checks,
+        strength_checks=() if mechanics is None else mechanics.checks,
         remedies=remedies(design, checks, LEVERS if gears.train.stages else DIRECT_DRIVE_LEVERS),
         masses=masses,
         gearbox_mass=gears.train.mass,

@@ -15,6 +15,7 @@ from drivetrain.match import MatchError
 from drivetrain.matching import match_stage, matched_machine
 from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
+from drivetrain.rotor_duty import rotor_duty
 from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
 from electrical.braking_stage import braking_stage
@@ -28,9 +29,11 @@ from geometry.machine import GeometryError
 from losses.stage import LossError, loss_law, losses_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
+from magnetostatics.gap_stress_stage import gap_stress_stage
 from magnetostatics.newton import FieldSolutionError
 from magnetostatics.rotation_stage import rotations_stage
 from materials.errors import MaterialError
+from mechanics.stage import mechanics_stage
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.fits import fits_stage
 from optimisation.limits import limits_stage
@@ -44,10 +47,12 @@ from report import (
     fields,
     fits,
     flux_map,
+    gap_stress,
     gearbox,
     linkage,
     losses,
     match,
+    mechanics,
     optimise,
     outcome,
     requirements,
@@ -70,6 +75,7 @@ from study.inputs_learned import (
 )
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_mechanics import mechanics_inputs
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from vehicle.demands import required, requirements_stage
@@ -84,7 +90,7 @@ REFUSALS = (
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat,
+    gear_inputs, output, copper_heat, mechanics_inputs,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -123,6 +129,9 @@ _MACHINE: tuple[Node, ...] = (
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),
+    Stage("gap_stress", gap_stress_stage, "waves, cogging, ripple, magnetic pull", gap_stress.files),
+    View(rotor_duty),
+    Stage("mechanics", mechanics_stage, "magnets, rotor, shafts, bearings", mechanics.files, remarks=mechanics.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
@@ -185,10 +194,12 @@ def _sections(study: Study) -> tuple[Function, ...]:
         match.section,
         fields.matched,
         flux_map.section,
+        gap_stress.section,
         gearbox.section,
         winding.section,
         drive.section,
         braking.section,
+        mechanics.section,
         losses.section,
         *((ride.section,) if driven else ()),
     )

@@ -7,7 +7,7 @@ PROJECT = Path(__file__).resolve().parent.parent
 # Each room may import those named after it; everything may import units, tasks and disk. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
-_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "gearbox", "drivetrain", "vehicle"}
+_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "gearbox", "mechanics", "drivetrain", "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
@@ -20,7 +20,8 @@ ALLOWED = {
     "electrical": _FIELD,
     "losses": {*_FIELD, "electrical"},
     "gearbox": set(),
-    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "gearbox"},
+    "mechanics": {*_FIELD, "gearbox"},
+    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "gearbox", "mechanics"},
     "vehicle": {"drivetrain", "gearbox"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},

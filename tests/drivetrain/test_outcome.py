@@ -29,6 +29,7 @@ from magnetostatics.flux_map_stage import FluxMap
 from pipeline.codec import decoded, digest, encoded
 from report.outcome import checks_table, features_table, files, masses_table, remarks, remedies_table, section
 from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
+from tests.mechanics.a_rotor import strength
 
 MM = 1e-3
 BUILD = Construction(bore_fraction=0.45, flange_fraction=0.25, least_flange=1.5 * MM, axial_gap=0.5 * MM)
@@ -80,7 +81,8 @@ def gears():
 
 @pytest.fixture(scope="module")
 def found(winding, field, gears, inputs):
-    return outcome_stage(winding, field, gears, ASKED, Linkage(0.170, 0.175, 60 * MM), inputs)
+    linkage, weak = Linkage(0.170, 0.175, 60 * MM), strength(peak_torque=12.0)
+    return outcome_stage(winding, field, gears, ASKED, linkage, inputs, weak)
 
 
 def test_the_features_agree_with_each_other(found, winding, wound, gears, inputs):
@@ -114,7 +116,7 @@ def test_a_check_at_speed_is_on_the_limits(found):
 
 
 def test_nothing_asked_for_holds(winding, field, gears, inputs):
-    found = outcome_stage(winding, field, gears, NOTHING, Linkage(0.170, 0.175), inputs)
+    found = outcome_stage(winding, field, gears, NOTHING, Linkage(0.170, 0.175), inputs, None)
     assert all(one.holds for one in found.checks[:6]) and len(found.checks) == 9
     table = checks_table(found, Wheel())
     assert list(table.margin_percent[:5]) == [np.inf] * 5
@@ -135,6 +137,8 @@ def test_tables_are_in_drawing_units(found):
     assert (damping.needed, damping.unit) == (40.0, "kNs/m")
     assert table.loc["diameter"].needed == 120.0 and table.loc["rotor speed"].unit == "rpm"
     assert table.loc["gears, safety static root"].holds == "NO"
+    assert table.loc["sun of stage 1, at its root circle, safety factor"].holds == "NO"
+    assert table.loc["first critical speed, safety factor"].needed == 1.25
     features = features_table(found, Wheel()).set_index("feature")
     assert features.loc["overall transmission ratio / (mm/rad)"].stated == pytest.approx(2.2)
     assert features.loc["diameter of the envelope / mm"].ours == pytest.approx(110)
@@ -146,7 +150,7 @@ def test_tables_are_in_drawing_units(found):
 
 def test_a_failing_requirement_is_a_remark(found):
     said = [part.text for part in section(found, Wheel()).content if type(part).__name__ == "Remark"]
-    assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks))
+    assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks, *found.strength_checks))
     assert all("does not hold" in text for text in said)
 
 
@@ -154,7 +158,7 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, inputs):
     """A torque of the machine itself, no gears, a load on the shaft."""
     drive = Requirements(0.0, 1.0, 100.0, 100.0, 300.0, 4.0, 100.0, 500.0, 2.0, 250.0)
     plain = OutcomeInputs(**{**vars(inputs), "stated": None, "load_inertia": 1e-3, "equivalent_mass_max": 1e-2})
-    found = outcome_stage(winding, field, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain)
+    found = outcome_stage(winding, field, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain, None)
     assert found.features.effort_peak == pytest.approx(winding.peak_torque)
     assert found.load_inertia_ratio == pytest.approx(1e-3 / found.features.equivalent_mass)
     words = repr([part if isinstance(part, str) else part.frame.to_string() if hasattr(part, "frame") else part

@@ -16,7 +16,9 @@ from pipeline.run_command import page_of, run_command
 from study.schema import Study
 from study.sentences import section_class
 
-HEAVY = ("flux_map", "fields", "winding", "drive", "braking", "outcome", "losses", "optimise")
+HEAVY = (
+    "flux_map", "gap_stress", "fields", "winding", "drive", "braking", "mechanics", "outcome", "losses", "optimise"
+)  # fmt: skip
 STATED = {"chain__requirements": '"stated"', "chain__linkage": '"stated"'}
 
 
