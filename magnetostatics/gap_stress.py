@@ -112,7 +112,8 @@ def classical_pull(mean_stress: float, radius: float, effective_gap: float) -> f
 
     F = pi r l <B^2> e / (mu_0 g), with <B^2> = 2 mu_0 sigma_0 the mean square of the flux density in the gap, from its
     mean radial stress; of a sinusoidal field of amplitude B it is pi r l B^2 e/(2 mu_0 g).
-    Standard textbook formula: iron without saturation and slots, two pole pairs or more, a shift small against the gap.
+    Standard textbook formula: iron without saturation, a gap that is thin against radius and poles, two pole pairs or
+    more, a shift small against the gap. Harmonics of the field count like the first, though they feel the gap more.
 
     mean_stress: sigma_0 [Pa]; radius: r of the gap [m]; effective_gap: g, see ``effective_gap`` [m]
     """

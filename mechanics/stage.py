@@ -97,8 +97,8 @@ def mechanics_stage(
 ) -> MechanicsOutcome:
     """Check magnets, laminations, shafts, critical speed and bearings.
 
-    The magnetic stiffness is that of the field solution, the larger of no current and overload: slots and saturation
-    are in it, which ``classical_pull`` lacks (12 % less at 12 slots, 10 poles and 3 mm from core to bore).
+    The magnetic stiffness is that of the field solution, the larger of no current and overload: saturation, curvature
+    and the harmonics of the field are in it, which ``classical_pull`` lacks (12 % less at 12 slots and 10 poles).
     Raises MaterialError where a shaft is thicker than the table of its steel.
     """
     magnets = MagnetRing(

@@ -115,7 +115,7 @@ def _pull(found: GapStress, case: FieldCase) -> str:
     return (
         f"{_centred(found)} With the rotor {found.shift / MILLIMETRE:.3g} mm off centre the stator pulls it further "
         f"out, with {idle:.3g} kN/m of length without current and {overload:.3g} kN/m at the overload; the classical "
-        f"formula gives {formula:.3g} kN/m, without slots and saturation."
+        f"formula, for a thin gap and a sinusoidal field, gives {formula:.3g} kN/m."
     )
 
 
