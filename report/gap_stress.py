@@ -75,7 +75,7 @@ def waves_table(found: GapStress) -> pd.DataFrame:
         [
             {"spatial_order": wave.spatial_order, "temporal_order": wave.temporal_order}
             | {f"{state}_MPa": amplitude_of(waves, wave) / _MPA for state, waves in states.items()}
-            for wave in found.waves("overload")
+            for wave in states["overload"]
             if wave.amplitude > _SMALL * found.mean_stress
         ]
     )

@@ -516,6 +516,12 @@ class MechanicsSection(Section):
             raise ValueError(f"describes a sleeve without {missing[0]}; add it, or remove the others of the sleeve")
         return self
 
+    @model_validator(mode="after")
+    def _a_life_is_that_of_a_stated_bearing(self) -> Self:
+        if self.bearing_life_h is not None and self.bearing_capacity_kN is None:
+            raise ValueError("has bearing_life_h without bearing_capacity_kN, which it is rated with; add it")
+        return self
+
 
 class PrintedActuatorSection(Section):
     """The actuator of somebody else, for the comparison at the end (thesis Tables 3.12 and A.1)."""

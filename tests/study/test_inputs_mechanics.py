@@ -43,3 +43,8 @@ def test_a_sleeve_is_described_whole(missing):
 def test_a_sleeve_fits_the_air_gap():
     with pytest.raises(StudyError, match="sleeve_thickness_mm = 0.5 fills machine.airgap_mm = 0.5"):
         read_study("motorcycle", (SLEEVE[0], "mechanics.sleeve_thickness_mm=0.5", SLEEVE[2]))
+
+
+def test_a_life_needs_the_capacity_of_the_bearing():
+    with pytest.raises(StudyError, match="bearing_life_h without bearing_capacity_kN"):
+        read_study("pump", ("mechanics.bearing_life_h=1000.0",))
