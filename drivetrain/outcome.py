@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -26,7 +27,8 @@ from drivetrain.asked import (
 )
 from drivetrain.capability import ActuatorDesign
 from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
-from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVERS, Remedy, remedies
+from drivetrain.nearest import NearestDesign, nearest_design
+from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVERS, Lever, Remedy, remedies
 from drivetrain.requirements import Linkage, Requirements
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_stage import WindingOutcome
@@ -105,6 +107,7 @@ class Outcome:
 
     checks: of the requirements; gear_checks: of the safety factors; strength_checks: of rotor, shafts and bearings
     remedies: for the checks of requirements that do not hold
+    nearest: all levers together, None where every check of the requirements holds
     masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
     active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
     load_inertia_ratio: inertia of the load relative to that of the drive, at the output; None without a load inertia
@@ -116,6 +119,7 @@ class Outcome:
     gear_checks: tuple[SafetyCheck, ...]
     strength_checks: tuple[LoadCheck, ...]
     remedies: tuple[Remedy, ...]
+    nearest: NearestDesign | None
     masses: PartMasses
     gearbox_mass: float
     gearbox_inertia: float
@@ -148,13 +152,15 @@ def outcome_stage(
     layout = actuator_layout(gears.train, machine_envelope(wound), inputs.housing)
     features = features_of(design, gears, linkage, layout, masses.total + gears.train.mass + inputs.casing_mass)
     checks = tuple(one.check(design) for one in requirements_of(required, linkage, layout, inputs))
+    levers = LEVERS if gears.train.stages else DIRECT_DRIVE_LEVERS
     return Outcome(
         features=features,
         stated=inputs.stated,
         checks=checks,
         gear_checks=gears.checks,
         strength_checks=() if mechanics is None else mechanics.checks,
-        remedies=remedies(design, checks, LEVERS if gears.train.stages else DIRECT_DRIVE_LEVERS),
+        remedies=remedies(design, checks, levers),
+        nearest=_nearest(design, checks, levers),
         masses=masses,
         gearbox_mass=gears.train.mass,
         gearbox_inertia=gears.train.inertia_at_fast_shaft,
@@ -164,6 +170,14 @@ def outcome_stage(
         limits=limits_of(design, inputs),
         load_inertia_ratio=None if inputs.load_inertia is None else inputs.load_inertia / features.equivalent_mass,
     )
+
+
+def _nearest(design: ActuatorDesign, checks: Sequence[Check], levers: Sequence[Lever]) -> NearestDesign | None:
+    """Of the demands that a lever moves."""
+    if all(one.holds for one in checks):
+        return None
+    asked = [one.requirement for one in checks if not isinstance(one.requirement, Diameter)]
+    return nearest_design(design, asked, levers)
 
 
 def actuator_limits(found: Outcome) -> ActuatorLimits:

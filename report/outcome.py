@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from drivetrain.asked import Check
+from drivetrain.nearest import Move, NearestDesign
 from drivetrain.outcome import Features, Outcome
 from drivetrain.output import Output, in_unit, labelled
 from drivetrain.remedies import Remedy
@@ -17,6 +18,11 @@ from gearbox.stage import SafetyCheck
 from mechanics.checks import LoadCheck
 from units import FACTORS, MILLIMETRE, written
 
+DECIDES = 1e-3  # relative margin, up to which a requirement decides about the nearest design
+_NEAREST = (
+    "All of these inputs moved together, as little as will do: least sum of squares of the logarithms, each between a "
+    "third of its value and three times it."
+)
 _REMEDIES = (
     "Which input would make a failing requirement hold, moved alone; a dash: not within a third to three times its "
     "value. Fewer turns at the same copper mean more current in the same proportion."
@@ -27,6 +33,8 @@ def files(found: Outcome, output: Output) -> Iterator[File]:
     """Requirements, remedies and masses as tables, and the axial section."""
     yield table_file("outcome_requirements.csv", checks_table(found, output))
     yield table_file("outcome_remedies.csv", remedies_table(found, output))
+    if found.nearest is not None:
+        yield table_file("outcome_nearest.csv", moves_table(found.nearest, output))
     yield table_file("outcome_features.csv", features_table(found, output))
     yield table_file("outcome_masses.csv", masses_table(found))
     title = f"{found.active_length / MILLIMETRE:.1f} mm of active length, {found.features.mass:.1f} kg"
@@ -45,6 +53,7 @@ def section(found: Outcome, output: Output) -> Section:
             *_failures(found, output),
             Table(checks_table(found, output), f"What is asked and what is reached, {output.place}."),
             *_remedy_table(found, output),
+            *_nearest(found, output),
             Table(features_table(found, output), "Features of the actuator.", headings=_stated_heading(found)),
             *_load(found),
             Table(masses_table(found), "What it weighs, and the inertias that the rotor feels."),
@@ -55,6 +64,8 @@ def section(found: Outcome, output: Output) -> Section:
 
 def remarks(found: Outcome, output: Output) -> Iterator[str]:
     """What the run says at once: every requirement, and whether it holds."""
+    if found.nearest is not None:
+        yield nearest_in_words(found.nearest, output)
     for row in checks_table(found, output).itertuples():
         reached, needed = (f"{value:.4g} {row.unit}".rstrip() for value in (row.reached, row.needed))
         yield f"{row.requirement}: {reached}, {row.sense} {needed} needed: " + (
@@ -116,6 +127,22 @@ def _remedy_row(one: Remedy, output: Output) -> dict[str, object]:
     return {**row, "needed": in_unit(one.value, unit), "change_percent": change, "then fails": fails}
 
 
+def moves_table(nearest: NearestDesign, output: Output) -> pd.DataFrame:
+    """The inputs of the nearest design, one a row, in drawing units."""
+    return pd.DataFrame([_move_row(move, output) for move in nearest.moves])
+
+
+def _move_row(move: Move, output: Output) -> dict[str, object]:
+    unit = move.lever.unit(output)
+    return {
+        "input": move.lever.name(),
+        "unit": written(unit),
+        "now": in_unit(move.now, unit),
+        "there": in_unit(move.value, unit),
+        "change_percent": 100 * (move.value / move.now - 1),
+    }
+
+
 def features_table(found: Outcome, output: Output) -> pd.DataFrame:
     """Rows of thesis Table 3.12: ours and, where there is one, the stated actuator's."""
     stated = None if found.stated is None else found.stated.features
@@ -163,6 +190,39 @@ def _failures(found: Outcome, output: Output) -> tuple[Remark, ...]:
 
 def _remedy_table(found: Outcome, output: Output) -> tuple[Table, ...]:
     return (Table(remedies_table(found, output), _REMEDIES),) if found.remedies else ()
+
+
+def _nearest(found: Outcome, output: Output) -> tuple[str | Table, ...]:
+    """All levers together, and how the requirements stand then."""
+    if found.nearest is None:
+        return ()
+    there = pd.DataFrame([_check_row(one, output) for one in found.nearest.checks])
+    return (
+        nearest_in_words(found.nearest, output),
+        Table(moves_table(found.nearest, output), _NEAREST),
+        Table(there, "The requirements with these inputs."),
+    )
+
+
+def nearest_in_words(nearest: NearestDesign, output: Output) -> str:
+    """Whether the same cross-section can meet all requirements, and which decide."""
+    if nearest.holds:
+        decide = [one.requirement.name(output) for one in nearest.checks if abs(one.margin) < DECIDES]
+        moves = ", ".join(_move_in_words(move, output) for move in nearest.moves)
+        asked = f"What decides: {', '.join(decide)}."
+        return f"Nearest design of this cross-section that meets all requirements: {moves}. {asked}"
+    short = [one for one in nearest.checks if not one.holds]
+    fails = ", ".join(f"{one.requirement.name(output)} ({100 * one.margin:.0f} %)" for one in short)
+    return (
+        "No design of this cross-section was found that meets all requirements with these inputs between a third of "
+        f"their values and three times them. The one that comes nearest falls short in {fails}: try another radius."
+    )
+
+
+def _move_in_words(move: Move, output: Output) -> str:
+    unit = move.lever.unit(output)
+    now, there = (f"{in_unit(value, unit):.4g}" for value in (move.now, move.value))
+    return f"{move.lever.name()} {now} to {there} {written(unit)}".rstrip()
 
 
 def _stated_heading(found: Outcome) -> dict[str, str]:

@@ -19,7 +19,7 @@ from drivetrain.asked import (
     PhaseCurrent,
     RotorSpeed,
 )
-from drivetrain.capability import ActuatorDesign, together
+from drivetrain.capability import together
 from drivetrain.output import Shaft, Wheel
 from drivetrain.remedies import (
     DIRECT_DRIVE_LEVERS,
@@ -31,10 +31,17 @@ from drivetrain.remedies import (
 )
 from electrical.braking import strongest_braking
 from electrical.dq import DriveLimits, torque_speed_envelope
-from tests.drivetrain.linear_machine import AREA, END, LENGTH, POLES, PSI, RHO, STRANDS, TURNS, closed_form, per_turn
+from tests.drivetrain.linear_machine import (
+    AMPERES,
+    LENGTH,
+    POLES,
+    STRANDS,
+    TURNS,
+    actuator,
+    closed_form,
+)
 from units import FACTORS
 
-AMPERES = sqrt(2) * 20e6 * AREA * STRANDS
 EVERY = (PeakEffortAtRest(1.0), PeakEffort(1.0, 2.0), PeakPower(1.0, 3.0), ContinuousEffort(1.0), LowSpeedDamping(1.0),
          ControlledDamping(1.0, 2.0), RotorSpeed(1.0, 3.0), PhaseCurrent(1.0), ActiveLength(1.0), EquivalentMass(1.0),
          Diameter(1.0, 0.1))  # fmt: skip
@@ -42,12 +49,7 @@ EVERY = (PeakEffortAtRest(1.0), PeakEffort(1.0, 2.0), PeakPower(1.0, 3.0), Conti
 
 @pytest.fixture(scope="module")
 def design():
-    return ActuatorDesign(
-        per_turn=per_turn(), peak_torque_per_length=1.5 * POLES * PSI * AMPERES * TURNS, turns=TURNS, strands=STRANDS,
-        wire_area=AREA, resistivity=RHO, coils_in_series=4, active_length=LENGTH, end_turn_length=END,
-        nominal_density=6e6, overload_density=20e6, dc_voltage=48.0, transmission_ratio=2e-3,
-        rotor_inertia_per_length=8e-4, gearbox_inertia=2e-6,
-    )  # fmt: skip
+    return actuator()
 
 
 def test_efforts_are_those_of_the_constant_parameters(design):
