@@ -69,6 +69,11 @@ class PartMasses:
         return self.stator_laminations + self.rotor_laminations + self.magnets + self.shaft + self.copper
 
     @property
+    def rotor_mass(self) -> float:
+        """Everything that turns [kg]."""
+        return self.rotor_laminations + self.magnets + self.shaft
+
+    @property
     def rotor_inertia(self) -> float:
         """Everything that turns [kg m^2]."""
         return self.rotor_laminations_inertia + self.magnets_inertia + self.shaft_inertia

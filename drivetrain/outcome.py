@@ -38,6 +38,8 @@ from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing, Layout, MachineEnvelope, actuator_layout
 from gearbox.stage import GearboxOutcome, SafetyCheck
 from magnetostatics.flux_map_stage import FluxMap
+from mechanics.checks import LoadCheck
+from mechanics.stage import MechanicsOutcome
 from thermal.stage import HeatOutcome
 
 LIMIT_SPEEDS = 61  # points of the curve of effort over speed
@@ -105,7 +107,8 @@ class OutcomeInputs:
 class Outcome:
     """The designed actuator and how it stands against what is asked of it.
 
-    checks: of the requirements; gear_checks: of the safety factors; remedies: for the checks that do not hold
+    checks: of the requirements; gear_checks: of the safety factors; strength_checks: of rotor, shafts and bearings
+    remedies: for the checks of requirements that do not hold
     nearest: all levers together, None where every requirement holds that they move
     masses: of the active parts; gearbox_mass, casing_mass [kg]; gearbox_inertia: at the rotor shaft [kg m^2]
     active_length [m]; layout: parts along the axis; limits: effort over speed, inertia and friction at the output
@@ -116,6 +119,7 @@ class Outcome:
     stated: StatedActuator | None
     checks: tuple[Check, ...]
     gear_checks: tuple[SafetyCheck, ...]
+    strength_checks: tuple[LoadCheck, ...]
     remedies: tuple[Remedy, ...]
     nearest: NearestDesign | None
     masses: PartMasses
@@ -136,14 +140,15 @@ def outcome_stage(
     required: Requirements,
     linkage: Linkage,
     inputs: OutcomeInputs,
-    magnets: MagnetsOutcome | None = None,
+    magnets: MagnetsOutcome | None,
+    mechanics: MechanicsOutcome | None,
 ) -> Outcome:
     """The actuator of machine, winding and gears against everything that is asked of it.
 
-    magnets: None where the study names no grade; then nothing is said of them.
-
     A requirement that does not hold is no error: the outcome says which input to move, by how much, and what would
     fail then. Raises GearError when the rotor does not fit its stator.
+
+    magnets: None where the study names no grade; mechanics: None where the rotor was not checked
     """
     wound = winding.wound
     masses = active_masses(wound, inputs.materials)
@@ -158,6 +163,7 @@ def outcome_stage(
         stated=inputs.stated,
         checks=checks,
         gear_checks=gears.checks,
+        strength_checks=() if mechanics is None else mechanics.checks,
         remedies=remedies(design, checks, levers),
         nearest=_nearest(design, checks, levers),
         masses=masses,

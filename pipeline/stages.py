@@ -16,6 +16,7 @@ from drivetrain.match import MatchError
 from drivetrain.matching import match_stage, matched_machine
 from drivetrain.outcome import actuator_limits, outcome_stage
 from drivetrain.planetary import GearboxError
+from drivetrain.rotor_duty import rotor_duty
 from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
 from electrical.braking_stage import braking_stage
@@ -32,9 +33,11 @@ from geometry.machine import GeometryError
 from losses.stage import LossError, loss_law, losses_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
+from magnetostatics.gap_stress_stage import gap_stress_stage
 from magnetostatics.newton import FieldSolutionError
 from magnetostatics.rotation_stage import rotations_stage
 from materials.errors import MaterialError
+from mechanics.stage import mechanics_stage
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.fits import fits_stage
 from optimisation.limits import limits_stage
@@ -49,12 +52,14 @@ from report import (
     fields,
     fits,
     flux_map,
+    gap_stress,
     gearbox,
     heat,
     linkage,
     losses,
     magnets,
     match,
+    mechanics,
     optimise,
     outcome,
     package,
@@ -80,6 +85,7 @@ from study.inputs_learned import (
 )
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_mechanics import mechanics_inputs
 from study.inputs_package import part_prices
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
@@ -99,7 +105,7 @@ REFUSALS = (
 
 _SOURCES = (
     study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat, heat_inputs, part_prices,
+    gear_inputs, output, copper_heat, heat_inputs, mechanics_inputs, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -151,6 +157,9 @@ _MACHINE: tuple[Node, ...] = (
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),
+    Stage("gap_stress", gap_stress_stage, "waves, cogging, ripple, magnetic pull", gap_stress.files),
+    View(rotor_duty),
+    Stage("mechanics", mechanics_stage, "magnets, rotor, shafts, bearings", mechanics.files, remarks=mechanics.remarks),
     View(built_machine),
     Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
@@ -224,11 +233,13 @@ def _sections(study: Study) -> tuple[Function, ...]:
         match.section,
         fields.matched,
         flux_map.section,
+        gap_stress.section,
         gearbox.section,
         winding.section,
         drive.section,
         braking.section,
         *((magnets.section,) if _has_grade(study) else ()),
+        mechanics.section,
         losses.section,
         heat.section,
         package.section,

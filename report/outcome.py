@@ -15,6 +15,7 @@ from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
 from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table
 from gearbox.stage import SafetyCheck
+from mechanics.checks import LoadCheck
 from units import FACTORS, MILLIMETRE, written
 
 DECIDES = 1e-3  # relative margin, up to which a requirement decides about the nearest design
@@ -42,7 +43,7 @@ def files(found: Outcome, output: Output) -> Iterator[File]:
 
 def section(found: Outcome, output: Output) -> Section:
     """The actuator on one screen, and which requirements hold."""
-    checks: list[Check | SafetyCheck] = [*found.checks, *found.gear_checks]
+    checks: list[Check | SafetyCheck | LoadCheck] = [*found.checks, *found.gear_checks, *found.strength_checks]
     held = sum(one.holds for one in checks)
     return Section(
         "Outcome",
@@ -63,21 +64,23 @@ def section(found: Outcome, output: Output) -> Section:
 
 def remarks(found: Outcome, output: Output) -> Iterator[str]:
     """What the run says at once: every requirement, and whether it holds."""
-    if found.nearest is not None:
-        yield nearest_in_words(found.nearest, output)
     for row in checks_table(found, output).itertuples():
         reached, needed = (f"{value:.4g} {row.unit}".rstrip() for value in (row.reached, row.needed))
         yield f"{row.requirement}: {reached}, {row.sense} {needed} needed: " + (
             "holds" if row.holds == "yes" else "DOES NOT HOLD"
         )
+    if found.nearest is not None:
+        yield nearest_in_words(found.nearest, output)
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 
 def checks_table(found: Outcome, output: Output) -> pd.DataFrame:
-    """Requirements and safety factors of the gears, one a row, in drawing units."""
-    rows = [_check_row(one, output) for one in found.checks] + [_gear_row(one) for one in found.gear_checks]
+    """Requirements and safety factors of gears, rotor, shafts and bearings, one a row, in drawing units."""
+    rows = [_check_row(one, output) for one in found.checks]
+    rows += [_factor_row(f"gears, safety {one.kind.replace('_', ' ')}", one) for one in found.gear_checks]
+    rows += [_factor_row(f"{one.part}, safety factor", one) for one in found.strength_checks]
     return pd.DataFrame(rows)
 
 
@@ -89,12 +92,12 @@ def _check_row(one: Check, output: Output) -> dict[str, object]:
     return _row(asked.name(output), needed, reached, written(unit), sense, one)
 
 
-def _gear_row(one: SafetyCheck) -> dict[str, object]:
-    return _row(f"gears, safety {one.kind.replace('_', ' ')}", one.wanted, one.reached, "", "at least", one)
+def _factor_row(name: str, one: SafetyCheck | LoadCheck) -> dict[str, object]:
+    return _row(name, one.wanted, one.reached, "", "at least", one)
 
 
 def _row(
-    name: str, needed: float, reached: float, unit: str, sense: str, check: Check | SafetyCheck
+    name: str, needed: float, reached: float, unit: str, sense: str, check: Check | SafetyCheck | LoadCheck
 ) -> dict[str, object]:
     return {
         "requirement": name,

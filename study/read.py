@@ -44,6 +44,7 @@ def read_study(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Study
     origin = _origin(path, overrides)
     check_winding(study, "machine.slots", study.machine.slots, origin)
     _check_geometry(study, origin)
+    _check_sleeve(study, origin)
     check_chain(study, origin)
     return study
 
@@ -137,6 +138,16 @@ def check_winding(study: Study, key: str, slots: int, origin: str) -> None:
         raise StudyError(
             f"{origin}: {key} = {slots}, machine.poles = {poles}{pitch}: {sentence_part(error)}."
         ) from error
+
+
+def _check_sleeve(study: Study, origin: str) -> None:
+    """A sleeve over the magnets turns inside the air gap."""
+    thickness, airgap = study.mechanics.sleeve_thickness_mm, study.machine.airgap_mm
+    if thickness is not None and thickness >= airgap:
+        raise StudyError(
+            f"{origin}: mechanics.sleeve_thickness_mm = {thickness:g} fills machine.airgap_mm = {airgap:g}, in which "
+            "the sleeve turns; take a thinner sleeve or a larger air gap."
+        )
 
 
 def _check_geometry(study: Study, origin: str) -> None:

@@ -522,6 +522,42 @@ class AssemblySection(Section):
     coulomb_friction_N: Annotated[float | None, Quantity("dry friction at the wheel", 0, 1e5)] = None
 
 
+class MechanicsSection(Section):
+    """Strength of rotor, shafts and bearings; what is not stated has the default of ``study.inputs_mechanics``."""
+
+    overspeed_factor: Annotated[float | None, Quantity("overspeed over the largest speed of the rotor", 1, 3)] = None
+    glue_tensile_strength_MPa: Annotated[float | None, Quantity("tensile strength of the glue, warm", 0.1, 100)] = None
+    glue_shear_strength_MPa: Annotated[float | None, Quantity("shear strength of the glue, warm", 0.1, 100)] = None
+    glue_safety: Annotated[float | None, Quantity("safety of the glue: peel, voids, age", 1, 20)] = None
+    # a sleeve over the magnets in the place of glue: all of the first three keys, or none
+    sleeve_material: Literal["carbon", "steel"] | None = None
+    sleeve_thickness_mm: Annotated[float | None, Quantity("radial thickness of the sleeve", 0.05, 20)] = None
+    sleeve_prestress_MPa: Annotated[float | None, Quantity("hoop stress of the fitted sleeve at rest", 1, 3000)] = None
+    sleeve_safety: Annotated[float | None, Quantity("safety of the sleeve", 1, 10)] = None
+    lamination_yield_MPa: Annotated[float | None, Quantity("yield strength of the electrical steel", 50, 1500)] = None
+    shaft_yield_MPa: Annotated[float | None, Quantity("yield strength of the rotor shaft", 50, 3000)] = None
+    sun_yield_MPa: Annotated[float | None, Quantity("yield strength of the sun gears' core", 50, 3000)] = None
+    yield_safety: Annotated[float | None, Quantity("safety against yield", 1, 10)] = None
+    critical_speed_factor: Annotated[float | None, Quantity("critical speed over the largest speed", 1, 10)] = None
+    eccentricity_fraction: Annotated[float | None, Quantity("eccentricity of the rotor in the air gap", 0, 0.9)] = None
+    bearing_capacity_kN: Annotated[float | None, Quantity("dynamic load rating C of either bearing", 0.01, 1e4)] = None
+    bearing_life_h: Annotated[float | None, Quantity("wanted life of the bearings", 1, 1e6)] = None
+
+    @model_validator(mode="after")
+    def _a_sleeve_is_described_whole(self) -> Self:
+        keys = ("sleeve_material", "sleeve_thickness_mm", "sleeve_prestress_MPa")
+        missing = [key for key in keys if getattr(self, key) is None]
+        if 0 < len(missing) < len(keys):
+            raise ValueError(f"describes a sleeve without {missing[0]}; add it, or remove the others of the sleeve")
+        return self
+
+    @model_validator(mode="after")
+    def _a_life_is_that_of_a_stated_bearing(self) -> Self:
+        if self.bearing_life_h is not None and self.bearing_capacity_kN is None:
+            raise ValueError("has bearing_life_h without bearing_capacity_kN, which it is rated with; add it")
+        return self
+
+
 class PricesSection(Section):
     """Optional: what the materials cost, in a currency per kilogram; a price that is not stated is not guessed."""
 
@@ -630,6 +666,7 @@ class Study(Section):
     gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
     prices: PricesSection | None = None
+    mechanics: MechanicsSection = MechanicsSection()
     printed_actuator: PrintedActuatorSection | None = None
 
     _path: Path = PrivateAttr(default=Path("study.toml"))

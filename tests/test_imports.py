@@ -7,7 +7,7 @@ PROJECT = Path(__file__).resolve().parent.parent
 # Each room may import those named after it; everything may import units, tasks and disk. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
-_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain", "vehicle"}
+_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain", "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
@@ -21,7 +21,8 @@ ALLOWED = {
     "losses": {*_FIELD, "electrical"},
     "thermal": {*_FIELD, "electrical", "losses"},
     "gearbox": set(),
-    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox"},
+    "mechanics": {*_FIELD, "gearbox"},
+    "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
     "vehicle": {"thermal", "drivetrain", "gearbox"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},

@@ -30,8 +30,18 @@ from gearbox.train import DirectDrive, GearTrain, Stage
 from geometry.machine import hanselman_machine
 from magnetostatics.flux_map_stage import FluxMap
 from pipeline.codec import decoded, digest, encoded
-from report.outcome import checks_table, features_table, files, masses_table, remarks, remedies_table, section
+from report.outcome import (
+    checks_table,
+    features_table,
+    files,
+    masses_table,
+    nearest_in_words,
+    remarks,
+    remedies_table,
+    section,
+)
 from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
+from tests.mechanics.a_rotor import strength
 from thermal.rating import COPPER_LIMIT, Rating
 from thermal.stage import HeatOutcome
 
@@ -92,7 +102,8 @@ def gears():
 
 @pytest.fixture(scope="module")
 def found(winding, field, heat, gears, inputs):
-    return outcome_stage(winding, field, heat, gears, ASKED, Linkage(0.170, 0.175, 60 * MM), inputs)
+    linkage, weak = Linkage(0.170, 0.175, 60 * MM), strength(peak_torque=12.0)
+    return outcome_stage(winding, field, heat, gears, ASKED, linkage, inputs, None, weak)
 
 
 def test_the_features_agree_with_each_other(found, winding, wound, gears, inputs):
@@ -126,7 +137,7 @@ def test_a_check_at_speed_is_on_the_limits(found):
 
 
 def test_nothing_asked_for_holds(winding, field, heat, gears, inputs):
-    found = outcome_stage(winding, field, heat, gears, NOTHING, Linkage(0.170, 0.175), inputs)
+    found = outcome_stage(winding, field, heat, gears, NOTHING, Linkage(0.170, 0.175), inputs, None, None)
     assert all(one.holds for one in found.checks[:6]) and len(found.checks) == 9
     table = checks_table(found, Wheel())
     assert list(table.margin_percent[:5]) == [np.inf] * 5
@@ -142,9 +153,9 @@ def test_controlled_damping_asks_for_no_more_than_the_peak_effort(found):
 
 
 @pytest.mark.parametrize("lost, holds", [(0.004, "yes"), (0.04, "NO")])
-def test_magnets_that_are_lost_are_a_requirement(winding, field, gears, inputs, lost, holds):
+def test_magnets_that_are_lost_are_a_requirement(winding, field, heat, gears, inputs, lost, holds):
     magnets = SimpleNamespace(inputs=SimpleNamespace(lost_max=0.01), lost=lost)
-    found = outcome_stage(winding, field, gears, ASKED, Linkage(0.170, 0.175), inputs, magnets)
+    found = outcome_stage(winding, field, heat, gears, ASKED, Linkage(0.170, 0.175), inputs, magnets, None)
     row = checks_table(found, Wheel()).set_index("requirement").loc["volume of the magnets beyond the knee"]
     assert (row.needed, row.reached, row.unit, row.sense, row.holds) == (1.0, 100 * lost, "%", "at most", holds)
 
@@ -155,6 +166,8 @@ def test_tables_are_in_drawing_units(found):
     assert (damping.needed, damping.unit) == (40.0, "kNs/m")
     assert table.loc["diameter"].needed == 120.0 and table.loc["rotor speed"].unit == "rpm"
     assert table.loc["gears, safety static root"].holds == "NO"
+    assert table.loc["sun of stage 1, at its root circle, safety factor"].holds == "NO"
+    assert table.loc["first critical speed, safety factor"].needed == 1.25
     features = features_table(found, Wheel()).set_index("feature")
     assert features.loc["overall transmission ratio / (mm/rad)"].stated == pytest.approx(2.2)
     assert features.loc["diameter of the envelope / mm"].ours == pytest.approx(110)
@@ -166,7 +179,7 @@ def test_tables_are_in_drawing_units(found):
 
 def test_a_failing_requirement_is_a_remark(found):
     said = [part.text for part in section(found, Wheel()).content if type(part).__name__ == "Remark"]
-    assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks))
+    assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks, *found.strength_checks))
     assert all("does not hold" in text for text in said)
 
 
@@ -174,7 +187,8 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, heat, inputs):
     """A torque of the machine itself, no gears, a load on the shaft."""
     drive = Requirements(0.0, 1.0, 100.0, 100.0, 300.0, 4.0, 100.0, 500.0, 2.0, 250.0)
     plain = OutcomeInputs(**{**vars(inputs), "stated": None, "load_inertia": 1e-3, "equivalent_mass_max": 1e-2})
-    found = outcome_stage(winding, field, heat, GearboxOutcome(DirectDrive(), 1.0), drive, Linkage(1.0, 1.0), plain)
+    gears = GearboxOutcome(DirectDrive(), 1.0)
+    found = outcome_stage(winding, field, heat, gears, drive, Linkage(1.0, 1.0), plain, None, None)
     assert found.features.effort_peak == pytest.approx(winding.peak_torque)
     assert found.load_inertia_ratio == pytest.approx(1e-3 / found.features.equivalent_mass)
     words = repr([part if isinstance(part, str) else part.frame.to_string() if hasattr(part, "frame") else part
@@ -200,8 +214,17 @@ def test_the_machine_is_cooled_by_the_casing_of_the_whole(found, winding, gears,
 
 def test_every_requirement_is_said_with_its_verdict(found):
     table, said = checks_table(found, Wheel()), list(remarks(found, Wheel()))
-    assert len(said) == len(table) and "peak force at rest: " in said[0] and " N needed: " in said[0]
-    assert [one.endswith("DOES NOT HOLD") for one in said] == [holds == "NO" for holds in table.holds]
+    assert "peak force at rest: " in said[0] and " N needed: " in said[0]
+    assert [one.endswith("DOES NOT HOLD") for one in said[: len(table)]] == [holds == "NO" for holds in table.holds]
+
+
+def test_what_holds_everything_together_is_said(found):
+    """By the last sentence of the run, by the section and by a table of its own."""
+    (said,) = list(remarks(found, Wheel()))[len(checks_table(found, Wheel())) :]
+    assert said == nearest_in_words(found.nearest, Wheel()) and said in section(found, Wheel()).content
+    assert said.startswith("Nearest design" if found.nearest.holds else "No design")
+    assert "outcome_nearest.csv" in [file.name for file in files(found, Wheel())]
+    assert [move.now for move in found.nearest.moves][:2] == [found.active_length, found.features.transmission_ratio]
 
 
 def test_the_outcome_is_written_and_read_again(found):

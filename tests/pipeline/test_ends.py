@@ -16,7 +16,10 @@ from pipeline.run_command import page_of, run_command
 from study.schema import Study
 from study.sentences import section_class
 
-HEAVY = ("flux_map", "fields", "winding", "drive", "braking", "magnets", "losses", "heat", "outcome", "package", "optimise")
+HEAVY = (
+    "flux_map", "gap_stress", "fields", "winding", "drive", "braking", "magnets", "mechanics", "losses", "heat",
+    "outcome", "package", "optimise",
+)  # fmt: skip
 STATED = {"chain__requirements": '"stated"', "chain__linkage": '"stated"'}
 
 

@@ -28,6 +28,8 @@ PURE_NUMBERS = set(
     gearbox.friction_coefficient gearbox.safety_flank gearbox.safety_root gearbox.safety_static_flank
     gearbox.safety_static_root gearbox.planet_bore_fraction gearbox.flange_fraction gearbox.printed_teeth
     gearbox.printed_shifts printed_actuator.gearbox_ratio
+    mechanics.overspeed_factor mechanics.glue_safety mechanics.sleeve_safety mechanics.yield_safety
+    mechanics.critical_speed_factor mechanics.eccentricity_fraction
     """.split()
 )
 
