@@ -4,13 +4,15 @@ With x the logarithms of each lever's value over its present one,
 
     minimise |x|^2   so that   margin of every requirement >= 0,   |x| <= ln ``LEVER_RANGE``
 
-by sequential quadratic programming, begun from the present design and from the best of many spread over the range.
+by sequential quadratic programming from the present design. Where that finds none, the least margin is made as large as
+it gets first, from the best of many designs spread over the range.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -21,10 +23,10 @@ from drivetrain.capability import ActuatorDesign, together
 from drivetrain.remedies import LEVER_RANGE, Lever
 
 _SPREAD = 6  # 2^6 designs over the range
-_STARTS = 3  # of them from which the search begins, besides the present design
 _STEP = 1e-4  # of a logarithm, for derivatives
 _INSIDE = 1e-4  # relative, by which every requirement is held in the search, so that rounding does not lose it
-_ROUNDS = 60
+_ROUNDS = 40
+_OfX = Callable[[np.ndarray], Any]
 
 
 @dataclass(frozen=True)
@@ -58,11 +60,12 @@ def nearest_design(
 ) -> NearestDesign:
     """The design of least |x| that meets all requirements, or the one with the least shortfall."""
     asked = _Asked(design, tuple(requirements), tuple(levers))
-    starts = asked.starts()
-    held = [x for x in (asked.nearest_from(start) for start in starts) if asked.least_margin(x) >= 0]
-    if held:
-        return asked.at(min(held, key=lambda x: float(x @ x)))
-    return asked.at(max((asked.best_from(start) for start in starts), key=asked.least_margin))
+    near = asked.nearest_from(np.zeros(len(asked.levers)))
+    if asked.least_margin(near) >= 0:
+        return asked.at(near)
+    best = asked.best_from(asked.of_a_spread())
+    near = asked.nearest_from(best) if asked.least_margin(best) >= 0 else best
+    return asked.at(near if asked.least_margin(near) >= 0 else best)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +91,11 @@ class _Asked:
         batch, count = self.moved(x), len(np.atleast_2d(x))
         return np.array([_margin(one, batch, count) for one in self.requirements if one.needed])
 
-    def starts(self) -> list[np.ndarray]:
-        """The present design, and those of a spread with the least shortfall."""
+    def of_a_spread(self) -> np.ndarray:
+        """x of many spread over the range, of which the least margin is largest."""
         reach = np.log(LEVER_RANGE)
         spread = reach * (2 * qmc.Sobol(len(self.levers), scramble=False).random_base2(_SPREAD) - 1)
-        best = np.argsort(-self.margins(spread).min(axis=0), kind="stable")[:_STARTS]
-        return [np.zeros(len(self.levers)), *spread[best]]
+        return np.asarray(spread[int(self.margins(spread).min(axis=0).argmax())])
 
     def least_margin(self, x: np.ndarray) -> float:
         """The smallest of all margins at x (levers,), relative."""
@@ -115,7 +117,9 @@ class _Asked:
         begin = np.append(start, self.least_margin(start))
         return self._minimised(lambda y: -float(y[-1]), lambda y: ahead, above, begin)[:-1]
 
-    def _minimised(self, function: Callable, slope: Callable, constraint: Mapping, start: np.ndarray) -> np.ndarray:
+    def _minimised(
+        self, function: _OfX, slope: _OfX, constraint: Mapping[str, object], start: np.ndarray
+    ) -> np.ndarray:
         reach = np.log(LEVER_RANGE)
         free = [(-np.inf, np.inf)] * (len(start) - len(self.levers))
         bounds, options = [(-reach, reach)] * len(self.levers) + free, {"maxiter": _ROUNDS, "ftol": 1e-9}

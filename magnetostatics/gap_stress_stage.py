@@ -44,8 +44,8 @@ class GapStress:
     cogging_torque: without current over one period of the cogging [Nm/m], (2, n): on the mesh of the sweep, and on
         triangles of half the size
     shift: of the rotor against the stator at which the pull was solved [m]
-    pull_per_shift: mean pull towards the narrowest gap [N/m^2], per metre of the machine, without current and at the
-        overload, over ``PULL_STATES``
+    pull_per_shift: mean pull towards the narrowest gap [N/m^2], per metre of the machine, of each of ``PULL_STATES``
+        (2,)
     centred_pull: largest pull on a rotor in the middle, of the same states and angles [N/m], (2,)
     """
 

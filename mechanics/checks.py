@@ -8,9 +8,9 @@ from math import inf
 
 @dataclass(frozen=True)
 class LoadCheck:
-    """Safety factor of a part: capacity over load.
+    """Safety factor of a part: limit over load.
 
-    part: what it is, in words; wanted: factor, dimensionless; load, capacity: [unit of both, SI]
+    part: what it is, in words; wanted: factor, dimensionless; load, limit: [unit of both, SI]
     unit: to show them in, a key of ``units.FACTORS``, empty for a pure number
     helps: what to change where it does not hold, with the keys of the study
     """
@@ -18,14 +18,14 @@ class LoadCheck:
     part: str
     wanted: float
     load: float
-    capacity: float
+    limit: float
     unit: str
     helps: str
 
     @property
     def reached(self) -> float:
         """The factor, dimensionless; infinite without a load."""
-        return self.capacity / self.load if self.load else inf
+        return self.limit / self.load if self.load else inf
 
     @property
     def margin(self) -> float:

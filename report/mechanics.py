@@ -49,7 +49,7 @@ def _row(one: LoadCheck) -> dict[str, object]:
     return {
         "part": one.part,
         "acts": in_unit(one.load, one.unit),
-        "may act": in_unit(one.capacity, one.unit),
+        "may act": in_unit(one.limit, one.unit),
         "unit": written(one.unit),
         "factor": one.reached,
         "wanted": one.wanted,
@@ -81,7 +81,7 @@ def remarks(found: MechanicsOutcome) -> Iterator[str]:
     for one in found.checks:
         if not one.holds:
             yield (
-                f"{one.part} does not hold: {amount(one.load, one.unit)} where {amount(one.capacity, one.unit)} is the "
+                f"{one.part} does not hold: {amount(one.load, one.unit)} where {amount(one.limit, one.unit)} is the "
                 f"limit, a factor of {one.reached:.3g}, {one.wanted:.3g} wanted; what would help: {one.helps}."
             )
 

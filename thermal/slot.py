@@ -151,7 +151,7 @@ def half_slot(machine: Machine, conductivity: float, liner: Liner) -> HeatedSlic
 
 
 def heated_slices(width: np.ndarray, step: float, conductivity: float, liner: Liner) -> HeatedSlices:
-    """Slices of widths [m] (n,), the last at the bottom; step: their thickness [m]; conductivity [W/(m K)]."""
+    """width: of the slices [m] (n,), the last at the bottom; step: their thickness [m]; conductivity [W/(m K)]."""
     inside, behind = MEAN_OF_SLAB * width / (conductivity * step), np.full(len(width), 1 / liner.conductance(step))
     along = conductivity * (width[1:] + width[:-1]) / 2 / step
     bottom = 1 / (step / 2 / (conductivity * width[-1]) + 1 / liner.conductance(width[-1]))

@@ -122,7 +122,7 @@ class HeatOutcome:
     what_ifs: tuple[WhatIf, ...]
 
     def effort(self, torque: np.ndarray | float) -> np.ndarray | float:
-        """At the output [N or Nm]; torque: of the rotor [Nm], any shape."""
+        """At the output [N or Nm], of the shape of the torque; torque: of the rotor [Nm], any shape."""
         return torque / self.ratio
 
     @property

@@ -92,8 +92,8 @@ SLEEVE = Sleeve(CARBON_SLEEVE, 0.3e-3, 300 * MPA, 1.2)
 def test_a_sleeve_by_hand():
     """r = 15.85 mm at 3000 rad/s: rho v^2 = 1580 47.55^2 = 3.572 MPa; it presses with (300 - 3.572) 0.3/15.85 MPa."""
     hoop, press = SLEEVE.checks(MAGNETS)
-    assert hoop.load == pytest.approx(303.572 * MPA, rel=1e-5) and hoop.capacity == 1100 * MPA
-    assert press.capacity == pytest.approx(296.428 * MPA * 0.3 / 15.85, rel=1e-5)
+    assert hoop.load == pytest.approx(303.572 * MPA, rel=1e-5) and hoop.limit == 1100 * MPA
+    assert press.limit == pytest.approx(296.428 * MPA * 0.3 / 15.85, rel=1e-5)
     assert press.load == pytest.approx(MAGNETS.mean_rim_pull * 13.2 / 15.7)
     assert hoop.holds and press.holds and SLEEVE.rim_pull(MAGNETS) == 0.0
 
@@ -103,7 +103,7 @@ def test_a_sleeve_carries_its_magnets_no_further_than_its_prestress():
     hoop, press = SLEEVE.checks(fast)
     assert hoop.holds and not press.holds
     loose = replace(SLEEVE, prestress=1 * MPA)
-    assert loose.checks(MAGNETS)[1].capacity == 0.0 and not loose.checks(MAGNETS)[1].holds
+    assert loose.checks(MAGNETS)[1].limit == 0.0 and not loose.checks(MAGNETS)[1].holds
 
 
 def test_a_sleeve_can_be_too_tight():

@@ -59,7 +59,7 @@ def test_a_sun_has_the_torque_of_all_faster_stages():
     diameter = 2 * TEETH.sun.root_radius
     assert fast.load == pytest.approx(sqrt(3) * 16 * 4.0 / (pi * diameter**3))
     assert slow.load == pytest.approx(fast.load * TEETH.ratio)
-    assert slow.capacity == 835 * MPA
+    assert slow.limit == 835 * MPA
 
 
 def test_the_shaft_bends_towards_the_narrow_gap():
