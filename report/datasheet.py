@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass, replace
-from math import sqrt
+from math import isfinite, sqrt
 
 import pandas as pd
 
@@ -16,6 +16,7 @@ from drivetrain.masses import PartMasses
 from drivetrain.outcome import Outcome, machine_envelope
 from drivetrain.output import Output, in_unit
 from electrical.braking_stage import BrakingOutcome, CopperHeat
+from electrical.magnets_stage import MagnetsOutcome
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
 from export.stage import Package
@@ -24,6 +25,9 @@ from figures.report import Picture, Section, Table
 from geometry.machine import Machine
 from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
+from report.heat import binding
+from thermal.machine import MAGNETS
+from thermal.stage import HeatOutcome
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
 
 DRAWING_PICTURE = "lamination"
@@ -89,14 +93,18 @@ def data_sheet(
     inputs: WindingInputs,
     heat: CopperHeat,
     braking: BrakingOutcome,
+    warm: HeatOutcome,
+    magnets: MagnetsOutcome | None,
     outcome: Outcome,
     output: Output,
 ) -> DataSheet:
-    """Every group of rows; a group without rows is left out."""
+    """Every group of rows; a group without rows is left out. magnets: None where the study names no grade"""
     groups = (
         Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
         Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
         Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
+        Group("What the temperatures allow", tuple(warm_rows(warm))),
+        Group("Magnets", tuple(magnet_rows(magnets))),
         Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat))),
         Group("Constants", tuple(constants(package, winding))),
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
@@ -197,6 +205,29 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("continuous phase current", rated.current_peak / sqrt(2), "A", f"RMS, {nominal}")
     speed = f"{full.speed / RPM:.0f} rpm"
     yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
+
+
+def warm_rows(warm: HeatOutcome) -> Iterator[Row]:
+    """Torque and current without end, by the thermal network."""
+    slow, limits = warm.slow, warm.inputs.limits
+    at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
+    yield row("continuous torque", slow.torque, "Nm", at)
+    yield row("continuous phase current", slow.current / sqrt(2), "A", f"RMS, {at}")
+    yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
+    yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
+
+
+def magnet_rows(magnets: MagnetsOutcome | None) -> Iterator[Row]:
+    """What the magnets stand; none without a grade."""
+    if magnets is None:
+        return
+    yield Row("grade", magnets.inputs.grade.name, "", magnets.inputs.grade.material)
+    yield row("knee", magnets.knee, "T", f"flux density along the magnetisation at {magnets.temperature:g} °C")
+    worst = max(magnets.states, key=lambda state: state.lost)
+    yield row("volume beyond the knee", worst.lost, "percent", f"in the worst state: {worst.name}")
+    if isfinite(magnets.demagnetising_current):
+        allowed = f"{in_unit(magnets.inputs.lost_max, 'percent'):g} % of the volume beyond the knee"
+        yield row("demagnetising current", magnets.demagnetising_current, "A", f"peak, against the magnets, {allowed}")
 
 
 def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:

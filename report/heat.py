@@ -25,6 +25,11 @@ _BOUND = {
 }
 
 
+def binding(rating: Rating) -> str:
+    """Which limit a continuous rating is bound by, as a sentence."""
+    return f"{_BOUND[rating.bound_by]} {'bind' if rating.bound_by == MAGNET_LIMIT else 'binds'}"
+
+
 def files(found: HeatOutcome, output: Output) -> Iterator[File]:
     """Temperatures, ways of the heat and overloads as tables, and their figure."""
     yield table_file(TEMPERATURES, temperature_table(found, output))
@@ -59,8 +64,8 @@ def remarks(found: HeatOutcome, output: Output) -> Iterator[str]:
     density = in_unit(found.slow_density, "A_per_mm2")
     yield (
         f"Continuous {output.effort}: {_effort(found, slow.torque, output)} slowly turning ({density:.3g} A/mm² RMS), "
-        f"{_effort(found, found.at_speed.torque, output)} {_speed(found, output)}; {_BOUND[slow.bound_by]} "
-        f"{'bind' if slow.bound_by == MAGNET_LIMIT else 'binds'}{_at_limit(found, slow)}. "
+        f"{_effort(found, found.at_speed.torque, output)} {_speed(found, output)}; {binding(slow)}"
+        f"{_at_limit(found, slow)}. "
         f"{in_unit(found.nominal_density, 'A_per_mm2'):g} A/mm² with cold magnets would be "
         f"{amount(found.nominal_effort, output.effort_unit)}."
     )

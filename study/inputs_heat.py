@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from materials.magnet import ROOM_TEMPERATURE
 from study.inputs_electrical import winding_conductor
+from study.inputs_magnets import hottest
+from study.magnet_choice import magnet_grade
 from study.schema import Study
 from thermal.air import Film, GivenFilm, StillAir
 from thermal.cooling import (
@@ -15,7 +18,6 @@ from thermal.cooling import (
     FILLER_CONDUCTIVITY,
     LINER_CONDUCTIVITY,
     LINER_THICKNESS,
-    MAGNET_LIMIT,
     Cooling,
     HeatLimits,
     HotMagnets,
@@ -32,7 +34,7 @@ def heat_inputs(study: Study) -> HeatInputs:
         cooling(study),
         HeatLimits(
             _or(section.copper_temperature_max, CLASS_F),
-            _or(section.magnet_temperature_max, MAGNET_LIMIT),
+            _or(section.magnet_temperature_max, hottest(study)),
         ),
         hot_magnets(study),
         winding_conductor(study),
@@ -56,9 +58,14 @@ def cooling(study: Study) -> Cooling:
 
 
 def hot_magnets(study: Study) -> HotMagnets:
-    """How the remanence falls: the study's coefficient, else that of sintered NdFeB."""
-    coefficient = study.thermal.si.remanence_temperature_coefficient
-    return HotMagnets() if coefficient is None else HotMagnets(coefficient)
+    """How the remanence falls: the study's coefficient, else that of its grade, else that of sintered NdFeB."""
+    stated, grade = study.thermal.si.remanence_temperature_coefficient, magnet_grade(study)
+    if stated is not None:
+        return HotMagnets(stated)
+    if grade is None:
+        return HotMagnets()
+    reference = _or(study.materials.si.magnet_temperature, ROOM_TEMPERATURE)
+    return HotMagnets(grade.remanence_coefficient * grade.remanence / grade.remanence_at(reference), reference)
 
 
 def no_loss_data(study: Study) -> FieldLoss:

@@ -1,7 +1,7 @@
 """What the package reads at the rated point, against other routes to the same numbers; and its data sheet."""
 
 from dataclasses import replace
-from math import sqrt
+from math import inf, sqrt
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,11 +17,15 @@ from electrical.braking_stage import CopperHeat, braking_stage
 from electrical.winding_stage import winding_stage
 from export.stage import package_stage
 from losses.stage import losses_stage
+from materials.magnet_grade import load_grade
 from report import datasheet
 from report import package as package_report
 from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 from tests.losses.test_stage_and_figure import LOSSES, Computed
 from tests.magnetostatics.test_flux_map_stage import CASE
+from thermal.cooling import HeatLimits
+from thermal.machine import MAGNETS
+from thermal.rating import MAGNET_LIMIT, Rating
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM
 
 MAP = flux_map(Saturating())
@@ -110,8 +114,14 @@ def test_the_brake_is_seen_at_the_rotor(found, brake):
 # ---- data sheet -----------------------------------------------------------------------------------------------------
 
 
-def sheet(package, winding, brake, outcome, output=Wheel()):
-    return datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, outcome, output)
+ENDS = SimpleNamespace(temperature={MAGNETS: 120.0}, hottest_copper=151.0)
+SLOW = Rating(speed=0.0, current=40.0, torque=3.0, bound_by=MAGNET_LIMIT, state=ENDS)
+WARM = SimpleNamespace(slow=SLOW, inputs=SimpleNamespace(limits=HeatLimits(), cooling=SimpleNamespace(ambient=40.0)))
+STATES = (SimpleNamespace(name="no load", lost=0.0), SimpleNamespace(name="overload", lost=0.03))
+
+
+def sheet(package, winding, brake, outcome, output=Wheel(), magnets=None):
+    return datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, WARM, magnets, outcome, output)
 
 
 def value(table, quantity, condition=""):
@@ -142,6 +152,23 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
     assert 1 / hot - 1 / cold == pytest.approx(more / found.losses.power_out / 100, rel=1e-3)
     assert value(table, "active parts") == pytest.approx(outcome.masses.total)
     assert value(table, "bus current", "copper") == pytest.approx(found.overload.power_in / 48.0)
+
+
+def test_the_temperatures_are_those_of_the_thermal_network(found, winding, brake, outcome):
+    table = sheet(found, winding, brake, outcome).table
+    assert value(table, "continuous torque", "the magnets bind") == 3.0
+    assert value(table, "continuous phase current", "40 °C") == pytest.approx(40.0 / sqrt(2))
+    assert value(table, "hottest copper", "limit 155 °C") == 151.0 and value(table, "magnets", "limit 120 °C") == 120.0
+
+
+@pytest.mark.parametrize("current, rows", [(80.0, 4), (inf, 3)])
+def test_magnets_stand_on_the_sheet_where_their_grade_is_known(found, winding, brake, outcome, current, rows):
+    inputs = SimpleNamespace(grade=load_grade("N42SH"), lost_max=0.01)
+    magnets = SimpleNamespace(inputs=inputs, knee=0.28, temperature=120.0, states=STATES, demagnetising_current=current)
+    groups = {group.title: group for group in sheet(found, winding, brake, outcome, magnets=magnets).groups}
+    table = groups["Magnets"].table
+    assert len(table) == rows and value(table, "volume beyond the knee", "overload") == pytest.approx(3.0)
+    assert "Magnets" not in {group.title for group in sheet(found, winding, brake, outcome).groups}
 
 
 def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outcome):

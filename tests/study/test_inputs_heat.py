@@ -2,8 +2,9 @@
 
 import pytest
 
+from materials.magnet_grade import load_grade
 from study.inputs_heat import heat_inputs, hot_magnets
-from study.read import read_study
+from study.read import STUDIES, read_study
 from thermal.air import GivenFilm, StillAir
 from thermal.cooling import Cooling, HeatLimits, HotMagnets
 from units import MILLIMETRE
@@ -12,7 +13,7 @@ from units import MILLIMETRE
 def test_a_study_that_says_nothing_has_the_defaults_of_the_room():
     found = heat_inputs(read_study("motorcycle"))
     assert found.cooling == Cooling(0.5 * MILLIMETRE, 0.044 * MILLIMETRE)
-    assert found.limits == HeatLimits(155.0, 120.0) and found.magnets == HotMagnets(-0.0011, 20.0)
+    assert found.limits == HeatLimits(155.0, 120.0)
     assert found.winding_temperature == 20.0 and found.conductor.temperature_coefficient == 0.00393
 
 
@@ -29,6 +30,20 @@ def test_what_a_study_states_counts_in_si():
     assert cooling.casing_gap == pytest.approx(1e-5) and cooling.film == StillAir(0.3)
     assert found.limits == HeatLimits(180.0, 150.0) and hot_magnets(study).lost(120.0) == pytest.approx(0.12)
     assert found.winding_temperature == 100.0
+
+
+def test_magnets_warm_up_as_their_grade_does(tmp_path):
+    """Also where what the field has is the remanence of the grade at another temperature."""
+    grade, text = load_grade("N42UH"), (STUDIES / "pump.toml").read_text(encoding="utf-8")
+    assert hot_magnets(read_study("pump")) == HotMagnets(grade.remanence_coefficient, 20.0)
+    (tmp_path / "warm.toml").write_text(text.replace("remanence_T = 1.3", "magnet_temperature_degC = 80.0"))
+    warm = read_study(tmp_path / "warm.toml")
+    kept = 1.0 - hot_magnets(warm).lost(120.0)
+    assert kept == pytest.approx(grade.remanence_at(120.0) / grade.remanence_at(80.0))
+
+
+def test_magnets_may_become_as_warm_as_they_are_held_against_demagnetisation():
+    assert heat_inputs(read_study("pump", ["magnets.hot_temperature_degC=100.0"])).limits.magnets == 100.0
 
 
 def test_a_stated_film_takes_the_place_of_still_air():
