@@ -141,7 +141,8 @@ _OWN_FIELDS = {"active_length": "length"} | {
 }
 _PHASES = {"resistance_a": 0, "resistance_b": 1, "resistance_c": 2}
 _SCATTER_OF_A_PHASE = 0.004  # relative, of windings of one make beside each other: length of wire and of its ends
-_COGGING_OF_MESH = 0.01  # cogging of good meshes of two codes differs by 0.5 mNm of 49 mNm (12 slots, 10 poles)
+# Of 12 slots and 10 poles: 49.1 mNm on 720 edges, 48.6 on 360; NGSolve on 360 edges, elements of third order, 48.3.
+_COGGING_OF_MESH = 0.017
 _BUILDING_FACTOR = 0.3  # relative: loss of stacks over the data of their sheet, and of two regions over all elements
 _END_PERMEANCE = 0.3  # of an end turn over mu_0 and its length; 0.2 to 0.5 of concentrated windings
 

@@ -84,11 +84,9 @@ class Surrogate:
         states = None if self.states is None else replace(self.states, base=self.states.coarse)
         return replace(self, no_load=no_load, states=states)
 
-    def of_order(self, order: int, turn: complex) -> Surrogate:
-        """One order of the drawing over the revolution alone, times a complex number."""
-        only = np.zeros_like(self.no_load)
-        only[:, order] = turn * self.no_load[:, order]
-        return replace(self, no_load=only, idle=self.idle.none())
+    def in_orders(self, weights: np.ndarray) -> Surrogate:
+        """The drawing without current alone, every order over the revolution times a complex number (orders,)."""
+        return replace(self, no_load=self.no_load * weights, idle=self.idle.none())
 
     @cached_property
     def layout(self) -> WindingLayout:

@@ -1,0 +1,62 @@
+"""What is unknown in the answers of the machine bench: means over an interval by quadrature, orders by their size."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.effects.contract import table
+from tests.effects.machine_bench import TURN, bench
+from tests.workbench.models.machine_case import surrogate
+from workbench.models.machine.numerical import LEFT, voltage_orders
+
+PHASES = ("v_a", "v_b", "v_c")
+SPEED = 100.0  # rad/s
+AT = {"angle_mech": TURN, "speed": np.full(len(TURN), SPEED)}
+
+
+def shapes(found=None, kind="back_emf", responses=PHASES, **conditions):
+    asked = bench() if found is None else replace(bench(), surrogate=found, about_drawing=found)
+    return asked.numerical(surrogate().nominal, table(kind, responses, **(conditions or AT)))
+
+
+def order_of(shape):
+    """The one order of the revolution that a shape has."""
+    size = np.abs(np.fft.rfft(shape["v_a"]))
+    assert np.sort(size)[-2] < 1e-6 * size.max()
+    return int(size.argmax())
+
+
+def test_a_recorder_may_average_over_the_interval_between_readings():
+    interval = TURN[1] - TURN[0]
+    offsets = (np.arange(200) + 0.5) / 200 * interval - interval / 2
+    inside = bench().respond(surrogate().nominal, "back_emf", {
+        "angle_mech": (TURN[:, None] + offsets).ravel(), "speed": np.full(len(TURN) * 200, SPEED)
+    })  # fmt: skip
+    drawn = bench().respond(surrogate().nominal, "back_emf", AT)
+    change = {name: inside[name].reshape(-1, 200).mean(axis=1) - drawn[name] for name in PHASES}
+    size = np.abs(change["v_a"]).max()
+    assert any(
+        all(np.abs(shape[name] - change[name]).max() < 1e-3 * size for name in PHASES) for shape in shapes() if shape
+    )
+
+
+def test_what_a_mesh_lacks_in_one_order_its_neighbours_may_lack():
+    """Two meshes that differ by 1 % in the order 25 alone."""
+    same = surrogate()
+    coarse = same.no_load.copy()
+    coarse[:, 25] *= 1.01
+    found = [s for s in shapes(replace(same, coarse=coarse)) if s and np.ptp(s["v_a"]) > 0]
+    before = [s for s in shapes(replace(same, coarse=same.no_load)) if s and np.ptp(s["v_a"]) > 0]
+    drawn = np.abs(np.fft.rfft(bench().respond(same.nominal, "back_emf", AT)["v_a"]))
+    new = [s for s in found if not any(np.array_equal(s["v_a"], other["v_a"]) for other in before)]
+    orders = {order_of(s): np.abs(np.fft.rfft(s["v_a"])).max() for s in new}
+    at = [5, *voltage_orders(same)].index(25)
+    near = [5, *voltage_orders(same)][at - 1 : at + 2]
+    assert set(orders) == set(near)
+    assert list(orders.values()) == pytest.approx([LEFT * 0.01 * drawn[25] / np.sqrt(3)] * 3, rel=1e-6)
+
+
+def test_every_table_has_its_shapes_in_the_same_places():
+    voltage, cogging = shapes(), shapes(None, "cogging", ("torque",), angle_mech=TURN, direction=np.ones(len(TURN)))
+    assert len(voltage) == len(cogging) and not any(a and b for a, b in zip(voltage, cogging))
