@@ -42,7 +42,7 @@ LEARNED = Learned(
     ("torque_gain is an error of an instrument.",),
     "model.toml",
 )
-LEFT_OUT = ("drive", "braking", "gap_stress", "magnets", "mechanics", "losses", "fields")
+LEFT_OUT = ("drive", "braking", "gap_stress", "magnets", "mechanics", "losses", "fields", "package")
 
 
 @contextmanager
