@@ -155,7 +155,7 @@ def test_controlled_damping_asks_for_no_more_than_the_peak_effort(found):
 @pytest.mark.parametrize("lost, holds", [(0.004, "yes"), (0.04, "NO")])
 def test_magnets_that_are_lost_are_a_requirement(winding, field, heat, gears, inputs, lost, holds):
     magnets = SimpleNamespace(inputs=SimpleNamespace(lost_max=0.01), lost=lost)
-    found = outcome_stage(winding, field, heat, gears, ASKED, Linkage(0.170, 0.175), inputs, magnets, None)
+    found = outcome_stage(winding, field, heat, gears, NOTHING, Linkage(0.170, 0.175), inputs, magnets, None)
     row = checks_table(found, Wheel()).set_index("requirement").loc["volume of the magnets beyond the knee"]
     assert (row.needed, row.reached, row.unit, row.sense, row.holds) == (1.0, 100 * lost, "%", "at most", holds)
 
