@@ -44,6 +44,11 @@ class Requirement:
             return reached <= self.needed * (1 + SLACK)
         return reached >= self.needed * (1 - SLACK)
 
+    def margin(self, reached: Values) -> Values:
+        """How far a reached value is inside, relative; negative where it is not enough. Of a demand that is not 0."""
+        ratio = reached / self.needed - 1
+        return -ratio if self.at_most else ratio
+
     def check(self, design: ActuatorDesign) -> Check:
         """The requirement against one design."""
         return Check(self, float(np.squeeze(self.reached(design))))
@@ -257,8 +262,7 @@ class Check:
         """Relative; negative where the requirement does not hold; infinite where nothing is asked for."""
         if self.requirement.needed == 0:
             return inf if self.holds else -inf
-        ratio = self.reached / self.requirement.needed - 1
-        return -ratio if self.requirement.at_most else ratio
+        return float(self.requirement.margin(self.reached))
 
     @property
     def holds(self) -> bool:

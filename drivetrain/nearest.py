@@ -89,7 +89,8 @@ class _Asked:
     def margins(self, x: np.ndarray) -> np.ndarray:
         """Relative, of every requirement that asks for something (requirements, n); x: (n, levers)"""
         batch, count = self.moved(x), len(np.atleast_2d(x))
-        return np.array([_margin(one, batch, count) for one in self.requirements if one.needed])
+        rows = [one.margin(one.reached(batch)) for one in self.requirements if one.needed]
+        return np.array([np.broadcast_to(row, count) for row in rows])
 
     def of_a_spread(self) -> np.ndarray:
         """x of many spread over the range, of which the least margin is largest."""
@@ -112,7 +113,7 @@ class _Asked:
         above = {
             "type": "ineq",
             "fun": lambda y: self._inside(y[:-1]) - y[-1],
-            "jac": lambda y: np.column_stack([self._slopes(y[:-1]), -np.ones(len(self._inside(y[:-1])))]),
+            "jac": lambda y: np.insert(self._slopes(y[:-1]), len(start), -1.0, axis=1),
         }
         begin = np.append(start, self.least_margin(start))
         return self._minimised(lambda y: -float(y[-1]), lambda y: ahead, above, begin)[:-1]
@@ -142,8 +143,3 @@ class _Asked:
         moves = tuple(Move(lever, n, n * float(np.exp(v))) for lever, n, v in zip(self.levers, now, x, strict=True))
         there = self._one(x)
         return NearestDesign(moves, tuple(one.check(there) for one in self.requirements))
-
-
-def _margin(requirement: Requirement, batch: ActuatorDesign, count: int) -> np.ndarray:
-    ratio = np.broadcast_to(np.asarray(requirement.reached(batch), dtype=float) / requirement.needed - 1, count)
-    return -ratio if requirement.at_most else ratio
