@@ -152,8 +152,17 @@ def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> O
     machine = winding.wound.on_map(flux_map.data)
     envelope = torque_speed_envelope(machine, winding.limits, np.linspace(0.0, fastest, _SPEEDS))
     top = float(envelope.speed[np.flatnonzero(np.isfinite(envelope.torque))[-1]])
-    torque = np.linspace(-winding.peak_torque, winding.peak_torque, 2 * _TORQUES - 1)
+    torque = torques_of(winding.peak_torque)
     return operating_map(machine, winding.limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
+
+
+def torques_of(peak: float) -> np.ndarray:
+    """From generating to motoring [Nm], (n,), each sense the mirror image of the other; peak: the largest [Nm].
+
+    The one in the middle is zero and not what rounding leaves of it: half the map begins there.
+    """
+    motoring = np.linspace(0.0, peak, _TORQUES)
+    return np.concatenate([-motoring[:0:-1], motoring])
 
 
 def best_point(losses: PowerLosses, where: np.ndarray) -> BestPoint:

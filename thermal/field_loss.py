@@ -9,8 +9,6 @@ from scipy.interpolate import RegularGridInterpolator
 
 from losses.map import PowerLosses
 
-_ROUNDING = 1e-9  # of the largest torque; the torque of zero in the middle of a map may be so much off
-
 
 @dataclass(frozen=True, eq=False)
 class IronAndMagnets:
@@ -51,11 +49,11 @@ class MappedLoss(FieldLoss):
     def at(self, torque: np.ndarray, speed: np.ndarray) -> IronAndMagnets:
         """See ``FieldLoss``: torque [Nm], speed [rad/s], arrays of shapes that broadcast."""
         torques, speeds = self.plane.torque[:, 0], self.plane.speed[0]
-        motoring = torques >= -_ROUNDING * torques[-1]
-        axes = torques[motoring], speeds
+        motoring = torques >= 0
         points = np.stack(np.broadcast_arrays(np.abs(torque), np.abs(speed)), axis=-1)
-        points = np.clip(points, [one[0] for one in axes], [one[-1] for one in axes])
+        points = np.minimum(points, [torques[-1], speeds[-1]])
         tables = (self.plane.stator_iron, self.plane.rotor_iron, self.plane.magnet)
+        axes = (torques[motoring], speeds)
         found = (RegularGridInterpolator(axes, _continued(one[motoring]))(points) for one in tables)
         return IronAndMagnets(*(one.reshape(points.shape[:-1]) for one in found))
 

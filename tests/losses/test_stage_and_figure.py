@@ -10,7 +10,7 @@ from figures.losses import loss_maps
 from figures.style import png_bytes
 from losses.iron import FrequencyTerms
 from losses.map import FieldLosses, grid
-from losses.stage import LossError, LossInputs, loss_law, losses_stage
+from losses.stage import LossError, LossInputs, loss_law, losses_stage, torques_of
 from report.losses import dataset, files, section
 from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
 from tests.magnetostatics.test_flux_map_stage import CASE
@@ -55,6 +55,14 @@ def test_the_map_covers_both_senses(found, winding):
     torque = found.losses.torque[:, 0]
     assert torque[0] == pytest.approx(-winding.peak_torque) and torque[-1] == pytest.approx(winding.peak_torque)
     assert np.isfinite(found.losses.total[0, 1]) and np.isfinite(found.losses.total[-1, 1])
+
+
+@pytest.mark.parametrize("peak", [1.0, 3.521836161264716])
+def test_half_the_map_begins_at_no_torque(peak):
+    """Evenly from -3.52... to 3.52..., the middle would be 4e-16, and no map be there for a torque of zero."""
+    torque = torques_of(peak)
+    assert torque[len(torque) // 2] == 0.0 and np.array_equal(torque, -torque[::-1])
+    assert torque[-1] == peak and np.diff(torque) == pytest.approx(peak / (len(torque) // 2))
 
 
 @pytest.mark.physics

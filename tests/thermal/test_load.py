@@ -113,14 +113,6 @@ def test_beyond_the_largest_torque_of_a_speed_its_loss_goes_on():
     assert MappedLoss(plane()).at(np.array(3.5), np.array(400.0)).stator == pytest.approx(42.0)
 
 
-@pytest.mark.parametrize("rounding", [4e-16, -4e-16])
-def test_the_torque_of_zero_may_be_rounded(rounding):
-    """As the middle of an even grid between two ends often is."""
-    one = plane()
-    one.torque[4] = rounding
-    assert MappedLoss(one).at(np.array([0.0, 0.5]), np.array([100.0, 0.0])).stator == pytest.approx([10.0, 0.5])
-
-
 def test_beyond_the_largest_speed_its_loss_counts():
     found = MappedLoss(plane())
     assert found.at(np.array(1.0), np.array(500.0)).stator == found.at(np.array(1.0), np.array(400.0)).stator
