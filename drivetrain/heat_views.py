@@ -19,7 +19,7 @@ def built_machine(winding: WindingOutcome, gears: GearboxOutcome, inputs: Outcom
     """The machine in the casing of the whole actuator, with the friction of its gears and bearings."""
     masses, envelope = active_masses(winding.wound, inputs.materials), machine_envelope(winding.wound)
     layout = actuator_layout(gears.train, envelope, inputs.housing)
-    ratio, added = gears.transmission_ratio, inputs.added_friction
+    dry, viscous = inputs.friction(gears.transmission_ratio)
     return BuiltMachine(
         Weights(masses.copper, masses.stator_laminations, masses.rotor_laminations, masses.magnets, masses.shaft),
         inputs.materials.stacking,
@@ -30,9 +30,9 @@ def built_machine(winding: WindingOutcome, gears: GearboxOutcome, inputs: Outcom
             inputs.housing.bearing_seat,
             envelope.end_winding_length,
         ),
-        ratio,
-        inputs.viscous_friction + added.viscous(ratio),
-        inputs.coulomb_friction + added.coulomb(ratio),
+        gears.transmission_ratio,
+        viscous,
+        dry,
     )
 
 

@@ -102,6 +102,11 @@ class OutcomeInputs:
     stated: StatedActuator | None = None
     added_friction: AddedFriction = NO_FRICTION
 
+    def friction(self, ratio: float) -> tuple[float, float]:
+        """(dry [N or Nm], viscous [Ns/m or Nms/rad]) at the output, stated and added; ratio: tau_t [m/rad or 1]."""
+        added = self.added_friction
+        return self.coulomb_friction + added.coulomb(ratio), self.viscous_friction + added.viscous(ratio)
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -297,12 +302,13 @@ def features_of(
 
 def limits_of(design: ActuatorDesign, inputs: OutcomeInputs) -> ActuatorLimits:
     """Effort over speed at the output up to the largest rotor speed, with inertia and friction."""
-    ratio, added = design.transmission_ratio, inputs.added_friction
+    ratio = design.transmission_ratio
+    dry, viscous = inputs.friction(ratio)
     speed = np.linspace(0.0, inputs.rotor_speed_max * ratio, LIMIT_SPEEDS)
     return ActuatorLimits(
         speed=speed,
         force=design.effort_over(speed),
         equivalent_mass=design.equivalent_mass,
-        coulomb_friction=inputs.coulomb_friction + added.coulomb(ratio),
-        viscous_friction=inputs.viscous_friction + added.viscous(ratio),
+        coulomb_friction=dry,
+        viscous_friction=viscous,
     )

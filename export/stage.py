@@ -18,7 +18,7 @@ from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.connections import Connection, connections
 from geometry.winding import WindingLayout
-from losses.rated import PointLosses, losses_at
+from losses.map import PowerLosses
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap
@@ -78,7 +78,7 @@ class Package:
     currency: str
     continuous: OperatingState
     overload: OperatingState
-    losses: PointLosses | None
+    losses: PowerLosses | None
     short_circuit: ShortCircuit
     cogging: float | None
     unsaturated: SynchronousMachine
@@ -107,7 +107,7 @@ def package_stage(
         currency=prices.currency,
         continuous=continuous,
         overload=least_current_state(machine, winding.limits.current_peak, speed),
-        losses=None if losses is None else losses_at(losses.losses, continuous.torque, continuous.speed),
+        losses=None if losses is None else losses.losses.at(continuous.torque, continuous.speed),
         short_circuit=short_circuit_of(braking),
         cogging=cogging_of(rotations, wound.active_length),
         unsaturated=unsaturated_machine(machine),

@@ -127,31 +127,51 @@ def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
 
 @dataclass(frozen=True, eq=False)
 class PowerLosses:
-    """Losses over torque and speed, all of one shape; NaN where out of reach.
+    """Losses over torque and speed, all of one shape, a point or a plane; NaN where out of reach.
 
     torque [Nm], speed [rad/s, mechanical], copper, stator_iron, rotor_iron, magnet: [W], of any shape
     """
 
-    torque: np.ndarray
-    speed: np.ndarray
-    copper: np.ndarray
-    stator_iron: np.ndarray
-    rotor_iron: np.ndarray
-    magnet: np.ndarray
+    torque: Values
+    speed: Values
+    copper: Values
+    stator_iron: Values
+    rotor_iron: Values
+    magnet: Values
 
     @property
-    def total(self) -> np.ndarray:
+    def total(self) -> Values:
         """All electrical losses [W], of the shape of the torque."""
         return self.copper + self.stator_iron + self.rotor_iron + self.magnet
 
     @property
-    def efficiency(self) -> np.ndarray:
+    def mechanical(self) -> Values:
+        """T omega [W], of the shape of the torque."""
+        return self.torque * self.speed
+
+    @property
+    def electrical(self) -> Values:
+        """T omega and the losses [W], of the shape of the torque."""
+        return self.mechanical + self.total
+
+    @property
+    def efficiency(self) -> Values:
         """Power out over power in, shape of the torque, as motor and as generator; NaN where nothing comes out."""
-        mechanical = self.torque * self.speed
-        electrical = mechanical + self.total
+        mechanical, electrical = self.mechanical, self.electrical
         with np.errstate(divide="ignore", invalid="ignore"):
             motor, generator = mechanical / electrical, electrical / mechanical
         return np.where(mechanical > 0, motor, np.where(electrical < 0, generator, np.nan))
+
+    def at(self, torque: float, speed: float) -> PowerLosses:
+        """At one torque [Nm] and mechanical speed [rad/s], linear between the points of a map; NaN beyond it.
+
+        The copper loss goes with the square of the torque: between the 161 torques of a map it is off by (1/160)^2/4
+        of its largest value.
+        """
+        axes, at = (self.torque[:, 0], self.speed[0]), [(torque, speed)]
+        tables = (self.copper, self.stator_iron, self.rotor_iron, self.magnet)
+        read = (RegularGridInterpolator(axes, table, bounds_error=False)(at)[0] for table in tables)
+        return PowerLosses(np.float64(torque), np.float64(speed), *read)
 
 
 def power_losses(operating: OperatingMap, wound: WoundMachine, table: FieldLossTable) -> PowerLosses:

@@ -40,7 +40,7 @@ class Magnet:
 
         Raises MaterialError where the straight law has used up the remanence.
         """
-        factor = 1.0 + self.temperature_coefficient * (temperature - self.reference_temperature)
+        factor = self.remanence_share(temperature)
         if not factor > 0:
             raise MaterialError(f"no remanence left at {temperature:g} degC: beyond the range of the linear law")
         return replace(
@@ -49,6 +49,10 @@ class Magnet:
             temperature_coefficient=self.temperature_coefficient / factor,
             reference_temperature=temperature,
         )
+
+    def remanence_share(self, temperature: float) -> float:
+        """B_r(T)/B_r at the reference, dimensionless; temperature [degC]."""
+        return 1.0 + self.temperature_coefficient * (temperature - self.reference_temperature)
 
     @property
     def coercive_field(self) -> float:

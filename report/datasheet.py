@@ -237,7 +237,7 @@ def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: 
         return
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     hot = replace(losses, copper=losses.copper * heat.hot_resistance)
-    yield row("power", losses.power_out, "W", f"mechanical, {at}")
+    yield row("power", losses.mechanical, "W", f"mechanical, {at}")
     yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
     yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
@@ -245,7 +245,7 @@ def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: 
     yield row("losses", losses.total, "W", "without bearings, windage and inverter")
     yield row("efficiency", losses.efficiency, "percent", f"{at}, copper at {steel.winding_temperature:g} °C")
     yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C")
-    yield row("bus current", losses.power_in / inputs.limits.dc_voltage, "A", at)
+    yield row("bus current", losses.electrical / inputs.limits.dc_voltage, "A", at)
 
 
 def braking_rows(package: Package, braking: BrakingOutcome, output: Output) -> Iterator[Row]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from materials.magnet import ROOM_TEMPERATURE
+from materials.magnet import ROOM_TEMPERATURE, Magnet
 from study.inputs_electrical import winding_conductor
 from study.inputs_magnets import hottest
-from study.magnet_choice import magnet_grade
+from study.magnet_choice import design_magnet, magnet_grade
 from study.schema import Study
 from thermal.air import Film, GivenFilm, StillAir
 from thermal.cooling import (
@@ -20,7 +21,6 @@ from thermal.cooling import (
     LINER_THICKNESS,
     Cooling,
     HeatLimits,
-    HotMagnets,
 )
 from thermal.field_loss import FieldLoss, NoLossData
 from thermal.slot import Liner
@@ -36,7 +36,7 @@ def heat_inputs(study: Study) -> HeatInputs:
             _or(section.copper_temperature_max, CLASS_F),
             _or(section.magnet_temperature_max, hottest(study)),
         ),
-        hot_magnets(study),
+        warming_magnet(study),
         winding_conductor(study),
         winding.winding_temperature,
     )
@@ -57,15 +57,17 @@ def cooling(study: Study) -> Cooling:
     )
 
 
-def hot_magnets(study: Study) -> HotMagnets:
+def warming_magnet(study: Study) -> Magnet:
     """How the remanence falls: the study's coefficient, else that of its grade, else that of sintered NdFeB."""
-    stated, grade = study.thermal.si.remanence_temperature_coefficient, magnet_grade(study)
+    magnet, grade = design_magnet(study), magnet_grade(study)
+    stated = study.thermal.si.remanence_temperature_coefficient
     if stated is not None:
-        return HotMagnets(stated)
+        return replace(magnet, temperature_coefficient=stated)
     if grade is None:
-        return HotMagnets()
+        return magnet
     reference = _or(study.materials.si.magnet_temperature, ROOM_TEMPERATURE)
-    return HotMagnets(grade.remanence_coefficient * grade.remanence / grade.remanence_at(reference), reference)
+    coefficient = grade.remanence_coefficient * grade.remanence / grade.remanence_at(reference)
+    return replace(magnet, temperature_coefficient=coefficient, reference_temperature=reference)
 
 
 def no_loss_data(study: Study) -> FieldLoss:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from materials.magnet import NDFEB_REMANENCE_COEFFICIENT, ROOM_TEMPERATURE
 from thermal.air import Film, StillAir
 from thermal.slot import Liner
 from units import MILLIMETRE
@@ -48,18 +47,3 @@ class HeatLimits:
 
     copper: float = CLASS_F
     magnets: float = MAGNET_LIMIT
-
-
-@dataclass(frozen=True)
-class HotMagnets:
-    """How the remanence falls; the one place where a grade of magnet would come in.
-
-    coefficient: of the remanence [1/K]; reference: temperature at which the remanence is stated [degC]
-    """
-
-    coefficient: float = NDFEB_REMANENCE_COEFFICIENT
-    reference: float = ROOM_TEMPERATURE
-
-    def lost(self, temperature: float) -> float:
-        """Share of the remanence that is gone at a temperature [degC], dimensionless."""
-        return -self.coefficient * (temperature - self.reference)

@@ -11,7 +11,7 @@ from electrical.dq import DriveLimits, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from losses.copper import copper_loss, proximity_ratio
 from materials.conductor import Conductor
-from thermal.cooling import HotMagnets
+from materials.magnet import Magnet
 from thermal.field_loss import FieldLoss, IronAndMagnets
 from thermal.machine import CASING, COPPER_HEAT, ENDS, MAGNETS, ROTOR, SLOT, TEETH, YOKE, CooledMachine, yoke_share
 from thermal.network import Heat, Network, Temperatures
@@ -38,14 +38,14 @@ class Operation:
     torque.
 
     speed: of the rotor [rad/s]; current: peak, rising from 0 [A], (n,)
-    cold_torque: with the magnets as they are mapped [Nm], (n,); magnets: how they weaken
+    cold_torque: with the magnets as they are mapped [Nm], (n,); magnets: as they are mapped
     """
 
     speed: float
     pole_pairs: int
     current: np.ndarray
     cold_torque: np.ndarray
-    magnets: HotMagnets
+    magnets: Magnet
 
     def torque(self, magnet_temperature: float) -> np.ndarray:
         """Over the currents [Nm], (n,), with magnets at a temperature [degC].
@@ -54,7 +54,7 @@ class Operation:
         field with 11 % less remanence, 100 K, loses 10.3 % of the torque at 1 A/mm², 9.6 % at 6 and 9.5 % at 20, so
         that this is on the safe side by some 2 %.
         """
-        return self.cold_torque * (1 - self.magnets.lost(magnet_temperature))
+        return self.cold_torque * self.magnets.remanence_share(magnet_temperature)
 
     def torque_of(self, current: float, magnet_temperature: float) -> float:
         """Of a peak current [A] with magnets at a temperature [degC], [Nm]."""
@@ -65,7 +65,7 @@ class Operation:
         return np.interp(np.abs(torque), self.torque(magnet_temperature), self.current)
 
 
-def operation(machine: FluxMapMachine, limits: DriveLimits, speed: float, magnets: HotMagnets) -> Operation:
+def operation(machine: FluxMapMachine, limits: DriveLimits, speed: float, magnets: Magnet) -> Operation:
     """Of a machine with its hot resistance at a rotor speed [rad/s]; no torque where the voltage does not allow it."""
     current = np.linspace(0.0, float(limits.current_peak), _CURRENTS)
     family = machine.with_resistance(np.full(_CURRENTS - 1, machine.resistance))
@@ -154,7 +154,7 @@ def steady_load(
     machine: CooledMachine, copper: HotCopper, operation: Operation, field: FieldLoss, friction: float, current: float
 ) -> LoadedMachine:
     """The machine at one peak current [A]; friction: [W]. Iron loss at the torque with cold magnets."""
-    torque = operation.torque_of(current, operation.magnets.reference)
+    torque = operation.torque_of(current, operation.magnets.reference_temperature)
     found = field.at(np.array(torque), np.array(operation.speed))
     loading = SteadyCurrent(current, operation.pole_pairs * operation.speed)
     return LoadedMachine(machine, copper, loading, found, friction)

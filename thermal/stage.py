@@ -12,8 +12,9 @@ from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from magnetostatics.flux_map_stage import FluxMap
 from materials.conductor import Conductor
+from materials.magnet import Magnet
 from thermal.air import StillAir
-from thermal.cooling import Cooling, HeatLimits, HotMagnets
+from thermal.cooling import Cooling, HeatLimits
 from thermal.errors import NoSteadyState
 from thermal.field_loss import FieldLoss
 from thermal.load import HotCopper, LoadedMachine, Operation, TorqueHistory, copper_ripple, operation
@@ -39,7 +40,7 @@ class HeatInputs:
 
     cooling: Cooling
     limits: HeatLimits
-    magnets: HotMagnets
+    magnets: Magnet
     conductor: Conductor
     winding_temperature: float
 

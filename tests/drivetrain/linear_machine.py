@@ -1,5 +1,6 @@
 """A machine whose flux linkages are straight lines, wound, with its closed forms beside it."""
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
@@ -38,6 +39,12 @@ def closed_form(turns=TURNS, strands=STRANDS, length=LENGTH, end=END):
         resistivity=RHO,
     )  # fmt: skip
     return SynchronousMachine(POLES, scale * PSI, turns * scale * L_D, turns * scale * L_Q, resistance)
+
+
+def on_map():
+    """The same machine as a map."""
+    found = FluxMapMachine.from_per_turn(flux_map(), turns=TURNS, active_length=LENGTH, resistance=0.0)
+    return replace(found, resistance=closed_form().resistance)
 
 
 def actuator():

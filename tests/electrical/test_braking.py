@@ -11,7 +11,7 @@ from electrical.braking import holds_up_to, short_circuit, strongest_braking
 from electrical.dq import DriveLimits, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.short_circuit import shaft_damping
-from tests.drivetrain.linear_machine import POLES, closed_form, flux_map
+from tests.drivetrain.linear_machine import POLES, closed_form, flux_map, on_map
 from tests.electrical.analytic_map import Saturating
 from tests.electrical.analytic_map import flux_map as saturating_map
 
@@ -24,10 +24,8 @@ def plain():
 
 
 @pytest.fixture(scope="module")
-def linear(plain):
-    """The same machine as a map."""
-    found = FluxMapMachine.from_per_turn(flux_map(), turns=8, active_length=0.04, resistance=0.0)
-    return replace(found, resistance=plain.resistance)
+def linear():
+    return on_map()
 
 
 def test_a_shorted_linear_machine_brakes_by_its_electrical_pole(linear, plain):

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.sudden_short_circuit import first_peak
-from tests.drivetrain.linear_machine import POLES, closed_form, flux_map
+from tests.drivetrain.linear_machine import POLES, closed_form, on_map
 from tests.electrical.analytic_map import Saturating
 from tests.electrical.analytic_map import flux_map as saturating_map
 
@@ -21,9 +21,8 @@ def plain():
 
 
 @pytest.fixture(scope="module")
-def linear(plain):
-    found = FluxMapMachine.from_per_turn(flux_map(), turns=8, active_length=0.04, resistance=0.0)
-    return replace(found, resistance=plain.resistance)
+def linear():
+    return on_map()
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0), (0.0, 80.0), (0.0, -80.0), START])

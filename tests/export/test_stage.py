@@ -92,7 +92,7 @@ def test_losses_are_those_of_the_map_around_the_point(found, winding, losses):
     row, column = np.searchsorted(plane.torque[:, 0], at.torque), np.searchsorted(plane.speed[0], at.speed)
     corners = plane.stator_iron[row - 1 : row + 1, column - 1 : column + 1]
     assert corners.min() < found.losses.stator_iron < corners.max()
-    assert found.losses.power_in - found.losses.power_out == pytest.approx(found.losses.total)
+    assert found.losses.electrical - found.losses.mechanical == pytest.approx(found.losses.total)
     efficiency = plane.efficiency[row - 1 : row + 1, column - 1 : column + 1]
     assert efficiency.min() < found.losses.efficiency < efficiency.max()
 
@@ -149,7 +149,7 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
     cold, hot = table.value[table.quantity == "efficiency"]
     more = 0.393 * 1.5 * winding.wound.phase_resistance * found.continuous.current_peak**2  # W of hot copper
     assert cold == pytest.approx(100 * found.losses.efficiency)
-    assert 1 / hot - 1 / cold == pytest.approx(more / found.losses.power_out / 100, rel=1e-3)
+    assert 1 / hot - 1 / cold == pytest.approx(more / found.losses.mechanical / 100, rel=1e-3)
     assert value(table, "active parts") == pytest.approx(outcome.masses.total)
     assert value(table, "bus current", "copper") == pytest.approx(found.overload.power_in / 48.0)
 

@@ -3,10 +3,10 @@
 import pytest
 
 from materials.magnet_grade import load_grade
-from study.inputs_heat import heat_inputs, hot_magnets
+from study.inputs_heat import heat_inputs, warming_magnet
 from study.read import STUDIES, read_study
 from thermal.air import GivenFilm, StillAir
-from thermal.cooling import Cooling, HeatLimits, HotMagnets
+from thermal.cooling import Cooling, HeatLimits
 from units import MILLIMETRE
 
 
@@ -28,17 +28,19 @@ def test_what_a_study_states_counts_in_si():
     assert (cooling.ambient, cooling.mount, cooling.filler_conductivity) == (60.0, 2.5, 0.6)
     assert (cooling.liner.thickness, cooling.liner.conductivity) == pytest.approx((0.4e-3, 0.2))
     assert cooling.casing_gap == pytest.approx(1e-5) and cooling.film == StillAir(0.3)
-    assert found.limits == HeatLimits(180.0, 150.0) and hot_magnets(study).lost(120.0) == pytest.approx(0.12)
+    assert found.limits == HeatLimits(180.0, 150.0)
+    assert warming_magnet(study).remanence_share(120.0) == pytest.approx(0.88)
     assert found.winding_temperature == 100.0
 
 
 def test_magnets_warm_up_as_their_grade_does(tmp_path):
     """Also where what the field has is the remanence of the grade at another temperature."""
     grade, text = load_grade("N42UH"), (STUDIES / "pump.toml").read_text(encoding="utf-8")
-    assert hot_magnets(read_study("pump")) == HotMagnets(grade.remanence_coefficient, 20.0)
+    magnet = warming_magnet(read_study("pump"))
+    assert (magnet.temperature_coefficient, magnet.reference_temperature) == (grade.remanence_coefficient, 20.0)
     (tmp_path / "warm.toml").write_text(text.replace("remanence_T = 1.3", "magnet_temperature_degC = 80.0"))
     warm = read_study(tmp_path / "warm.toml")
-    kept = 1.0 - hot_magnets(warm).lost(120.0)
+    kept = warming_magnet(warm).remanence_share(120.0)
     assert kept == pytest.approx(grade.remanence_at(120.0) / grade.remanence_at(80.0))
 
 

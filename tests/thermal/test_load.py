@@ -17,12 +17,11 @@ from materials.library import load_steel
 from materials.magnet import Magnet
 from tests.drivetrain.linear_machine import POLES, closed_form, flux_map
 from tests.thermal.built import MACHINE, WEIGHTS, cooled
-from thermal.cooling import HotMagnets
 from thermal.field_loss import MappedLoss, NoLossData
 from thermal.load import HotCopper, Operation, TorqueHistory, copper_ripple, operation
 from thermal.machine import MAGNETS, SLOT
 
-HOT = HotMagnets(-0.0011, 20.0)
+HOT = Magnet(1.3, 1.0)
 LIMITS = DriveLimits.from_dc_bus(60.0, 48.0)
 
 
@@ -56,7 +55,7 @@ def test_a_field_solution_with_weaker_magnets_agrees(density):
         return flux_linkage_torque(model.solve(at))
 
     cold, weak = torque(1.3, point), torque(1.3 * 0.89, point)
-    assert 0.978 * weak < cold * (1 - HOT.lost(120.0)) < weak < 0.92 * cold
+    assert 0.978 * weak < cold * HOT.remanence_share(120.0) < weak < 0.92 * cold
 
 
 def test_beyond_base_speed_the_voltage_takes_torque(machine, slow):

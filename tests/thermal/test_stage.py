@@ -9,12 +9,13 @@ from drivetrain.output import Shaft, Wheel
 from electrical.winding_stage import winding_stage
 from figures.report import Table
 from materials.conductor import COPPER
+from materials.magnet import Magnet
 from pipeline.codec import decoded, digest, encoded
 from report.heat import files, flow_table, overload_table, rating_table, remarks, section, temperature_table
 from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
 from tests.thermal.built import CASING, COOLING, WEIGHTS
 from thermal.air import StillAir
-from thermal.cooling import HeatLimits, HotMagnets
+from thermal.cooling import HeatLimits
 from thermal.course import course
 from thermal.field_loss import FieldLoss, IronAndMagnets, NoLossData
 from thermal.machine import MAGNETS, ROTOR, SLOT, TEETH, YOKE
@@ -25,7 +26,7 @@ from thermal.stage import Assembled, BuiltMachine, Duty, HeatInputs, heat_stage
 MAP = flux_map(Saturating())
 BUILT = BuiltMachine(WEIGHTS, 0.95, CASING, 2.3e-3, 250.0, 3.0)
 STATED = Duty(np.array([300.0]), np.array([0.1]), 0.0)
-HEAT = HeatInputs(COOLING, HeatLimits(), HotMagnets(), COPPER, 20.0)
+HEAT = HeatInputs(COOLING, HeatLimits(), Magnet(1.3), COPPER, 20.0)
 
 
 class Turning(FieldLoss):
@@ -89,7 +90,7 @@ def test_speed_friction_and_warm_surroundings_cost_effort(winding, found):
 
 
 def test_weaker_magnets_when_hot_cost_effort(winding, found):
-    steady = continuous(heated(winding, replace(HEAT, magnets=HotMagnets(0.0))))
+    steady = continuous(heated(winding, replace(HEAT, magnets=Magnet(1.3, temperature_coefficient=0.0))))
     assert steady.current == pytest.approx(found.slow.current, rel=1e-4)
     lost = 0.0011 * (found.slow.state.temperature[MAGNETS] - 20.0)
     assert found.slow.torque == pytest.approx((1 - lost) * steady.torque, rel=1e-3)

@@ -59,17 +59,11 @@ def _orders(surrogate: Surrogate, table: Table, ask: Ask) -> tuple[Responses, ..
 
 def _left_in_orders(surrogate: Surrogate) -> dict[int, float]:
     """Share of each order of the voltage that the finer mesh may still lack, the fundamental first."""
-    fine, apart = (np.linalg.norm(linkage, axis=0) for linkage in _linkages(surrogate))
-    orders = np.array([int((fine * np.arange(len(fine))).argmax()), *voltage_orders(surrogate)])
-    missing = np.square(apart[orders] * orders)
+    orders = np.array(_voltage_orders(surrogate))
+    fine, coarse = _voltage(surrogate)[:, orders], _voltage(surrogate.on_coarse_mesh)[:, orders]
+    missing = np.square(np.abs(coarse - fine)).sum(0)
     around = [missing[max(k - 1, 0) : k + 2].mean() for k in range(len(orders))]
-    return dict(zip(orders.tolist(), LEFT * np.sqrt(around) / (fine[orders] * orders)))
-
-
-def _linkages(surrogate: Surrogate) -> tuple[np.ndarray, np.ndarray]:
-    """Flux linkages of the phases of the machine as drawn (3, orders), and how they differ on the coarser mesh."""
-    fine, coarse = (s.spectrum(surrogate.nominal)[1:] for s in (surrogate, surrogate.on_coarse_mesh))
-    return fine, coarse - fine
+    return dict(zip(orders.tolist(), LEFT * np.sqrt(around) / np.linalg.norm(fine, axis=0)))
 
 
 # ---- the recorder ----------------------------------------------------------------------------------------------------
@@ -100,9 +94,19 @@ def _only(surrogate: Surrogate, order: int, share: complex) -> np.ndarray:
 
 def voltage_orders(surrogate: Surrogate) -> tuple[int, ...]:
     """Mechanical orders of the voltage of the machine as drawn beyond the fundamental, which every recorder passes."""
-    linkage = _linkages(surrogate)[0]
-    size = np.abs(linkage * np.arange(linkage.shape[1])).max(0)
-    return tuple(int(order) for order in np.flatnonzero(size > LEAST * size.max()) if order > size.argmax())
+    return _voltage_orders(surrogate)[1:]
+
+
+def _voltage_orders(surrogate: Surrogate) -> tuple[int, ...]:
+    """The fundamental first."""
+    size = np.abs(_voltage(surrogate)).max(0)
+    return tuple(int(order) for order in np.flatnonzero(size > LEAST * size.max()) if order >= size.argmax())
+
+
+def _voltage(surrogate: Surrogate) -> np.ndarray:
+    """Orders of the voltage per speed of the phases of the machine as drawn (3, orders), but for a quarter period."""
+    linkage = surrogate.spectrum(surrogate.nominal)[1:]
+    return linkage * np.arange(linkage.shape[1])
 
 
 def _shape(surrogate: Surrogate, table: Table, ask: Ask, names: Sequence[str], behind: bool) -> Responses:
