@@ -2,8 +2,6 @@
 
 import os
 import socket
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,10 +10,9 @@ from study.errors import StudyError
 from study.read import STUDIES, read_study
 from study.toml_file import LARGEST_FILE
 from study.usable import check_study
+from tests.command_line import airgap
 
-ROOT = STUDIES.parent
 RIGHT = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
-WAIT = 60  # s, after which a command counts as hanging
 
 posix = pytest.mark.skipif(os.name != "posix", reason="named pipes and devices are things of Unix")
 
@@ -101,8 +98,7 @@ def test_one_sentence_about_anything_that_is_no_study(tmp_path, make, named):
 @posix
 @pytest.mark.parametrize("kind", ["named pipe", "symlink loop", "lists 3000 deep", "folder"])
 def test_the_command_exits_with_2_and_one_line(tmp_path, kind):
-    command = [sys.executable, "-m", "pipeline.cli", "check", str(FILES[kind][0](tmp_path))]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=WAIT)
+    done = airgap("check", FILES[kind][0](tmp_path))
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and done.stdout == ""
 
 

@@ -1,8 +1,6 @@
 """A wrong study gets one sentence that names the place, the value and the way out; never a traceback."""
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -10,8 +8,8 @@ import pytest
 from study.errors import StudyError
 from study.read import STUDIES, read_study
 from study.usable import check_study
+from tests.command_line import airgap
 
-ROOT = STUDIES.parent
 RIGHT = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
 
 
@@ -146,8 +144,7 @@ def test_a_wrong_override_gives_one_sentence(override, named):
     ],
 )
 def test_the_command_exits_with_2_and_one_line(tmp_path, old, new, code, named):
-    command = [sys.executable, "-m", "pipeline.cli", "check", str(changed(tmp_path, old, new))]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done = airgap("check", changed(tmp_path, old, new))
     assert done.returncode == code
     assert named in done.stderr and "Traceback" not in done.stderr
     assert len(done.stderr.splitlines()) == (1 if code else 0)
