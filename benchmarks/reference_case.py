@@ -11,7 +11,8 @@ import numpy as np
 from benchmarks.conforming_mesh import ConformingMesh, conforming_mesh, quadratic
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
-from geometry.machine import Machine, ParallelMagnetisation, hanselman_machine
+from geometry.machine import Machine, hanselman_machine
+from geometry.magnetisation import ParallelMagnetisation
 from geometry.winding import star_of_slots
 from magnetostatics.elements import LINEAR, QUADRATIC, TriangleOrder
 from magnetostatics.model import MachineMaterials, OperatingPoint

@@ -114,7 +114,7 @@ def _draw_magnetisation(axes: Axes, section: CrossSection, angle: float) -> None
         centre = magnet * m.pole_pitch
         direction = m.magnetisation.direction_angle(centre + spread, centre) + angle
         for place, pointing in zip(centre + spread + angle, direction, strict=True):
-            _arrow(axes, radius * np.exp(1j * place), (-1) ** magnet * length * np.exp(1j * pointing))
+            _arrow(axes, radius * np.exp(1j * place), section.polarity(magnet) * length * np.exp(1j * pointing))
 
 
 def _arrow(axes: Axes, centre: complex, vector: complex) -> None:

@@ -17,8 +17,8 @@ from skfem import MeshTri
 from geometry.checks import check_machine
 from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
-from geometry.machine import Machine
 from geometry.mesh_size import check_mesh_size
+from geometry.parts import DrawnMachine
 from geometry.plane_mesh import PlaneMesh
 from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
@@ -66,7 +66,7 @@ class CrossSection:
     assembly: where the parts stand that have been moved against each other
     """
 
-    machine: Machine
+    machine: DrawnMachine
     layout: WindingLayout
     mesh: MeshTri
     sectors: int
@@ -82,7 +82,7 @@ class CrossSection:
     @property
     def magnets(self) -> int:
         """Magnets in the sector."""
-        return self.machine.poles // self.sectors
+        return self.machine.poles * self.machine.rotor.magnets_per_pole // self.sectors
 
     @property
     def coil_sides(self) -> tuple[tuple[int, str], ...]:
@@ -103,28 +103,34 @@ class CrossSection:
     def stator_gap(self) -> GapHalf:
         """The gap between the sliding circle and the stator bore."""
         m = self.machine
-        return GapHalf(m.mid_gap_radius, m.stator_inner_radius, self.assembly.stator_centre)
+        return GapHalf(m.mid_gap_radius, m.stator.rim_radius, self.assembly.stator_centre)
 
     @property
     def rotor_gap(self) -> GapHalf:
         """The gap between the sliding circle and the magnets, in the coordinates of the rotor."""
         m = self.machine
-        return GapHalf(m.mid_gap_radius, m.rotor_outer_radius, self.assembly.rotor_centre)
+        return GapHalf(m.mid_gap_radius, m.rotor.rim_radius, self.assembly.rotor_centre)
 
     def magnetisation_angle(self, number: int, points: np.ndarray) -> np.ndarray:
         """Angle of the magnetisation of a magnet [rad], (...), taken outwards, at points of the rotor [m], (2, ...).
 
         number: of the magnet
         """
-        x, y = self.assembly.rotor_centre
-        centre_line = number * self.machine.pole_pitch + self.assembly.magnet_turn(number)
-        return self.machine.magnetisation.direction_angle(np.arctan2(points[1] - y, points[0] - x), centre_line)
+        (x, y), rotor = self.assembly.rotor_centre, self.machine.rotor
+        pole, which = divmod(number, rotor.magnets_per_pole)
+        axis = pole * self.machine.pole_pitch + self.assembly.magnet_turn(number)
+        return rotor.direction(np.arctan2(points[1] - y, points[0] - x), axis, which)
+
+    def polarity(self, number: int) -> int:
+        """1 for a magnet of an outward pole, -1 for one of an inward pole, dimensionless."""
+        return 1 - 2 * (number // self.machine.rotor.magnets_per_pole % 2)
 
     @cached_property
     def rotor_elements(self) -> np.ndarray:
-        """Whether each element turns with the rotor (E,): all inside the middle of the air gap."""
+        """Whether each element turns with the rotor (E,): all on its side of the middle of the air gap."""
         centroids = self.mesh.p[:, self.mesh.t].mean(axis=1)
-        return np.hypot(*centroids) < self.machine.mid_gap_radius
+        inside = np.hypot(*centroids) < self.machine.mid_gap_radius
+        return inside if self.machine.rotor.rim_radius < self.machine.mid_gap_radius else ~inside
 
     @property
     def rotor_band(self) -> np.ndarray:
@@ -141,10 +147,9 @@ class CrossSection:
 
     @cached_property
     def tooth_probes(self) -> tuple[Probe, ...]:
-        """Across each tooth at mid height, tooth 0 first."""
+        """Across each tooth, tooth 0 first."""
         m = self.machine
-        distance = (m.shoe_top_radius + m.slot_bottom_radius) / 2
-        points, weights = _segment((distance, -m.tooth_width / 2), (distance, m.tooth_width / 2))
+        points, weights = _segment(*m.stator.tooth_probe)
         return tuple(Probe(f"tooth_{k}", _turn(points, k * m.slot_pitch), weights) for k in range(self.teeth))
 
     @cached_property
@@ -155,7 +160,7 @@ class CrossSection:
         half.
         """
         m = self.machine
-        points, weights = _segment((m.slot_bottom_radius, 0.0), (m.stator_outer_radius, 0.0))
+        points, weights = _segment(*m.stator.back_iron_probe)
         weights = np.concatenate([weights, weights]) / 2
         beyond = _BESIDE_THE_LINE - (self.teeth * m.slot_pitch if self.sectors > 1 else 0.0)
         sides = [(-_BESIDE_THE_LINE, _BESIDE_THE_LINE)] * (self.teeth - 1) + [(-_BESIDE_THE_LINE, beyond)]
@@ -168,7 +173,7 @@ class CrossSection:
 
 
 def mesh_cross_section(
-    machine: Machine, layout: WindingLayout, density: MeshDensity = MeshDensity(), whole: bool = False
+    machine: DrawnMachine, layout: WindingLayout, density: MeshDensity = MeshDensity(), whole: bool = False
 ) -> CrossSection:
     """Mesh the smallest sector that field and winding repeat on, or the whole machine.
 
@@ -199,7 +204,7 @@ class Piece:
     width: float
 
     @classmethod
-    def of(cls, cell: HalfCell, machine: Machine, count: int, closed: bool) -> Piece:
+    def of(cls, cell: HalfCell, machine: DrawnMachine, count: int, closed: bool) -> Piece:
         """Mesh a half cell and number its copies; closed: the last copy meets the first."""
         mesh, width = cell.mesh(machine), cell.width(machine)
         return cls(cell, mesh, _shared_numbering(mesh, width, count, closed), width)
@@ -280,13 +285,13 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def _join(stator: Piece, rotor: Piece, machine: Machine, sectors: int) -> MeshTri:
+def _join(stator: Piece, rotor: Piece, machine: DrawnMachine, sectors: int) -> MeshTri:
     points = [piece.place(piece.mesh.points) for piece in (stator, rotor)]
     offset, first_rotor_triangle = points[0].shape[1], stator.triangles.shape[1]
     triangles = np.ascontiguousarray(np.hstack([stator.triangles, rotor.triangles + offset]))
     mesh = TriangleMesh(np.hstack(points), triangles, sort_t=False, validate=False)
     names = _stator_names(stator, machine.slots)
-    for name, where in _rotor_names(rotor).items():
+    for name, where in _rotor_names(rotor, machine.rotor.magnets_per_pole).items():
         where = where + first_rotor_triangle
         names[name] = np.concatenate([names[name], where]) if name in names else where
     mesh = mesh.with_subdomains(names)
@@ -310,20 +315,24 @@ def _coil_sides(slots: int, half_cells: int) -> tuple[tuple[int, str], ...]:
     return tuple(((h - 1) // 2, "R") if h % 2 else ((h // 2 - 1) % slots, "L") for h in range(half_cells))
 
 
-def _rotor_names(rotor: Piece) -> dict[str, np.ndarray]:
+def _rotor_names(rotor: Piece, magnets_per_pole: int) -> dict[str, np.ndarray]:
+    """A magnet on the axis of a pole has a half in each of two copies, beside it there is one in every copy."""
     regions = _regions(rotor)
     magnet = regions.pop("magnet")
-    magnets = {f"magnet_{m}": magnet[rotor.copy[magnet] // 2 == m] for m in range(rotor.count // 2)}
+    number = rotor.copy[magnet] * magnets_per_pole // 2
+    magnets = {f"magnet_{m}": magnet[number == m] for m in range(rotor.count * magnets_per_pole // 2)}
     return {"rotor_iron": regions.pop("iron")} | regions | magnets
 
 
-def _boundaries(mesh: MeshTri, stator: Piece, rotor: Piece, machine: Machine, sectors: int) -> dict[str, np.ndarray]:
+def _boundaries(
+    mesh: MeshTri, stator: Piece, rotor: Piece, machine: DrawnMachine, sectors: int
+) -> dict[str, np.ndarray]:
     offset = stator.nodes.max() + 1
     radius = np.hypot(*mesh.p)
     is_rotor = np.arange(mesh.p.shape[1]) >= offset
     on_slide = np.abs(radius - machine.mid_gap_radius) < 1e-9
     sets = {
-        "outer": np.abs(radius - machine.stator_outer_radius) < 1e-9,
+        "outer": _on_circles(radius, (machine.stator.grounded_radius, machine.rotor.grounded_radius)),
         "stator_slide": on_slide & ~is_rotor,
         "rotor_slide": on_slide & is_rotor,
     }
@@ -334,6 +343,11 @@ def _boundaries(mesh: MeshTri, stator: Piece, rotor: Piece, machine: Machine, se
     facets = np.flatnonzero(np.bincount(mesh.t2f.ravel()) == 1)
     a, b = mesh.facets[:, facets]
     return {name: facets[inside[a] & inside[b]] for name, inside in sets.items()}
+
+
+def _on_circles(radius: np.ndarray, circles: Iterable[float | None]) -> np.ndarray:
+    """Whether each radius is that of one of the circles there are."""
+    return np.any([np.abs(radius - circle) < 1e-9 for circle in circles if circle is not None], axis=0)
 
 
 def _triangle_areas(mesh: MeshTri) -> np.ndarray:

@@ -12,8 +12,9 @@ from math import cos, sin
 import numpy as np
 
 from geometry.cross_section import Assembly, CrossSection
+from geometry.errors import GeometryError
 from geometry.gap import GapHalf
-from geometry.machine import GeometryError, Machine
+from geometry.machine import Machine
 from geometry.morph import Defect, Morpher
 from units import MILLIMETRE
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
-from geometry.machine import Machine, Magnetisation, hanselman_machine
+from geometry.machine import Machine, hanselman_machine
+from geometry.magnetisation import Magnetisation
 
 _STATED = ("tooth_width", "shoe_d1", "shoe_d2")
 

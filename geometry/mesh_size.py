@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from math import atan2, hypot, lcm, log
 
+from geometry.errors import GeometryError
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
-from geometry.machine import GeometryError, Machine
+from geometry.parts import DrawnMachine
 from geometry.plane_mesh import Drawing
 
 # A state of 300 000 unknowns takes some 10 s and 3 GB, and a sweep solves ten thousands of states; the machines of the
@@ -18,7 +19,7 @@ _UNKNOWNS_PER_TRIANGLE = 2.0  # of quadratic elements: a vertex belongs to six t
 _TRIANGLES, _EXPONENT = 0.16, 1.75
 
 
-def check_mesh_size(machine: Machine, density: MeshDensity, sectors: int = 1) -> None:
+def check_mesh_size(machine: DrawnMachine, density: MeshDensity, sectors: int = 1) -> None:
     """Raise GeometryError, naming what to change, when a mesh would be larger than ``LARGEST_MESH``."""
     unknowns = expected_unknowns(machine, density, sectors)
     if unknowns > LARGEST_MESH:
@@ -32,7 +33,7 @@ def _thousands(count: float) -> str:
     return f"{round(count / 1000)} 000"
 
 
-def expected_unknowns(machine: Machine, density: MeshDensity, sectors: int = 1) -> float:
+def expected_unknowns(machine: DrawnMachine, density: MeshDensity, sectors: int = 1) -> float:
     """Unknowns of a field solution (dimensionless), within a factor of 2.7.
 
     sectors: how many such parts make up the machine
@@ -42,7 +43,7 @@ def expected_unknowns(machine: Machine, density: MeshDensity, sectors: int = 1) 
     return _UNKNOWNS_PER_TRIANGLE * sum(n * expected_triangles(cell, machine) for n, cell in zip(copies, cells))
 
 
-def expected_triangles(cell: HalfCell, machine: Machine) -> float:
+def expected_triangles(cell: HalfCell, machine: DrawnMachine) -> float:
     """Triangles of a half cell (dimensionless): those of the gap layers and those of the drawing."""
     return 2 * cell.edges * cell.density.gap_layers + _TRIANGLES * outline_edges(cell.draw(machine)) ** _EXPONENT
 
@@ -69,7 +70,7 @@ def _length(start: tuple[float, float, float], end: tuple[float, float, float], 
     return hypot(u - x, v - y)
 
 
-def _advice(machine: Machine, density: MeshDensity) -> str:
+def _advice(machine: DrawnMachine, density: MeshDensity) -> str:
     """The change that helps most: of a number by a factor of two, or of slots and poles without common measure."""
     if lcm(2 * machine.slots, 2 * machine.poles) > 4 * density.edges_wanted(machine):
         return (

@@ -21,7 +21,8 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from geometry.checks import check_machine
 from geometry.cross_section import Assembly, CrossSection, Piece
-from geometry.machine import GeometryError, Machine
+from geometry.errors import GeometryError
+from geometry.machine import Machine
 from geometry.plane_mesh import Drawing
 
 _ON_CURVE = 1e-9  # m

@@ -8,7 +8,7 @@ from math import cos, sin
 import gmsh
 import numpy as np
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.signal_handlers import kept_signal_handlers
 
 _FRONTAL_DELAUNAY = 6  # gmsh's number for the algorithm that gives the best-shaped triangles
@@ -23,6 +23,7 @@ class Drawing:
 
     points: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # x, y, edge length [m]
     curves: dict[tuple[str, str], tuple[bool, int | None]] = field(default_factory=dict)  # is_arc, number of edges
+    centres: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)  # of arcs [m]
     regions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # corner points in order
 
     def point(self, name: str, radius: float, angle: float, edge_length: float) -> str:
@@ -39,9 +40,18 @@ class Drawing:
         for start, end in zip(points, points[1:]):
             self.line(start, end)
 
-    def arc(self, start: str, end: str, edges: int | None = None) -> None:
-        """Add an arc about the origin, shorter than half a turn."""
+    def arc(
+        self, start: str, end: str, edges: int | None = None, centre: tuple[float, float] | None = None
+    ) -> None:
+        """Add an arc shorter than half a turn, about a centre x, y [m], or about the origin."""
         self.curves[start, end] = (True, edges)
+        if centre is not None:
+            self.centres[start, end] = centre
+
+    def place(self, name: str, x: float, y: float, edge_length: float) -> str:
+        """Add a point in Cartesian coordinates [m] and return its name."""
+        self.points[name] = (x, y, edge_length)
+        return name
 
     def region(self, name: str, *corners: str) -> None:
         """Add a region bounded by the curves between successive corners (closed automatically)."""
@@ -104,12 +114,13 @@ def _start_gmsh() -> None:
 
 def _draw(drawing: Drawing) -> dict[str, int]:
     geo = gmsh.model.geo
-    centre = geo.addPoint(0, 0, 0)
+    origin = geo.addPoint(0, 0, 0)
+    others = {curve: geo.addPoint(x, y, 0) for curve, (x, y) in drawing.centres.items()}
     points = {name: geo.addPoint(x, y, 0, size) for name, (x, y, size) in drawing.points.items()}
     curves = {}
     for (start, end), (is_arc, edges) in drawing.curves.items():
         ends = points[start], points[end]
-        tag = geo.addCircleArc(ends[0], centre, ends[1]) if is_arc else geo.addLine(*ends)
+        tag = geo.addCircleArc(ends[0], others.get((start, end), origin), ends[1]) if is_arc else geo.addLine(*ends)
         curves[start, end], curves[end, start] = tag, -tag
         if edges is not None:
             geo.mesh.setTransfiniteCurve(tag, edges + 1)

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from math import ceil, gcd, pi, sin
 from typing import ClassVar
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 
 PHASES = 3
 RIGHT, LEFT, WHOLE = "R", "L", "RL"  # sides of a slot; a single-layer coil side fills both

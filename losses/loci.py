@@ -21,7 +21,7 @@ from math import pi
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.winding import WindingLayout
 from magnetostatics.elements import Elements
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from magnetostatics.model import FieldModel, OperatingPoint
 
 

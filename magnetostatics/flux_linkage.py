@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.model import FieldSolution, OperatingPoint
 

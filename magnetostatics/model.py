@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from geometry.cross_section import CrossSection
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.winding import Coil
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
@@ -192,7 +192,8 @@ class FieldModel:
         (Q, E); magnets of odd number point inwards."""
         angle = self.section.magnetisation_angle(number, self.magnet_elements(number).points)
         angle = angle + self.materials.magnet_at(number).axis_error
-        return (-1) ** number * np.cos(angle), (-1) ** number * np.sin(angle)
+        polarity = self.section.polarity(number)
+        return polarity * np.cos(angle), polarity * np.sin(angle)
 
     @cached_property
     def phase_loads(self) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from skfem import MeshTri
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from magnetostatics.elements import TriangleOrder
 from magnetostatics.model import FieldModel, FieldSolution
 

@@ -135,7 +135,7 @@ class WeakForm:
         for number in range(self.section.magnets):
             where, magnet = self.regions[f"magnet_{number}"], self.materials.magnet_at(number)
             direction = self.section.magnetisation_angle(number, points[:, where]) + magnet.axis_error
-            strength = (-1) ** number * magnet.coercive_field
+            strength = self.section.polarity(number) * magnet.coercive_field
             field[:, where] = strength * np.stack([np.cos(direction), np.sin(direction)])
         return field
 

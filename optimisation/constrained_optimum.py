@@ -16,7 +16,7 @@ from math import nan
 import numpy as np
 from scipy.optimize import minimize
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from optimisation.design import Design, DesignSolver, Judge
 from units import MILLIMETRE
 

@@ -11,7 +11,8 @@ from math import nan
 import numpy as np
 
 from geometry.checks import check_machine
-from geometry.machine import GeometryError, Machine
+from geometry.errors import GeometryError
+from geometry.machine import Machine
 from geometry.morph import Morpher
 from magnetostatics.case import FieldCase
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint

@@ -8,7 +8,8 @@ from math import nan
 
 import numpy as np
 
-from geometry.machine import GeometryError, Machine
+from geometry.errors import GeometryError
+from geometry.machine import Machine
 from magnetostatics.case import FieldCase
 from optimisation.design import Design, DesignSolver, Judge
 from optimisation.design_map import DesignMap

@@ -10,7 +10,8 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from geometry.machine import GeometryError, Machine
+from geometry.errors import GeometryError
+from geometry.machine import Machine
 from magnetostatics.case import FieldCase
 from magnetostatics.newton import NewtonSettings
 from optimisation.design import Design, DesignSolver, Judge

@@ -18,7 +18,7 @@ from drivetrain.outcome import Outcome
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
-from geometry.machine import RadialMagnetisation
+from geometry.magnetisation import RadialMagnetisation
 from magnetostatics.flux_map_stage import FluxMap
 from materials.conductor import Conductor
 from study.errors import StudyError

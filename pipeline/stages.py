@@ -29,7 +29,7 @@ from export.stage import package_stage
 from export.step import StepError
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from losses.stage import LossError, loss_law, losses_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage

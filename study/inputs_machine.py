@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geometry.family import MachineFamily
 from geometry.half_cell import MeshDensity
-from geometry.machine import Magnetisation, ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
 from study.schema import MachineSection, MeshSection
 
 # Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.

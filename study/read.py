@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from geometry.checks import check_machine
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.winding import star_of_slots
 from study.chain import check_chain
 from study.errors import StudyError

@@ -13,8 +13,9 @@ from math import pi
 
 from drivetrain.four_bar import LinkageError
 from geometry.checks import check_machine
+from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
-from geometry.machine import GeometryError, Machine
+from geometry.machine import Machine
 from geometry.mesh_size import check_mesh_size
 from materials.errors import MaterialError
 from materials.library import load_steel

@@ -7,7 +7,7 @@ import numpy as np
 
 from geometry.family import MachineFamily
 from geometry.half_cell import MeshDensity
-from geometry.machine import ParallelMagnetisation
+from geometry.magnetisation import ParallelMagnetisation
 from magnetostatics.case import FieldCase
 from magnetostatics.model import MachineMaterials
 from materials.library import load_steel

@@ -7,8 +7,9 @@ import pytest
 
 from geometry.checks import check_machine
 from geometry.cross_section import mesh_cross_section
+from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity, half_cells
-from geometry.machine import GeometryError, ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from geometry.winding import star_of_slots
 from tests.geometry.thesis_machine import MM, machine, section
 

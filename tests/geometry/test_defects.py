@@ -17,8 +17,8 @@ from geometry.defects import (
     deformed,
     first_rotor_node,
 )
+from geometry.errors import GeometryError
 from geometry.gap import GapHalf
-from geometry.machine import GeometryError
 from geometry.morph import Morpher
 from tests.geometry.thesis_machine import MM, machine, section
 

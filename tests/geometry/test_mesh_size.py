@@ -6,8 +6,9 @@ from math import pi
 import pytest
 
 from geometry.cross_section import mesh_cross_section
+from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity, half_cells
-from geometry.machine import GeometryError, Machine, hanselman_machine
+from geometry.machine import Machine, hanselman_machine
 from geometry.mesh_size import LARGEST_MESH, check_mesh_size, expected_triangles, expected_unknowns
 from geometry.winding import star_of_slots
 

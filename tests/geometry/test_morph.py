@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.morph import Morpher
 from tests.geometry.thesis_machine import MM, machine, section
 

@@ -5,7 +5,7 @@ from math import pi, radians
 
 import pytest
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.winding import LEFT, RIGHT, WindingLayout, _layout, is_feasible, sector_symmetric, star_of_slots
 
 COMBINATIONS = [

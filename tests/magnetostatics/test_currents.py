@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from magnetostatics.currents import CoilCurrents, PhaseCurrents, coil_currents
 from magnetostatics.flux_linkage import coil_flux_linkage, phase_flux_linkage
 from magnetostatics.model import OperatingPoint

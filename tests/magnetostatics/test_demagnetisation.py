@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geometry.half_cell import MeshDensity
-from geometry.machine import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from magnetostatics.demagnetisation import MagnetFlux, magnet_flux, magnet_map
 from magnetostatics.flux_map import map_angles, operating_point
 from magnetostatics.model import FieldModel, OperatingPoint

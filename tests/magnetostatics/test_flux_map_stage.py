@@ -9,7 +9,7 @@ import xarray as xr
 
 from geometry.family import MachineFamily, MatchedMachine
 from geometry.half_cell import MeshDensity
-from geometry.machine import ParallelMagnetisation
+from geometry.magnetisation import ParallelMagnetisation
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import flux_and_torque, operating_point
 from magnetostatics.flux_map_stage import FluxMap, FluxMapGrid, best_current, flux_map_stage, kept_model

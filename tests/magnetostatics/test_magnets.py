@@ -8,7 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geometry.defects import DynamicEccentricity, MagnetPosition
-from geometry.machine import GeometryError, RadialMagnetisation
+from geometry.errors import GeometryError
+from geometry.magnetisation import RadialMagnetisation
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.flux_linkage import coil_flux_linkage
 from materials.magnet import Magnet

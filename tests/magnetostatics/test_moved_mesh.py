@@ -9,7 +9,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.morph import Morpher
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import OperatingPoint

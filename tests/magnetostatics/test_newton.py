@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geometry.machine import RadialMagnetisation
+from geometry.magnetisation import RadialMagnetisation
 from magnetostatics.elements import LINEAR, QUADRATIC
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import FieldModel, MachineMaterials, OperatingPoint

@@ -14,7 +14,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from geometry.half_cell import MeshDensity
-from geometry.machine import RadialMagnetisation
+from geometry.magnetisation import RadialMagnetisation
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.model import OperatingPoint
 from magnetostatics.positions import null_angle, null_current_angle

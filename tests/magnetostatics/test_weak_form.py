@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from geometry.cross_section import CrossSection
 from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentricity
 from geometry.half_cell import MeshDensity
-from geometry.machine import RadialMagnetisation
+from geometry.magnetisation import RadialMagnetisation
 from geometry.morph import Morpher
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.cut_edge import CutEdge

@@ -13,7 +13,8 @@ import numpy as np
 from skfem import MeshTri
 
 from geometry.cross_section import CrossSection
-from geometry.machine import Machine, ParallelMagnetisation
+from geometry.machine import Machine
+from geometry.magnetisation import ParallelMagnetisation
 from geometry.winding import star_of_slots
 from magnetostatics.elements import LINEAR, Elements
 from magnetostatics.model import FieldModel, MachineMaterials

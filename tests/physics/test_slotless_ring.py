@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geometry.machine import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import FieldModel, OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque

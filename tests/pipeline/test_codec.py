@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from toy_graph import Largest, Squares
 
-from geometry.machine import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from materials.library import load_steel
 from pipeline.codec import CodecError, decoded, digest, encoded
 

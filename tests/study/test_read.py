@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from drivetrain.planetary import NITRIDED_STEEL
-from geometry.machine import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from study.check import summary
 from study.errors import StudyError
 from study.inputs_electrical import winding_inputs

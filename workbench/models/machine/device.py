@@ -26,7 +26,9 @@ from math import pi
 
 from effects.machine_design import MachineAsBuilt
 from geometry.checks import check_machine
-from geometry.machine import GeometryError, Machine, ParallelMagnetisation, RadialMagnetisation
+from geometry.errors import GeometryError
+from geometry.machine import Machine
+from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from materials.errors import MaterialError
 from materials.iron_loss import iron_loss_law
 from materials.library import load_steel

@@ -20,7 +20,8 @@ from effects.machine_design import MachineAsBuilt
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.defects import DynamicEccentricity, MagnetPosition, SlotOpening, StaticEccentricity
 from geometry.half_cell import MeshDensity
-from geometry.machine import Machine, Magnetisation
+from geometry.machine import Machine
+from geometry.magnetisation import Magnetisation
 from geometry.morph import Defect, Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.currents import CoilCurrents, PhaseCurrents

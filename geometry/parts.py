@@ -1,0 +1,206 @@
+"""What a machine is put together from: a stator and a rotor, each of which draws half a pitch of itself.
+
+Nothing outside the files of ``geometry/stators`` and ``geometry/rotors`` asks which kind a part is: meshing, field,
+probes and defects ask for what is declared here. Angles count from the axis of a tooth or of a pole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import gcd, pi
+from typing import Annotated, Protocol
+
+import numpy as np
+
+from geometry.plane_mesh import Drawing
+
+Length = Annotated[float, "mm"]  # [m]; what it is stated in at the border stands behind
+Angle = Annotated[float, "deg"]  # [rad]
+Share = Annotated[float, ""]  # dimensionless
+Segment = tuple[tuple[float, float], tuple[float, float]]  # from one point x, y to another [m]
+
+
+@dataclass(frozen=True)
+class Rim:
+    """How finely a part is meshed.
+
+    edges: of half a pitch along its rim; edge_length: on the sliding circle [m]
+    across_iron: number of elements across a tooth or another narrow piece of iron
+    """
+
+    edges: int
+    edge_length: float
+    across_iron: float
+
+
+class Part:
+    """Stator or rotor, a ring of equal pitches, each symmetric about its axis."""
+
+    @property
+    def pitch(self) -> float:
+        """Angle after which it repeats itself [rad]."""
+        raise NotImplementedError
+
+    @property
+    def rim_radius(self) -> float:
+        """Where the gap begins [m]."""
+        raise NotImplementedError
+
+    @property
+    def grounded_radius(self) -> float | None:
+        """Circle on which the vector potential is zero [m], None where the part has none."""
+        raise NotImplementedError
+
+    def draw(self, rim: Rim) -> Drawing:
+        """Half a pitch from its axis on without the gap; the same points and curves whatever its dimensions are."""
+        raise NotImplementedError
+
+    def check(self) -> None:
+        """Raise GeometryError, naming the parameter to move, where it cannot be built."""
+        raise NotImplementedError
+
+
+class Stator(Part):
+    """Regions iron, opening, copper (half a slot), and others of air; the axis is that of a tooth."""
+
+    slots: int
+
+    @property
+    def pitch(self) -> float:
+        return 2 * pi / self.slots
+
+    @property
+    def tooth_probe(self) -> Segment:
+        """Across tooth 0, where its saturation is read [m]."""
+        raise NotImplementedError
+
+    @property
+    def back_iron_probe(self) -> Segment:
+        """Through the back iron behind a slot, the axis of the slot being the x axis [m]."""
+        raise NotImplementedError
+
+
+class Rotor(Part):
+    """Regions iron, magnet, and others of air; the axis is that of a pole. Poles of even number point outwards."""
+
+    poles: int
+
+    @property
+    def pitch(self) -> float:
+        return 2 * pi / self.poles
+
+    @property
+    def magnets_per_pole(self) -> int:
+        """1: on the axis of the pole; 2: beside it, the clockwise one first."""
+        raise NotImplementedError
+
+    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
+        """Angle of the magnetisation of an outward pole [rad], of the shape of the positions.
+
+        position_angle: polar angle of points of the magnet [rad], of any shape; axis: that of the pole [rad]
+        which: of the pole's magnets
+        """
+        raise NotImplementedError
+
+
+class DrawnMachine(Protocol):
+    """What mesh and field ask of a machine, whatever its kind."""
+
+    @property
+    def stator(self) -> Stator: ...
+
+    @property
+    def rotor(self) -> Rotor: ...
+
+    @property
+    def slots(self) -> int: ...
+
+    @property
+    def pole_pairs(self) -> int: ...
+
+    @property
+    def poles(self) -> int: ...
+
+    @property
+    def slot_pitch(self) -> float:
+        """Angle between two teeth [rad]."""
+
+    @property
+    def pole_pitch(self) -> float:
+        """Angle between two poles [rad]."""
+
+    @property
+    def airgap(self) -> float:
+        """Between the rims of stator and rotor [m]."""
+
+    @property
+    def mid_gap_radius(self) -> float:
+        """Of the sliding circle [m]."""
+
+    @property
+    def sectors(self) -> int:
+        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, poles)."""
+
+    @property
+    def is_antiperiodic(self) -> bool:
+        """True when the field changes sign from one sector to the next (odd number of poles per sector)."""
+
+
+class Pitches:
+    """What follows from the numbers of slots and poles."""
+
+    slots: int
+    pole_pairs: int
+
+    @property
+    def poles(self) -> int:
+        return 2 * self.pole_pairs
+
+    @property
+    def slot_pitch(self) -> float:
+        """Angle between two teeth [rad]."""
+        return 2 * pi / self.slots
+
+    @property
+    def pole_pitch(self) -> float:
+        """Angle between two poles [rad]."""
+        return pi / self.pole_pairs
+
+    @property
+    def sectors(self) -> int:
+        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, poles)."""
+        return gcd(self.slots, self.poles)
+
+    @property
+    def is_antiperiodic(self) -> bool:
+        """True when the field changes sign from one sector to the next (odd number of poles per sector)."""
+        return (self.poles // self.sectors) % 2 == 1
+
+
+@dataclass(frozen=True)
+class ComposedMachine(Pitches):
+    """Any stator with any rotor, inside or outside of it.
+
+    Raises GeometryError where there is no gap between them.
+    """
+
+    stator: Stator
+    rotor: Rotor
+
+    @property
+    def slots(self) -> int:  # type: ignore[override]  # it is what the stator says
+        return self.stator.slots
+
+    @property
+    def pole_pairs(self) -> int:  # type: ignore[override]
+        return self.rotor.poles // 2
+
+    @property
+    def airgap(self) -> float:
+        """Between the rims of stator and rotor [m]."""
+        return abs(self.stator.rim_radius - self.rotor.rim_radius)
+
+    @property
+    def mid_gap_radius(self) -> float:
+        """Of the sliding circle [m]."""
+        return (self.stator.rim_radius + self.rotor.rim_radius) / 2
