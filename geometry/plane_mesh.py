@@ -40,9 +40,7 @@ class Drawing:
         for start, end in zip(points, points[1:]):
             self.line(start, end)
 
-    def arc(
-        self, start: str, end: str, edges: int | None = None, centre: tuple[float, float] | None = None
-    ) -> None:
+    def arc(self, start: str, end: str, edges: int | None = None, centre: tuple[float, float] | None = None) -> None:
         """Add an arc shorter than half a turn, about a centre x, y [m], or about the origin."""
         self.curves[start, end] = (True, edges)
         if centre is not None:

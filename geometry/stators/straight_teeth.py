@@ -108,7 +108,6 @@ class StraightTeeth(Stator):
         """Point x + jy of the flank of tooth 0 at this radius [m]."""
         return rect(radius, asin(self.tooth_width / 2 / radius))
 
-
     def check(self) -> None:
         for rule in (_check_radii, _check_shoes, _check_teeth, _check_slot):
             rule(self)

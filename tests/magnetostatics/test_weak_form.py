@@ -14,6 +14,7 @@ from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentri
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import RadialMagnetisation
 from geometry.morph import Morpher
+from geometry.parts import ComposedMachine
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.cut_edge import CutEdge
 from magnetostatics.elements import LINEAR, QUADRATIC, TriangleOrder
@@ -23,6 +24,8 @@ from magnetostatics.newton import FieldSolutionError, NewtonSettings
 from magnetostatics.torque import arkkio_torque
 from magnetostatics.weak_form import WeakForm
 from materials.magnet import Magnet
+from tests.magnetostatics.other_machines import INSET, OUTRUNNER, SPOKE, V_SHAPE
+from tests.magnetostatics.other_machines import section_of as other_section
 from tests.magnetostatics.reference_machine import MATERIALS, STEEL, reference_machine, section_of
 from units import DEGREE
 
@@ -51,6 +54,10 @@ def with_defects() -> CrossSection:
     return Morpher(whole).to(whole.machine, defects)
 
 
+def other_kind(machine: ComposedMachine) -> CrossSection:
+    return other_section(machine, COARSE)
+
+
 def other_materials() -> MachineMaterials:
     """Damaged stator edges, another rotor, magnets with a recoil permeability and an axis that is off."""
     magnet = Magnet(1.2, recoil_permeability=1.08, axis_error=0.03)
@@ -68,6 +75,10 @@ CASES = {
     "single layer": lambda: Case(section_of(reference_machine(), COARSE, layers=1), OperatingPoint(-0.36, RATED)),
     "nine slots": lambda: Case(sector(slots=9, pole_pairs=4), OperatingPoint(0.2, RATED)),
     "other materials": lambda: Case(sector(), OperatingPoint(-0.36, RATED), other_materials()),
+    "outer rotor": lambda: Case(other_kind(OUTRUNNER), PhaseCurrents(0.07, (30.0, -40.0, 10.0))),
+    "V shape": lambda: Case(other_kind(V_SHAPE), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "inset magnets": lambda: Case(other_kind(INSET), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "spokes": lambda: Case(other_kind(SPOKE), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "whole, with defects": lambda: Case(with_defects(), OperatingPoint(-0.36, RATED)),
 }
 ORDERS = {"P1": LINEAR, "P2": QUADRATIC}

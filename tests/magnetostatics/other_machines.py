@@ -1,0 +1,63 @@
+"""Machines of other kinds: two drawings that another code has solved, a motor with inset magnets, one with spokes."""
+
+from math import atan2
+
+import numpy as np
+
+from geometry.cross_section import CrossSection, mesh_cross_section
+from geometry.half_cell import MeshDensity
+from geometry.parts import ComposedMachine
+from geometry.rotors.inset_magnets import InsetMagnets
+from geometry.rotors.outer_magnets import OuterMagnets
+from geometry.rotors.spoke import Spoke
+from geometry.rotors.v_shape import VShape
+from geometry.stators.outward_teeth import OutwardTeeth
+from geometry.stators.round_bottom_slots import RoundBottomSlots
+from geometry.stators.straight_teeth import StraightTeeth
+from geometry.winding import star_of_slots
+from magnetostatics.currents import PhaseCurrents
+from magnetostatics.model import FieldModel, MachineMaterials
+from materials.library import load_steel
+from materials.magnet import Magnet
+from units import MILLIMETRE
+
+mm = MILLIMETRE
+STEEL = load_steel("M270-35A")
+
+# Outer rotor, 9 slots and 12 poles: a small motor of a robot, idealised (magnets with round faces).
+OUTRUNNER = ComposedMachine(
+    OutwardTeeth(9, 3.0 * mm, 3.95 * mm, 5.95 * mm, 6.35 * mm, 6.95 * mm, 1.8 * mm, 0.8 * mm),
+    OuterMagnets(12, 7.478 * mm, 1.287 * mm, 0.9 * mm, 20.0 * mm, 0.635),
+)
+# Corners of half a pole of the traction motor of the Prius 2004 [mm].
+_FACE = (69.24, 0.0), (74.9118, 18.0289)
+_TIP, _CORNER = (75.8465, 21.0), (75.0999, 23.5307)
+V_SHAPE = ComposedMachine(
+    RoundBottomSlots(48, 80.95 * mm, 134.62 * mm, 1.93 * mm, 1.0 * mm, 5.0 * mm, 8.0 * mm, 29.3 * mm),
+    VShape(
+        8, 80.2 * mm, 55.32 * mm, tip_depth=69.24 * mm, tilt=atan2(_FACE[1][1], _FACE[1][0] - _FACE[0][0]),
+        magnet_length=6.5 * mm, magnet_width=18.9 * mm, recess=1.0 * mm, hole_depth=63.4743 * mm, bridge=1.5 * mm,
+        bridge_start=atan2(*_TIP[::-1]), bridge_end=atan2(*_CORNER[::-1]),
+    ),
+)  # fmt: skip
+STATOR = StraightTeeth(12, 42.5 * mm, 16.2 * mm, 3.3 * mm, 5.5 * mm, 2.0 * mm, 1.4 * mm, 1.4 * mm)
+INSET = ComposedMachine(STATOR, InsetMagnets(10, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.8))
+SPOKE = ComposedMachine(STATOR, Spoke(10, 15.7 * mm, 3.0 * mm, 6.0 * mm))
+PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, INSET: 1, SPOKE: 1}
+NAMED = {"outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE}
+
+
+def section_of(machine: ComposedMachine, density: MeshDensity, whole: bool = False) -> CrossSection:
+    layout = star_of_slots(machine.slots, machine.pole_pairs, 2, PITCHES[machine])
+    return mesh_cross_section(machine, layout, density, whole)
+
+
+def model_of(machine, density, steel=STEEL, magnet=Magnet(1.2, 1.05), whole=False, **settings):
+    return FieldModel(section_of(machine, density, whole), MachineMaterials(steel, steel, magnet), **settings)
+
+
+def currents(model: FieldModel, angle: float, amplitude: float, gamma: float, turns: float) -> PhaseCurrents:
+    """i_d = -I sin gamma, i_q = I cos gamma; amplitude I [A], gamma and angle [rad]."""
+    lag = model.section.machine.pole_pairs * angle - model.section.layout.phase_axis - 2 * np.pi / 3 * np.arange(3)
+    phases = -amplitude * (np.sin(gamma) * np.cos(lag) + np.cos(gamma) * np.sin(lag))
+    return PhaseCurrents(angle, tuple(phases.tolist()), turns)
