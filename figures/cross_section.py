@@ -28,7 +28,7 @@ from figures.style import (
 )
 from figures.whole_field import WholeField, whole_geometry
 from geometry.cross_section import CrossSection
-from geometry.machine import Machine
+from geometry.machine import Machine, dimensions_of
 from units import MILLIMETRE
 
 _IRON, _SHAFT, _MAGNET, _AIR = "#B5B9BD", "#8C9196", "#F3E3B3", "#FFFFFF"
@@ -46,7 +46,7 @@ def cross_section(section: CrossSection, angle: float = 0.0) -> Figure:
     places = figure.subplot_mosaic("md;mt", width_ratios=(1.6, 1.0), height_ratios=(1.7, 1.0))
     _draw_machine(places["m"], section, whole, angle)
     _draw_detail(places["d"], section, whole)
-    _write_dimensions(places["t"], section.machine)
+    _write_dimensions(places["t"], dimensions_of(section.machine))
     figure.legend(handles=_legend(section), loc="outside lower left", ncols=6, frameon=False)
     return figure
 
@@ -58,10 +58,10 @@ def _draw_machine(axes: Axes, section: CrossSection, whole: WholeField, angle: f
     _draw_probes(axes, section)
     _label_coil_sides(axes, section)
     _draw_sector(axes, section)
-    reach = section.machine.stator_outer_radius / MILLIMETRE * 1.08
+    reach = dimensions_of(section.machine).stator_outer_radius / MILLIMETRE * 1.08
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x / mm", ylabel="y / mm")
     axes.set_aspect("equal")
-    axes.set_title(_machine_title(section.machine), loc="left")
+    axes.set_title(_machine_title(dimensions_of(section.machine)), loc="left")
 
 
 def _machine_title(m: Machine) -> str:
@@ -106,7 +106,7 @@ def region_colour(name: str, section: CrossSection) -> str:
 
 
 def _draw_magnetisation(axes: Axes, section: CrossSection, angle: float) -> None:
-    m = section.machine
+    m = dimensions_of(section.machine)
     radius = (m.rotor_outer_radius - m.magnet_length / 2) / MILLIMETRE
     length = 0.8 * m.magnet_length / MILLIMETRE
     spread = m.magnet_arc_fraction * m.pole_pitch * np.linspace(-0.3, 0.3, _ARROWS_PER_MAGNET)
@@ -125,7 +125,7 @@ def _arrow(axes: Axes, centre: complex, vector: complex) -> None:
 
 def _draw_probes(axes: Axes, section: CrossSection) -> None:
     """The segments of the solved sector, with the numbers that their readings carry."""
-    m = section.machine
+    m = dimensions_of(section.machine)
     label_radius = 0.22 * m.shoe_top_radius + 0.78 * m.slot_bottom_radius
     for number, probe in enumerate(section.tooth_probes):
         _draw_segment(axes, probe.points, YELLOW)
@@ -148,7 +148,7 @@ def _write_at(axes: Axes, radius: float, angle: float, text: str, **look: Any) -
 
 
 def _label_coil_sides(axes: Axes, section: CrossSection) -> None:
-    m = section.machine
+    m = dimensions_of(section.machine)
     radius = 0.45 * m.shoe_top_radius + 0.55 * m.slot_bottom_radius
     for slot in range(m.slots):
         for side, part in (("R", 0.34), ("L", 0.66)):
@@ -162,7 +162,7 @@ def _draw_sector(axes: Axes, section: CrossSection) -> None:
     """Border of the part that is solved, where it is not the whole machine."""
     if section.sectors == 1:
         return
-    m = section.machine
+    m = dimensions_of(section.machine)
     for end in (-m.slot_pitch / 2, 2 * pi / section.sectors - m.slot_pitch / 2):
         inner, outer = m.stator_inner_radius / MILLIMETRE, m.stator_outer_radius / MILLIMETRE
         axes.plot(*([r * f(end) for r in (inner, outer)] for f in (cos, sin)), "--", color=BLACK, linewidth=1.0)
@@ -176,8 +176,8 @@ def _draw_detail(axes: Axes, section: CrossSection, whole: WholeField) -> None:
     turned = _upright(whole)
     _fill(axes, section, turned)
     draw_outlines(axes, turned, "#303030", 0.8)
-    _draw_dimensions(axes, section.machine)
-    m = section.machine
+    _draw_dimensions(axes, dimensions_of(section.machine))
+    m = dimensions_of(section.machine)
     half = 1.25 * m.slot_pitch / 2 * m.stator_outer_radius / MILLIMETRE
     bottom = (m.rotor_core_radius - 1.5 * m.magnet_length) / MILLIMETRE
     axes.set(xlim=(-half, half), ylim=(bottom, m.stator_outer_radius / MILLIMETRE * 1.03))

@@ -49,7 +49,7 @@ def _draw_machine(axes: Axes, found: MagnetsOutcome, section: CrossSection, ends
     draw_outlines(axes, whole_geometry(section, found.worst.angle), LIGHT_GREY, 0.8)
     for angle in 2 * np.pi / section.sectors * np.arange(section.sectors):
         _draw(axes, found.at_once.turned(angle), found.knee, ends)
-    reach = _AROUND * section.machine.stator_inner_radius / MILLIMETRE
+    reach = _AROUND * section.machine.stator.rim_radius / MILLIMETRE
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_title(f"worst rotor angle, {degrees(found.worst.angle / DEGREE)}", loc="left")
 

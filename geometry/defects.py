@@ -14,7 +14,7 @@ import numpy as np
 from geometry.cross_section import Assembly, CrossSection
 from geometry.errors import GeometryError
 from geometry.gap import GapHalf
-from geometry.machine import Machine
+from geometry.machine import Machine, dimensions_of
 from geometry.morph import Defect, Morpher
 from units import MILLIMETRE
 
@@ -127,7 +127,7 @@ class SlotOpening(Defect):
 
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         """Moves of the nodes [m], (2, n)."""
-        m = section.machine
+        m = dimensions_of(section.machine)
         wanted = m.opening_width + self.change
         if wanted >= m.slot_pitch * m.stator_inner_radius - m.tooth_width:
             raise GeometryError(
@@ -148,7 +148,8 @@ class ToothWidth(Defect):
     def moves(self, morpher: Morpher, section: CrossSection) -> np.ndarray:
         """Moves of the nodes [m], (2, n)."""
         _check_number("tooth", self.tooth, section.machine.slots)
-        machine = replace(section.machine, tooth_width=section.machine.tooth_width + self.change)
+        drawn = dimensions_of(section.machine)
+        machine = replace(drawn, tooth_width=drawn.tooth_width + self.change)
         return morpher.copies_moved(machine, section, (2 * self.tooth, 2 * self.tooth + 1))
 
 
@@ -162,7 +163,7 @@ def _turn_rotor(section: CrossSection, number: int, first: float, last: float) -
 
     Between two edges the angle is interpolated, so is it down to the shaft and up to the sliding circle.
     """
-    m, rotor = section.machine, slice(first_rotor_node(section), None)
+    m, rotor = dimensions_of(section.machine), slice(first_rotor_node(section), None)
     points = section.mesh.p[:, rotor]
     x, y = points
     depth = np.clip((np.hypot(x, y) - m.shaft_radius) / (m.rotor_core_radius - m.shaft_radius), 0.0, 1.0)

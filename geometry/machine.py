@@ -8,8 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from geometry.errors import GeometryError
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Pitches
+from geometry.parts import DrawnMachine, Pitches
 from geometry.rotors.surface_magnets import SurfaceMagnets
 from geometry.stators.straight_teeth import StraightTeeth
 
@@ -105,6 +106,19 @@ class Machine(Pitches):
     @property
     def rotor_core_radius(self) -> float:
         return self.rotor_outer_radius - self.magnet_length
+
+
+def dimensions_of(machine: DrawnMachine) -> Machine:
+    """The list of dimensions of an inner-rotor surface-magnet machine.
+
+    Raises GeometryError for another kind: who asks knows that kind alone.
+    """
+    if not isinstance(machine, Machine):
+        raise GeometryError(
+            "this needs a machine with magnets on the surface of an inner rotor, found "
+            f"{type(machine.stator).__name__} with {type(machine.rotor).__name__}"
+        )
+    return machine
 
 
 def hanselman_machine(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from math import atan2, hypot, lcm, log
 
 from geometry.errors import GeometryError
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
+from geometry.machine import Machine
 from geometry.parts import DrawnMachine
 from geometry.plane_mesh import Drawing
 
@@ -78,12 +80,15 @@ def _advice(machine: DrawnMachine, density: MeshDensity) -> str:
             f"{density.edges_around(machine)} edges"
         )
     usual = MeshDensity()
-    found = {
-        "enlarge airgap": (replace(machine, airgap=2 * machine.airgap), density),
-        "enlarge back_iron_width": (replace(machine, back_iron_width=2 * machine.back_iron_width), density),
-        "enlarge tooth_width": (replace(machine, tooth_width=2 * machine.tooth_width), density),
-    }
+    found = {f"enlarge {name}": (larger, density) for name, larger in _larger(machine)}
     for name in ("gap_edges", "gap_layers", "across_iron"):
         if getattr(density, name) > 2 * getattr(usual, name):
             found[f"reduce {name}"] = machine, replace(density, **{name: getattr(density, name) // 2})
-    return min(found, key=lambda change: expected_unknowns(*found[change]))
+    return min(found, key=lambda change: expected_unknowns(*found[change]), default="take larger dimensions")
+
+
+def _larger(machine: DrawnMachine) -> Iterator[tuple[str, DrawnMachine]]:
+    """The machine with one of the dimensions that fine edges come from twice as large, where it states them."""
+    for name in ("airgap", "back_iron_width", "tooth_width"):
+        if isinstance(machine, Machine):
+            yield name, replace(machine, **{name: 2 * getattr(machine, name)})

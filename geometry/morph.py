@@ -22,7 +22,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from geometry.checks import check_machine
 from geometry.cross_section import Assembly, CrossSection, Piece
 from geometry.errors import GeometryError
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from geometry.plane_mesh import Drawing
 
 _ON_CURVE = 1e-9  # m
@@ -55,7 +55,7 @@ class Morpher:
         self.section = section
         self._pieces = [_PieceMorpher(piece, section.machine) for piece in section.pieces]
 
-    def to(self, machine: Machine, defects: Iterable[Defect] = ()) -> CrossSection:
+    def to(self, machine: DrawnMachine, defects: Iterable[Defect] = ()) -> CrossSection:
         """The cross-section of another machine, with its defects, on the same triangles.
 
         Raises GeometryError when the machine cannot be built, triangles would turn over, or there are defects and the
@@ -64,12 +64,12 @@ class Morpher:
         self._check(machine)
         return self._with_defects(self._drawn(machine), tuple(defects))
 
-    def _drawn(self, machine: Machine) -> CrossSection:
+    def _drawn(self, machine: DrawnMachine) -> CrossSection:
         if machine == self.section.machine:
             return self.section
         return self._at(np.hstack([piece.points(machine) for piece in self._pieces]), machine)
 
-    def copies_moved(self, machine: Machine, section: CrossSection, copies: Iterable[int]) -> np.ndarray:
+    def copies_moved(self, machine: DrawnMachine, section: CrossSection, copies: Iterable[int]) -> np.ndarray:
         """Moves (2, n) [m] of the nodes of some half cells of the stator, from the machine of a section to another."""
         self._check(machine)
         stator = self._pieces[0]
@@ -92,36 +92,29 @@ class Morpher:
             assembly = defect.assemble(assembly)
         return self._at(drawn.mesh.p + sum(d.moves(self, drawn) for d in defects), drawn.machine, assembly)
 
-    def _at(self, points: np.ndarray, machine: Machine, assembly: Assembly = Assembly()) -> CrossSection:
+    def _at(self, points: np.ndarray, machine: DrawnMachine, assembly: Assembly = Assembly()) -> CrossSection:
         mesh = replace(self.section.mesh, doflocs=points)
         if _areas(points, mesh.t).min() <= 0:
             raise GeometryError("the mesh cannot be moved that far, triangles would turn over: mesh the machine anew")
         return replace(self.section, machine=machine, mesh=mesh, assembly=assembly)
 
-    def _check(self, machine: Machine) -> None:
+    def _check(self, machine: DrawnMachine) -> None:
         check_machine(machine)
         base = self.section.machine
         if (machine.slots, machine.poles) != (base.slots, base.poles):
             raise GeometryError("a mesh can only be moved onto a machine with the same slots and poles: mesh it anew")
-        if (machine.magnet_arc_fraction < 1) != (base.magnet_arc_fraction < 1):
-            raise GeometryError(
-                "a mesh of magnets that touch (magnet_arc_fraction = 1) cannot be moved onto magnets that do not, "
-                "nor back: mesh the machine anew, with magnet_arc_fraction below 1 where the arc is to change"
-            )
-        if machine.taper_touches_shoe != base.taper_touches_shoe:
-            raise GeometryError("the tapers of these two machines have different corners: mesh the machine anew")
 
 
 @dataclass(frozen=True, eq=False)
 class _PieceMorpher:
     piece: Piece
-    base: Machine
+    base: DrawnMachine
 
-    def points(self, machine: Machine) -> np.ndarray:
+    def points(self, machine: DrawnMachine) -> np.ndarray:
         """Points of the piece (2, m) for a machine."""
         return self.piece.place(self.half_cell(machine))
 
-    def half_cell(self, machine: Machine) -> np.ndarray:
+    def half_cell(self, machine: DrawnMachine) -> np.ndarray:
         """Points of the half cell (n, 2) for a machine."""
         moved = self.drawn_points + self._follow(self._outline(machine) - self.drawn_points[self.outline_nodes])
         gap = self.piece.cell.gap_points(machine, moved[self.rim])
@@ -149,9 +142,11 @@ class _PieceMorpher:
     def outline_nodes(self) -> np.ndarray:
         return np.unique(np.concatenate([nodes for nodes, _ in self._curves.values()]))
 
-    def _outline(self, machine: Machine) -> np.ndarray:
+    def _outline(self, machine: DrawnMachine) -> np.ndarray:
         """Places (k, 2) of the outline nodes for a machine."""
         drawing, places = self.piece.cell.draw(machine), self.drawn_points.copy()
+        if drawing.curves.keys() != self._curves.keys():
+            raise GeometryError(f"{self.piece.cell.part(machine).other_corners}: mesh the machine anew")
         for curve, (nodes, share) in self._curves.items():
             places[nodes] = _at(drawing, curve, share)
         return places[self.outline_nodes]
@@ -187,12 +182,12 @@ class _PieceMorpher:
 
 def _along(drawing: Drawing, curve: tuple[str, str], points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which points lie on a curve, and their share of the way from its start to its end."""
-    start, end = (np.array(drawing.points[name][:2]) for name in curve)
+    start, end, centre = _ends(drawing, curve)
     if drawing.curves[curve][0]:
-        angles = np.arctan2(points[:, 1], points[:, 0])
-        first, last = np.arctan2(start[1], start[0]), np.arctan2(end[1], end[0])
-        share = (angles - first) / (last - first)
-        off = np.abs(np.hypot(*points.T) - np.hypot(*start))
+        (x, y), (u, v) = points.T - centre[:, None], start - centre
+        first, sweep = np.arctan2(v, u), _sweep(start - centre, end - centre)
+        share = np.angle(np.exp(1j * (np.arctan2(y, x) - first))) / sweep
+        off = np.abs(np.hypot(x, y) - np.hypot(u, v))
     else:
         way = end - start
         share = (points - start) @ way / (way @ way)
@@ -203,12 +198,23 @@ def _along(drawing: Drawing, curve: tuple[str, str], points: np.ndarray) -> tupl
 
 def _at(drawing: Drawing, curve: tuple[str, str], share: np.ndarray) -> np.ndarray:
     """Points (k, 2) at shares of the way along a curve."""
-    start, end = (np.array(drawing.points[name][:2]) for name in curve)
+    start, end, centre = _ends(drawing, curve)
     if not drawing.curves[curve][0]:
         return start + share[:, None] * (end - start)
-    first, last = np.arctan2(start[1], start[0]), np.arctan2(end[1], end[0])
-    angle = first + share * (last - first)
-    return np.hypot(*start) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    u, v = start - centre
+    angle = np.arctan2(v, u) + share * _sweep(start - centre, end - centre)
+    return centre + np.hypot(u, v) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _ends(drawing: Drawing, curve: tuple[str, str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Start, end and, of an arc, centre of a curve, (2,) each [m]."""
+    start, end = (np.array(drawing.points[name][:2]) for name in curve)
+    return start, end, np.array(drawing.centres.get(curve, (0.0, 0.0)))
+
+
+def _sweep(start: np.ndarray, end: np.ndarray) -> float:
+    """Angle from one direction to another, less than half a turn either way [rad]."""
+    return float(np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end))
 
 
 def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

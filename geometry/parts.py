@@ -51,8 +51,14 @@ class Part:
         """Circle on which the vector potential is zero [m], None where the part has none."""
         raise NotImplementedError
 
+    @property
+    def other_corners(self) -> str:
+        """Why two drawings of it have different points and curves, to be said of a mesh that cannot be moved."""
+        return "the outlines of these two machines have different corners"
+
     def draw(self, rim: Rim) -> Drawing:
-        """Half a pitch from its axis on without the gap; the same points and curves whatever its dimensions are."""
+        """Half a pitch from its axis on without the gap; the same points and curves whatever its dimensions are,
+        or else ``other_corners`` says so."""
         raise NotImplementedError
 
     def check(self) -> None:
@@ -67,6 +73,7 @@ class Stator(Part):
 
     @property
     def pitch(self) -> float:
+        """Angle between two teeth [rad]."""
         return 2 * pi / self.slots
 
     @property
@@ -87,6 +94,7 @@ class Rotor(Part):
 
     @property
     def pitch(self) -> float:
+        """Angle between two poles [rad]."""
         return 2 * pi / self.poles
 
     @property

@@ -47,7 +47,7 @@ class Drawing:
             self.centres[start, end] = centre
 
     def place(self, name: str, x: float, y: float, edge_length: float) -> str:
-        """Add a point in Cartesian coordinates [m] and return its name."""
+        """Add a point at x [m], y [m] and return its name."""
         self.points[name] = (x, y, edge_length)
         return name
 

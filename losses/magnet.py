@@ -18,6 +18,7 @@ from math import pi, sqrt
 import numpy as np
 
 from electrical.dq import Values
+from geometry.machine import dimensions_of
 from losses.loci import Loci, PartOfPeriod, magnet_potential_loci
 from units import MU_0
 
@@ -56,7 +57,7 @@ def magnet_loss(part: PartOfPeriod, resistivity: float = NDFEB_RESISTIVITY, segm
     resistivity: [Ohm m]; segments: equal pieces into which every magnet is cut along the circumference
     """
     section = part.model.section
-    machine = section.machine
+    machine = dimensions_of(section.machine)
     arc = machine.magnet_arc_fraction * machine.pole_pitch
     total, by_order, orders = 0.0, np.zeros(1), np.zeros(1)
     for number, loci in enumerate(magnet_potential_loci(part)):

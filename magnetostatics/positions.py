@@ -9,23 +9,23 @@ from __future__ import annotations
 
 from math import ceil, lcm, pi
 
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from geometry.winding import WindingLayout
 from magnetostatics.model import OperatingPoint
 
 
-def q_axis_angle(machine: Machine, layout: WindingLayout) -> float:
+def q_axis_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Rotor angle at which the q-axis current has its peak in phase A [rad]: p theta = axis_A - 90 deg."""
     return (layout.phase_axis - pi / 2) / machine.pole_pairs
 
 
-def null_angle(machine: Machine, layout: WindingLayout) -> float:
+def null_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Rotor angle nearest to the q-axis angle with a magnet centred on a tooth [rad]; of two equals the smaller."""
     step = 2 * pi / lcm(machine.slots, machine.poles)
     return step * ceil(q_axis_angle(machine, layout) / step - 0.5 - 1e-9)
 
 
-def null_point(machine: Machine, layout: WindingLayout, amplitude: float, packing: float) -> OperatingPoint:
+def null_point(machine: DrawnMachine, layout: WindingLayout, amplitude: float, packing: float) -> OperatingPoint:
     """The null state: a magnet on a tooth, phase A at its peak.
 
     amplitude: of the current density in the copper [A/m^2]; packing: copper share of the slot
@@ -34,7 +34,7 @@ def null_point(machine: Machine, layout: WindingLayout, amplitude: float, packin
 
 
 def period_points(
-    machine: Machine, layout: WindingLayout, amplitude: float, packing: float, steps: int
+    machine: DrawnMachine, layout: WindingLayout, amplitude: float, packing: float, steps: int
 ) -> list[OperatingPoint]:
     """The q-axis current at ``steps`` rotor positions from the null position on, evenly over 60 electrical degrees.
 
@@ -45,17 +45,17 @@ def period_points(
     return [OperatingPoint(first + span * k / steps, amplitude, 0.0, packing) for k in range(steps)]
 
 
-def null_current_angle(machine: Machine, layout: WindingLayout) -> float:
+def null_current_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Current angle gamma at which phase A has its peak in the null position [rad]."""
     return machine.pole_pairs * (q_axis_angle(machine, layout) - null_angle(machine, layout))
 
 
-def aligned_teeth(machine: Machine, angle: float) -> tuple[int, ...]:
+def aligned_teeth(machine: DrawnMachine, angle: float) -> tuple[int, ...]:
     """Teeth of the whole machine that have a magnet exactly in front of them at a rotor angle [rad]."""
     return tuple(k for k in range(machine.slots) if _distance_to_magnet(machine, k, angle) < 1e-6)
 
 
-def _distance_to_magnet(machine: Machine, tooth: int, angle: float) -> float:
+def _distance_to_magnet(machine: DrawnMachine, tooth: int, angle: float) -> float:
     """Angle from a tooth to the nearest magnet centre, as a share of the pole pitch."""
     position = (tooth * machine.slot_pitch - angle) / machine.pole_pitch
     return abs(position - round(position))

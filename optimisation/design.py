@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
-from geometry.machine import Machine
+from geometry.machine import Machine, dimensions_of
 from geometry.morph import Morpher
 from magnetostatics.case import FieldCase
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
@@ -191,7 +191,7 @@ class DesignSolver:
         return model
 
     def _moved(self, machine: Machine) -> FieldModel | None:
-        if self._morpher is None or not _is_near(machine, self._morpher.section.machine):
+        if self._morpher is None or not _is_near(machine, dimensions_of(self._morpher.section.machine)):
             return None
         try:
             section = self._morpher.to(machine)

@@ -41,8 +41,15 @@ class SurfaceMagnets(Rotor):
         return 1
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """As it is magnetised [rad], of the shape of position_angle [rad]; axis: [rad]"""
+        """As it is magnetised [rad]; position_angle: [rad], of any shape; axis: [rad]"""
         return self.magnetisation.direction_angle(position_angle, axis)
+
+    @property
+    def other_corners(self) -> str:
+        return (
+            "a mesh of magnets that touch (magnet_arc_fraction = 1) cannot be moved onto magnets that do not, nor "
+            "back; where the arc is to change, take a magnet_arc_fraction below 1"
+        )
 
     def check(self) -> None:
         if self.arc_fraction > 1:

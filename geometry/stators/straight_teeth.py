@@ -108,6 +108,10 @@ class StraightTeeth(Stator):
         """Point x + jy of the flank of tooth 0 at this radius [m]."""
         return rect(radius, asin(self.tooth_width / 2 / radius))
 
+    @property
+    def other_corners(self) -> str:
+        return "the tapers of these two machines have different corners"
+
     def check(self) -> None:
         for rule in (_check_radii, _check_shoes, _check_teeth, _check_slot):
             rule(self)
@@ -125,12 +129,18 @@ class StraightTeeth(Stator):
         return d
 
     def in_tooth(self, across_iron: float) -> float:
-        """Edge length in a tooth [m]. A back iron thinner than half a tooth refines it, though not without end."""
+        """Edge length in a tooth [m], of across_iron edges (dimensionless) across it.
+
+        A back iron thinner than half a tooth refines it, though not without end.
+        """
         width = self.tooth_width
         return min(width, max(2 * self.back_iron_width, width / 2)) / across_iron
 
     def in_yoke(self, across_iron: float) -> float:
-        """Edge length in the back iron and at the bottom of the slot [m]; a thin tooth does not refine them."""
+        """Edge length in the back iron and at the bottom of the slot [m]; a thin tooth does not refine them.
+
+        across_iron: edges across it, dimensionless
+        """
         return min(max(self.tooth_width, self.back_iron_width), 2 * self.back_iron_width) / across_iron
 
 
