@@ -40,7 +40,10 @@ class Spoke(Rotor):
         return 2
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """Towards the pole [rad], direction: (...); position_angle: [rad], (...); axis: [rad]; which: 0 is the clockwise half."""
+        """Towards the pole [rad], of any shape, that of position_angle: [rad], of any shape; axis: [rad].
+
+        which: 0 is the clockwise half
+        """
         side = -self.pitch / 2 if which == 0 else self.pitch / 2
         return 0.0 * position_angle + axis + side + (pi / 2 if which == 0 else -pi / 2)
 

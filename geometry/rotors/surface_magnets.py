@@ -41,7 +41,7 @@ class SurfaceMagnets(Rotor):
         return 1
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """As it is magnetised [rad], direction: (...); position_angle: [rad], (...); axis: [rad]"""
+        """As it is magnetised [rad], of any shape, that of position_angle: [rad], of any shape; axis: [rad]"""
         return self.magnetisation.direction_angle(position_angle, axis)
 
     @property

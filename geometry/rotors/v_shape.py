@@ -55,7 +55,10 @@ class VShape(Rotor):
         return 2
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """Across the magnet [rad], direction: (...); position_angle: [rad], (...); axis: [rad]; which: 0 is the clockwise one."""
+        """Across the magnet [rad], of any shape, that of position_angle: [rad], of any shape; axis: [rad].
+
+        which: 0 is the clockwise one
+        """
         across = pi / 2 - self.tilt
         return 0.0 * position_angle + axis + (across if which == 0 else -across)
 
