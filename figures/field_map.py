@@ -14,7 +14,7 @@ from units import MILLIMETRE
 
 FLUX_LINES = 24  # contours of A between its extremes
 _SHARE_SHOWN = 0.998  # of the area lies inside the colour scale; corners of the iron are hotter
-_AIR = ("gap", "opening", "between")
+_AIR = ("gap", "opening", "between", "bore", "hole", "outside")
 
 
 @styled
@@ -56,7 +56,7 @@ def outlines(points: np.ndarray, cells: np.ndarray, region: Region) -> np.ndarra
 
     points (2, n) [m], cells (3 or more, E): the first three rows are the corners
     """
-    starts, ends = cells[[0, 1, 2]].ravel(), cells[[1, 2, 0]].ravel()
+    starts, ends = cells[[0, 1, 2]].ravel().astype(np.int64), cells[[1, 2, 0]].ravel()  # their product is large
     sides = np.sort(np.stack([starts, ends]), axis=0)
     distinct, side = np.unique(sides[0] * points.shape[1] + sides[1], return_inverse=True)
     kind = np.tile(_kinds(region)[region.index], 3)

@@ -170,7 +170,9 @@ def _(point: OperatingPoint) -> str:
 def _(point: PhaseCurrents) -> str:
     if not any(point.currents):
         return _NONE
-    return ", ".join(f"{current * point.turns:.4g}" for current in point.currents) + " ampere-turns in phases A, B, C"
+    least = 1e-9 * max(map(abs, point.currents))  # rounding of a current that is none
+    turns = (current * point.turns if abs(current) > least else 0.0 for current in point.currents)
+    return ", ".join(f"{one:.4g}" for one in turns) + " ampere-turns in phases A, B, C"
 
 
 @current_in_words.register

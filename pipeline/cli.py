@@ -23,6 +23,7 @@ COMMANDS = {
     "run": Command("pipeline.run_command", "add_run", "run the stages of a study"),
     "check": Command("pipeline.check_command", "add_check", "is a study file usable?"),
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
+    "turn": Command("pipeline.turn_command", "add_turn", "turn a machine of any kind at one current"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
     "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",

@@ -6,7 +6,6 @@ import argparse
 import json
 from dataclasses import asdict, dataclass
 from math import sqrt
-from pathlib import Path
 
 from figures.export import write_vtu
 from figures.field_map import field_map
@@ -17,8 +16,7 @@ from magnetostatics.mesh_error import refined_solution, torque_error
 from magnetostatics.model import FieldSolution, OperatingPoint
 from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from pipeline.arguments import add_overrides
-from study.errors import StudyError
+from pipeline.arguments import add_overrides, writable
 from study.inputs_field import field_case
 from study.operating_point import asked_point
 from study.read import read_study
@@ -59,9 +57,9 @@ def solve(options: argparse.Namespace) -> None:
     result = _result(solution, point)
     _print(result, options.json)
     if options.vtu:
-        write_vtu(_writable(options.vtu), solution)
+        write_vtu(writable(options.vtu), solution)
     if options.png:
-        field_map(whole_field(solution)).savefig(_writable(options.png), dpi=150)
+        field_map(whole_field(solution)).savefig(writable(options.png), dpi=150)
 
 
 def _field(study: Study, case: FieldCase, point: OperatingPoint, sweep_mesh: bool) -> FieldSolution:
@@ -126,7 +124,7 @@ def _print(result: _Result, target: str | None) -> None:
         print(text)
         return
     if target:
-        _writable(target).write_text(text + "\n", encoding="utf-8")
+        writable(target).write_text(text + "\n", encoding="utf-8")
     torque = result.torque_per_length_Nm_per_m
     print(
         f"torque per length   {torque['arkkio']:.3f} ± {result.torque_error_Nm_per_m:.3f} Nm/m (ring average; ± bounds "
@@ -139,10 +137,3 @@ def _print(result: _Result, target: str | None) -> None:
     worst = sorted(result.probes_T.items(), key=lambda item: -item[1])[:3]
     print("highest probes      " + ", ".join(f"{name} {value:.3f} T" for name, value in worst))
     print(f"unknowns            {result.unknowns}, Newton iterations {len(result.newton['residuals'])}")
-
-
-def _writable(target: str) -> Path:
-    path = Path(target)
-    if not path.resolve().parent.is_dir():
-        raise StudyError(f"cannot write {target}: the folder {path.parent} does not exist; create it first.")
-    return path

@@ -80,7 +80,7 @@ class OuterMagnets(Rotor):
         half, edge = self.pitch / 2, self.arc_fraction * self.pitch / 2
         fine, iron = rim.edge_length, self.back_iron_width / rim.across_iron
         rings = {"top": (self.inner_radius, 2 * fine), "cup": (self.cup_radius, min(iron, 3 * fine)),
-                 "back": (self.outer_radius, iron), "air": (self.air_radius, self.air_radius * half)}  # fmt: skip
+                 "back": (self.outer_radius, iron), "air": (self.air_radius, self.air_radius * half / 3)}  # fmt: skip
         for name, (radius, size) in rings.items():
             d.point(name, radius, 0, size)
             d.point(f"{name}_pole", radius, half, size)

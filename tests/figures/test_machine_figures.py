@@ -8,7 +8,7 @@ from matplotlib.collections import PolyCollection, TriMesh
 from figures.cross_section import cross_section, dimension_list, region_colour
 from figures.field_map import colour_limit, field_map, outlines
 from figures.style import PHASE_COLOURS, PHASE_LIGHT
-from figures.whole_field import whole_field
+from figures.whole_field import Region, whole_field
 
 
 @pytest.fixture(scope="module")
@@ -82,3 +82,13 @@ def test_settings_of_the_caller_are_left_alone(field):
         before = matplotlib.rcParams.copy()
         field_map(field)
         assert matplotlib.rcParams == before
+
+
+def test_outlines_of_a_large_mesh():
+    """Two triangles at the end of more nodes than the root of the largest 32-bit number."""
+    count = 70_000
+    points = np.zeros((2, count))
+    points[:, -4:] = [[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]]
+    cells = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32).T + np.int32(count - 4)
+    found = outlines(points, cells, Region(np.zeros(2, dtype=int), ("stator_iron",)))
+    assert len(found) == 4 and np.ptp(found, axis=1).sum() == pytest.approx(4000.0)

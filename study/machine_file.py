@@ -1,0 +1,180 @@
+"""A machine of any kind from a TOML file: what it is put together from, its winding, its materials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, fields
+from difflib import get_close_matches
+from math import isfinite
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+from geometry.checks import check_machine
+from geometry.errors import GeometryError
+from geometry.half_cell import MeshDensity
+from geometry.kinds import ROTORS, STATORS, Kinds
+from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
+from geometry.parts import ComposedMachine, Part
+from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.model import MachineMaterials
+from materials.errors import MaterialError
+from materials.library import load_steel
+from materials.magnet import Magnet
+from study.errors import StudyError
+from study.toml_file import read_table
+from units import to_si
+
+MACHINES = Path(__file__).resolve().parent.parent / "machines"
+_MAGNETISATIONS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
+# Sections and keys beside those of the two parts; those with a value may be left out.
+_OTHERS: dict[str, dict[str, Any]] = {
+    "machine": {"title": "", "active_length_mm": None},
+    "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None},
+    "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05},
+    "mesh": {"gap_edges_per_revolution": 720, "gap_layers": 2, "elements_across_iron": 2.0},
+}
+
+
+@dataclass(frozen=True, eq=False)
+class MachineFile:
+    """title; turns: of every coil, all coils of a phase in series, dimensionless; active_length [m]"""
+
+    title: str
+    machine: ComposedMachine
+    layout: WindingLayout
+    turns: float
+    active_length: float
+    materials: MachineMaterials
+    density: MeshDensity
+
+
+def read_machine(path_or_name: str | Path) -> MachineFile:
+    """The machine of a file, or of a file in ``machines/`` named without its ending.
+
+    Raises StudyError with one sentence about the first thing that is wrong.
+    """
+    path = Path(path_or_name)
+    path = path if path.suffix else MACHINES / f"{path_or_name}.toml"
+    if not path.exists():
+        known = ", ".join(sorted(file.stem for file in MACHINES.glob("*.toml")))
+        raise StudyError(f"{path} does not exist; give the path of a machine file or one of the names {known}.")
+    try:
+        return _machine(_Table(path, read_table(path)))
+    except (GeometryError, MaterialError) as error:
+        raise StudyError(f"{path}: {error}.") from error
+
+
+@dataclass(frozen=True)
+class _Table:
+    path: Path
+    sections: Mapping[str, Any]
+
+    def section(self, name: str) -> dict[str, Any]:
+        found = self.sections.get(name, {})
+        if not isinstance(found, dict):
+            raise StudyError(f"{self.path}: {name} stands where the section [{name}] is expected; make it a table.")
+        return dict(found)
+
+    def wrong(self, section: str, what: str) -> StudyError:
+        return StudyError(f"{self.path}: [{section}] {what}.")
+
+
+def _machine(table: _Table) -> MachineFile:
+    _check_names(table, "the file", "section", table.sections, (*_OTHERS, "stator", "rotor"))
+    values = {name: _values(table, name) for name in _OTHERS}
+    machine = ComposedMachine(_part(table, "stator", STATORS), _part(table, "rotor", ROTORS))  # type: ignore[arg-type]
+    check_machine(machine)
+    winding, mesh = values["winding"], values["mesh"]
+    return MachineFile(
+        values["machine"]["title"],
+        machine,
+        star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"]),
+        _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
+        1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
+        _materials(table, values["materials"], machine.rotor.magnets_per_pole),
+        MeshDensity(
+            mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
+        ),
+    )
+
+
+def _values(table: _Table, name: str) -> dict[str, Any]:
+    """Of one of the other sections, with its defaults."""
+    stated = table.section(name)
+    _check_names(table, f"[{name}]", "key", stated, _OTHERS[name])
+    return _OTHERS[name] | stated
+
+
+def _check_names(table: _Table, where: str, what: str, found: Mapping[str, Any], known: Any) -> None:
+    for name in found:
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            advice = f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"
+            raise StudyError(f"{table.path}: {where} has no {what} {name}; {advice}.")
+
+
+def _number(table: _Table, section: str, key: str, value: Any) -> float:
+    if value is None:
+        raise table.wrong(section, f"lacks {key}; add it")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        raise table.wrong(section, f"{key} = {value!r} is not a number")
+    return float(value)
+
+
+def _materials(table: _Table, stated: Mapping[str, Any], magnets_per_pole: int) -> MachineMaterials:
+    name = stated["stator_steel"]
+    if not isinstance(name, str):
+        raise table.wrong("materials", "lacks stator_steel; add the name of a steel or the path of its curve")
+    steel, folder = load_steel(name, table.path.parent), table.path.parent
+    other = stated["rotor_steel"]
+    remanence = _number(table, "materials", "remanence_T", stated["remanence_T"]) if magnets_per_pole else 0.0
+    permeability = _number(table, "materials", "recoil_permeability", stated["recoil_permeability"])
+    return MachineMaterials(
+        steel, steel if other is None else load_steel(other, folder), Magnet(remanence, permeability)
+    )
+
+
+# ---- a stator or a rotor from its section ----------------------------------------------------------------------------
+
+
+def _part(table: _Table, section: str, kinds: Kinds) -> Part:
+    stated = table.section(section)
+    kind = stated.pop("kind", None)
+    if not isinstance(kind, str):
+        raise table.wrong(section, f'lacks kind; write kind = "{next(iter(sorted(kinds.known)))}" or another one')
+    cls = kinds.named(kind, table.path.parent)
+    keys = part_keys(cls)
+    _check_names(table, f"[{section}]", "key", stated, keys.values())
+    return cls(**{one.name: _field(table, section, one, keys[one.name], stated) for one in fields(cls)  # type: ignore
+                  if keys[one.name] in stated or _must_be_stated(one)})  # fmt: skip
+
+
+def part_keys(cls: type[Part]) -> dict[str, str]:
+    """Keys of a part in a file by the names of its fields: the unit is the end of the key, none for a pure number."""
+    hints = get_type_hints(cls, include_extras=True)
+    units = {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
+    return {name: f"{name}_{unit}" if unit else name for name, unit in units.items()}
+
+
+def _must_be_stated(one: Field[Any]) -> bool:
+    return one.default is MISSING and one.default_factory is MISSING
+
+
+def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mapping[str, Any]) -> Any:
+    if key not in stated:
+        raise table.wrong(section, f"lacks {key}; add it")
+    value = stated[key]
+    if one.name == "magnetisation":
+        return _magnetisation(table, section, value)
+    number = _number(table, section, key, value)
+    if one.type == "int":
+        if number != int(number):
+            raise table.wrong(section, f"{key} = {value!r} is not a whole number")
+        return int(number)
+    return to_si(key, number)[1]
+
+
+def _magnetisation(table: _Table, section: str, name: object) -> Magnetisation:
+    if name not in _MAGNETISATIONS:
+        raise table.wrong(section, f"magnetisation = {name!r} is unknown; take {' or '.join(_MAGNETISATIONS)}")
+    return _MAGNETISATIONS[str(name)]

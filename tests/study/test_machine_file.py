@@ -1,0 +1,92 @@
+"""Machines of any kind from a file: every key in SI where it belongs, and one sentence about anything wrong."""
+
+import shutil
+
+import pytest
+
+from geometry.kinds import ROTORS, STATORS
+from study.errors import StudyError
+from study.machine_file import MACHINES, part_keys, read_machine
+from tests.magnetostatics.other_machines import OUTRUNNER, V_SHAPE
+
+TEXT = (MACHINES / "outrunner_9_12.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def written(tmp_path):
+    """A function that writes the outrunner's file with one thing changed."""
+    shutil.copytree(MACHINES / "curves", tmp_path / "curves")
+
+    def write(old, new):
+        assert TEXT.count(old) == 1, f"{old!r} must stand once in the file"
+        path = tmp_path / "changed.toml"
+        path.write_text(TEXT.replace(old, new), encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("name, machine", [("outrunner_9_12", OUTRUNNER), ("prius_2004", V_SHAPE)])
+def test_what_a_file_says_is_the_machine(name, machine):
+    found = read_machine(name)
+    for part in ("stator", "rotor"):
+        stated, wanted = vars(getattr(found.machine, part)), vars(getattr(machine, part))
+        assert {k: v for k, v in stated.items() if k != "magnetisation"} == pytest.approx(
+            {k: v for k, v in wanted.items() if k != "magnetisation"}, rel=1e-6
+        )
+
+
+def test_winding_length_and_materials():
+    found = read_machine("prius_2004")
+    assert (found.turns, found.layout.coil_pitch, found.active_length) == (4.5, 6, pytest.approx(0.08382))
+    assert (found.materials.magnet.remanence, found.materials.magnet.recoil_permeability) == (1.24, 1.05)
+
+
+def test_kinds_are_the_files_of_their_folders():
+    assert {"straight_teeth", "outward_teeth", "round_bottom_slots"} <= set(STATORS.known)
+    assert {"surface_magnets", "outer_magnets", "inset_magnets", "v_shape", "spoke"} <= set(ROTORS.known)
+
+
+def test_every_key_ends_with_its_unit():
+    keys = part_keys(ROTORS.known["v_shape"])
+    assert (keys["bridge"], keys["tilt"], keys["poles"]) == ("bridge_mm", "tilt_deg", "poles")
+
+
+WRONG = {
+    "kind": ('kind = "outer_magnets"', 'kind = "inner_magnets"', "unknown kind of rotor 'inner_magnets': known are"),
+    "no kind": ('kind = "outer_magnets"\n', "", "[rotor] lacks kind"),
+    "key": ("magnet_length_mm = 1.287", "magnet_lenght_mm = 1.287", "did you mean magnet_length_mm"),
+    "missing": ("magnet_length_mm = 1.287\n", "", "[rotor] lacks magnet_length_mm; add it"),
+    "text": ("magnet_length_mm = 1.287", 'magnet_length_mm = "thin"', "magnet_length_mm = 'thin' is not a number"),
+    "not finite": ("magnet_length_mm = 1.287", "magnet_length_mm = nan", "is not a number"),
+    "half a pole": ("poles = 12", "poles = 12.5", "poles = 12.5 is not a whole number"),
+    "magnetisation": ('"parallel"', '"halbach"', "take parallel or radial"),
+    "section": ("[mesh]", "[mash]", "did you mean mesh"),
+    "turns": ("turns_per_coil = 8\n", "", "[winding] lacks turns_per_coil; add it"),
+    "steel": ('"curves/M400-50A_bh.csv"', '"M1"', "unknown steel 'M1'"),
+    "no steel": ('stator_steel = "curves/M400-50A_bh.csv"', "", "[materials] lacks stator_steel"),
+    "remanence": ("remanence_T = 1.20", "", "[materials] lacks remanence_T"),
+    "winding": ("poles = 12", "poles = 18", "cannot carry this winding"),
+    "built": ("arc_fraction = 0.635", "arc_fraction = 1.0", "must leave air between them"),
+    "gap": ("inner_radius_mm = 7.478", "inner_radius_mm = 6.95", "no air gap between them"),
+    "own file": ('"outer_magnets"', '"mine.py:Mine"', "there is no Python file"),
+}
+
+
+@pytest.mark.parametrize("old, new, words", WRONG.values(), ids=WRONG)
+def test_one_sentence_about_what_is_wrong(written, old, new, words):
+    with pytest.raises(StudyError) as caught:
+        read_machine(written(old, new))
+    text = str(caught.value)
+    assert words in text and text.endswith(".") and "\n" not in text
+
+
+def test_an_own_class_that_is_none(written, tmp_path):
+    (tmp_path / "mine.py").write_text("class Mine:\n    pass\n")
+    with pytest.raises(StudyError, match="has no class Mine that is a Rotor"):
+        read_machine(written('"outer_magnets"', '"mine.py:Mine"'))
+
+
+def test_a_name_that_is_no_file_lists_what_there_is():
+    with pytest.raises(StudyError, match="outrunner_9_12, prius_2004"):
+        read_machine("nothing")
