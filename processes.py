@@ -42,6 +42,10 @@ class Pool:
         """Let go of the workers; now: without waiting for what they do."""
         raise NotImplementedError
 
+    def idle(self) -> bool:
+        """Whether no worker runs anything, as far as the pool can tell."""
+        return False
+
     def recover(self) -> None:
         """After a lost worker: make the pool usable again."""
         self.end(now=True)

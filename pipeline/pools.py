@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
@@ -22,6 +22,7 @@ from pipeline.checkpoint import Checkpoint
 from processes import ONE_THREAD, LostWorker, Pool, Result, Task, default_workers
 
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
+PATIENCE = 30.0  # s without a result, after which it is asked whether anybody still works
 SCHEDULER_TIMEOUT = "20s"  # to find a dask scheduler
 
 
@@ -52,7 +53,8 @@ class DaskCluster(Pool):
         dask.config.set({"distributed.scheduler.allowed-failures": 0})
         self._lost = distributed.scheduler.KilledWorker
         self._scratch = TemporaryDirectory(prefix="airgap-dask-")
-        self._cluster = None if address else _local_cluster(distributed, size or default_workers(), self._scratch.name)
+        self._workers = size or default_workers()
+        self._cluster = None if address else _local_cluster(distributed, self._workers, self._scratch.name)
         self.client = _client(distributed, address or self._cluster)
         self.client.wait_for_workers(1, timeout=60)
         self.size = max(1, 2 * sum(self.client.nthreads().values()))  # one task runs, the next is on its way
@@ -68,8 +70,16 @@ class DaskCluster(Pool):
         except self._lost as error:
             raise LostWorker from error
 
+    def idle(self) -> bool:
+        """See ``Pool.idle``; a worker that could not be replaced on a busy machine leaves its task to nobody."""
+        return not any(self.client.processing().values())
+
     def recover(self) -> None:
-        """The cluster replaces its workers itself."""
+        """The cluster replaces its workers itself, unless their replacements died as well."""
+        if self._cluster is not None and not self.client.scheduler_info()["workers"]:
+            self._cluster.scale(0)
+            self._cluster.scale(self._workers)
+            self.client.wait_for_workers(1, timeout=60)
 
     def end(self, now: bool = False) -> None:
         """See ``Pool.end``."""
@@ -193,13 +203,22 @@ class _Job:
                 while waiting and len(running) < most:  # no more than can start: those in flight are known
                     running[self.pool.submit(self.function, self.tasks[waiting[0]])] = waiting[0]
                     waiting.pop(0)
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                for future in self._done(running):
                     self._take(running[future], future)
                     del running[future]
         except LostWorker:
+            for future in running:
+                future.cancel()
             self.pool.recover()
             return self._struck(list(running.values()))
         return []
+
+    def _done(self, running: Collection[Future[object]]) -> set[Future[object]]:
+        """The next that are finished; LostWorker where nobody works on any of them."""
+        while not (done := wait(running, timeout=PATIENCE, return_when=FIRST_COMPLETED).done):
+            if self.pool.idle():
+                raise LostWorker
+        return done
 
     def _take(self, name: str, future: Future[object]) -> None:
         try:

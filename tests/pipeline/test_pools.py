@@ -96,6 +96,19 @@ def test_a_task_that_always_ends_its_worker_is_named_and_the_others_are_kept(poo
     assert "a" in kept and "c" in kept and "bad one" not in kept
 
 
+def test_a_cluster_without_workers_gets_new_ones(path, monkeypatch):
+    """As when the replacements of lost workers die too: their tasks would wait for ever."""
+    from worker_tasks import square
+
+    monkeypatch.setattr("pipeline.pools.PATIENCE", 0.5)
+    pool = DaskCluster(1)
+    pool._cluster.scale(0)
+    while pool.client.scheduler_info()["workers"]:
+        time.sleep(0.05)
+    assert workers(pool, path).map("squares", square, {"a": 3}) == {"a": 9}
+    pool.end()
+
+
 def test_an_error_in_a_task_is_named_with_its_cause_and_the_others_are_kept(pool, path):
     from worker_tasks import square_of_positive
 
