@@ -316,9 +316,9 @@ def _coil_sides(slots: int, half_cells: int) -> tuple[tuple[int, str], ...]:
 
 
 def _rotor_names(rotor: Piece, magnets_per_pole: int) -> dict[str, np.ndarray]:
-    """A magnet on the axis of a pole has a half in each of two copies, beside it there is one in every copy."""
+    """A magnet on the axis of a pole has a half in each of two copies, beside it there is one in every copy, if any."""
     regions = _regions(rotor)
-    magnet = regions.pop("magnet")
+    magnet = regions.pop("magnet", np.zeros(0, dtype=int))
     number = rotor.copy[magnet] * magnets_per_pole // 2
     magnets = {f"magnet_{m}": magnet[number == m] for m in range(rotor.count * magnets_per_pole // 2)}
     return {"rotor_iron": regions.pop("iron")} | regions | magnets

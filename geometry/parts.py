@@ -88,7 +88,10 @@ class Stator(Part):
 
 
 class Rotor(Part):
-    """Regions iron, magnet, and others of air; the axis is that of a pole. Poles of even number point outwards."""
+    """Regions iron, magnet, and others of air; the axis is that of a pole. Poles of even number point outwards.
+
+    Without magnets the axis is that of high permeance.
+    """
 
     poles: int
 
@@ -99,7 +102,7 @@ class Rotor(Part):
 
     @property
     def magnets_per_pole(self) -> int:
-        """1: on the axis of the pole; 2: beside it, the clockwise one first."""
+        """0: none; 1: on the axis of the pole; 2: beside it, the clockwise one first."""
         raise NotImplementedError
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:

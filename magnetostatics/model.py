@@ -175,7 +175,8 @@ class FieldModel:
     @cached_property
     def magnet_loads(self) -> np.ndarray:
         """integral nu (B_rx dv/dy - B_ry dv/dx) of every magnet in the sector (magnets, n) [A]."""
-        return np.stack([self._magnet_load(m) for m in range(self.section.magnets)])
+        loads = [self._magnet_load(m) for m in range(self.section.magnets)]
+        return np.array(loads).reshape(len(loads), self.size)
 
     def _magnet_load(self, number: int) -> np.ndarray:
         elements, magnet = self.magnet_elements(number), self.materials.magnet_at(number)

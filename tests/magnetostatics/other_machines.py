@@ -7,6 +7,7 @@ import numpy as np
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
 from geometry.parts import ComposedMachine
+from geometry.rotors.flux_barriers import FluxBarriers
 from geometry.rotors.inset_magnets import InsetMagnets
 from geometry.rotors.outer_magnets import OuterMagnets
 from geometry.rotors.spoke import Spoke
@@ -43,8 +44,12 @@ V_SHAPE = ComposedMachine(
 STATOR = StraightTeeth(12, 42.5 * mm, 16.2 * mm, 3.3 * mm, 5.5 * mm, 2.0 * mm, 1.4 * mm, 1.4 * mm)
 INSET = ComposedMachine(STATOR, InsetMagnets(10, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.8))
 SPOKE = ComposedMachine(STATOR, Spoke(10, 15.7 * mm, 3.0 * mm, 6.0 * mm))
-PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, INSET: 1, SPOKE: 1}
-NAMED = {"outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE}
+RELUCTANCE = ComposedMachine(
+    RoundBottomSlots(24, 42.5 * mm, 67.5 * mm, 2.0 * mm, 0.8 * mm, 5.2 * mm, 7.6 * mm, 11.0 * mm),
+    FluxBarriers(4, 3, 42.0 * mm, 14.0 * mm, 48.0 * mm, 15.0 * mm, 3.0 * mm, 4.0 * mm, 0.5 * mm),
+)
+PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, INSET: 1, SPOKE: 1, RELUCTANCE: 5}
+NAMED = {"outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE, "reluctance": RELUCTANCE}
 
 
 def section_of(machine: ComposedMachine, density: MeshDensity, whole: bool = False) -> CrossSection:

@@ -44,7 +44,8 @@ def test_winding_length_and_materials():
 
 def test_kinds_are_the_files_of_their_folders():
     assert {"straight_teeth", "outward_teeth", "round_bottom_slots"} <= set(STATORS.known)
-    assert {"surface_magnets", "outer_magnets", "inset_magnets", "v_shape", "spoke"} <= set(ROTORS.known)
+    magnets = {"surface_magnets", "outer_magnets", "inset_magnets", "v_shape", "spoke"}
+    assert magnets | {"flux_barriers"} <= set(ROTORS.known)
 
 
 def test_every_key_ends_with_its_unit():
@@ -88,5 +89,5 @@ def test_an_own_class_that_is_none(written, tmp_path):
 
 
 def test_a_name_that_is_no_file_lists_what_there_is():
-    with pytest.raises(StudyError, match="outrunner_9_12, prius_2004"):
+    with pytest.raises(StudyError, match="outrunner_9_12, prius_2004, synrm_48_4"):
         read_machine("nothing")
