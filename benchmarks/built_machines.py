@@ -1,0 +1,120 @@
+"""Machines that somebody built, from their drawings alone: ``python -m benchmarks.built_machines``.
+
+The field of the files in ``machines/``, nothing fitted, against what was measured on them. Then a prediction for a
+machine whose measurement is not here: another rotor around the stator of the outrunner, with magnets of the remanence
+that the first rotor's voltage asks for, and a steel ring whose thickness nobody knows.
+Writes results/reference/benchmarks/built_machines.csv.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import pi, sqrt
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import brentq
+
+from geometry.cross_section import mesh_cross_section
+from geometry.parts import ComposedMachine
+from geometry.rotors.outer_magnets import OuterMagnets
+from magnetostatics.model import FieldModel
+from magnetostatics.turn import Supply, Turned, turned
+from pipeline.modules import PROJECT
+from study.machine_file import MachineFile, read_machine
+from units import DEGREE, MILLIMETRE, RPM
+
+TABLE = PROJECT / "results" / "reference" / "benchmarks" / "built_machines.csv"
+POSITIONS = 15  # of an electrical period; its fundamental is free of the orders that three phases have
+RING = (0.3, 0.5, 0.8, 1.13)  # mm, of the steel inside the cup of 1.13 mm: from a foil to all of it
+
+
+@dataclass(frozen=True)
+class Row:
+    """machine, quantity with its unit; drawn: from the drawing; measured: None where it is a prediction; remark."""
+
+    machine: str
+    quantity: str
+    drawn: float
+    measured: float | None
+    remark: str
+
+    @property
+    def error_percent(self) -> float | None:
+        """Of the drawing."""
+        return None if self.measured is None else 100 * (self.drawn / self.measured - 1)
+
+
+def no_load(found: MachineFile, span: float | None = None, positions: int = POSITIONS) -> Turned:
+    """Turned without current over an angle [rad], an electrical period where none is given."""
+    model = FieldModel(mesh_cross_section(found.machine, found.layout, found.density), found.materials)
+    span = 2 * pi / found.machine.pole_pairs if span is None else span
+    angles = span * np.arange(positions) / positions
+    return turned(model, Supply(0.0, 0.0, found.turns), found.active_length, angles)
+
+
+def with_remanence(found: MachineFile, remanence: float) -> MachineFile:
+    """The same with other magnets [T]."""
+    magnet = replace(found.materials.magnet, remanence=remanence)
+    return replace(found, materials=replace(found.materials, magnet=magnet))
+
+
+def prius() -> Iterator[Row]:
+    """Line voltage at 1000 rpm; measured at four speeds with magnets at 25 degC."""
+    table = pd.read_csv(PROJECT / "measurements" / "prius-2004" / "back_emf.csv")
+    measured = 1000 * float((table.v_ll_V @ table.speed_rpm) / (table.speed_rpm @ table.speed_rpm))
+    found = read_machine("prius_2004")
+    speed = 1000 * RPM * found.machine.pole_pairs
+    drawn = sqrt(3 / 2) * speed * no_load(found).fundamental
+    yield Row("prius_2004", "line voltage at 1000 rpm, rms / V", drawn, measured,
+              "steel, remanence and bridge assumed; another code has the same voltage of this drawing")  # fmt: skip
+
+
+def ferrite() -> Iterator[Row]:
+    """Voltage of a phase and cogging: both fall short of the drawing as less flux would have it."""
+    found = read_machine("inset_ferrite_6_4")
+    linkage = no_load(found).fundamental
+    cogging = np.ptp(no_load(found, 30 * DEGREE, 24).torque[:, 0]) / 2
+    yield Row("inset_ferrite_6_4", "voltage of a phase at 2000 rpm, peak / V", linkage * 2 * 2000 * RPM, 47.37,
+              "stack of 30 mm, no end leakage and no stacking factor in the plane field")  # fmt: skip
+    yield Row("inset_ferrite_6_4", "cogging, peak / Nm", cogging, 0.0357,
+              "goes with the square of the flux; whether 0.0357 is peak or peak to peak is not said")  # fmt: skip
+
+
+def outrunners() -> Iterator[Row]:
+    """The measured one, and what follows for the other rotor."""
+    steel, measured = read_machine("outrunner_9_12"), 0.2678
+    for remanence, remark in ((1.20, "remanence assumed"), (1.45, "N52 as its seller claims")):
+        drawn = 1e3 * no_load(with_remanence(steel, remanence)).fundamental
+        yield Row("outrunner_9_12", "flux linkage of a phase / mWb", drawn, measured, f"{remanence:g} T, {remark}")
+
+    def beyond(remanence: float) -> float:
+        return 1e3 * no_load(with_remanence(steel, remanence)).fundamental - measured
+
+    asked = float(brentq(beyond, 0.9, 1.45, xtol=1e-3))
+    for ring in RING:
+        drawn = 1e3 * no_load(with_remanence(other_rotor(steel, ring * MILLIMETRE), asked)).fundamental
+        yield Row("outrunner_9_12, other rotor", "flux linkage of a phase / mWb", drawn, None,
+                  f"prediction: {asked:.3f} T as the first rotor asks for, steel ring of {ring:g} mm")  # fmt: skip
+
+
+def other_rotor(found: MachineFile, ring: float) -> MachineFile:
+    """12 magnets of 1.303 mm at a gap of 0.262 mm, arc 0.654, in a steel ring [m] in aluminium, around the stator."""
+    inner = found.machine.stator.rim_radius + 0.262 * MILLIMETRE
+    rotor = OuterMagnets(12, inner, 1.303 * MILLIMETRE, ring, 20.0 * MILLIMETRE, 0.654)
+    return replace(found, machine=ComposedMachine(found.machine.stator, rotor))
+
+
+def main() -> None:
+    rows = [row for rows in (prius(), ferrite(), outrunners()) for row in rows]
+    table = pd.DataFrame([
+        (r.machine, r.quantity, f"{r.drawn:.4g}", r.measured and f"{r.measured:.4g}",
+         r.measured and f"{r.error_percent:+.1f}", r.remark) for r in rows
+    ], columns=["machine", "quantity", "drawn", "measured", "error_percent", "remark"])  # fmt: skip
+    table.to_csv(TABLE, index=False)
+    print(table.to_string(index=False))
+
+
+if __name__ == "__main__":
+    main()
