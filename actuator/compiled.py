@@ -75,7 +75,10 @@ def at(x: float, table: np.ndarray, row: int) -> float:
 
 @compiled
 def slope_at(x: float, table: np.ndarray) -> float:
-    """Slope of the second row over the first, 0 beyond the ends; x: [unit of the first]; table: [any units], (2, n)."""
+    """Slope of the second row over the first.
+
+    slope_at: [units of the rows], 0 beyond the ends; x: [unit of the first]; table: [any units], (2, n)
+    """
     last = table.shape[1] - 1
     if x <= table[0, 0] or x >= table[0, last]:
         return 0.0

@@ -7,6 +7,8 @@ searched or stated; gears or a direct drive.
 
 from __future__ import annotations
 
+from actuator.errors import ActuatorError
+from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
 from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
@@ -98,9 +100,9 @@ from vehicle.heat_duty import road_duty
 from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
-    FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, ThermalError, VehicleError,
-    WindingError,
+    ActuatorError, ControlError, FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError,
+    GearboxError, GearError, GeometryError, LinkageError, LossError, MatchError, MaterialError,
+    NoOptimumError, StepError, ThermalError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (

@@ -9,9 +9,10 @@ from math import sqrt
 import numpy as np
 from scipy.linalg import expm, solve_continuous_lyapunov
 
+from vehicle.commands import Feedback
 from vehicle.errors import VehicleError
 from vehicle.models import QuarterCar
-from vehicle.quarter_car import Feedback, LinearRide, linear_ride
+from vehicle.quarter_car import LinearRide, linear_ride
 from vehicle.road import NOISE_INTENSITY, IsoRoad
 
 

@@ -19,11 +19,11 @@ from tests.vehicle.thesis import (
 )
 from units import GRAVITY
 from vehicle.comfort import WEIGHTING
+from vehicle.commands import Feedback
 from vehicle.damping import linear_damper
 from vehicle.errors import VehicleError
 from vehicle.quarter_car import (
     TO_STROKE_STATES,
-    Feedback,
     LqrWeights,
     damping_feedback,
     groundhook,
