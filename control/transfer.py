@@ -82,4 +82,8 @@ def bandwidth(closed: TransferFunction) -> float:
     """Frequency where a closed loop first falls 3 dB below its gain at rest [Hz]; inf where it never does."""
     size = np.abs(closed.at(FREQUENCIES))
     below = np.flatnonzero(size < _HALF_POWER * size[0])
-    return float(FREQUENCIES[below[0]]) if below.size else float("inf")
+    if not below.size:
+        return float("inf")
+    k = max(int(below[0]), 1)
+    share = np.log(size[k - 1] / (_HALF_POWER * size[0])) / np.log(size[k - 1] / size[k])
+    return float(FREQUENCIES[k - 1] * (FREQUENCIES[k] / FREQUENCIES[k - 1]) ** share)

@@ -7,16 +7,18 @@ from itertools import product
 
 import numpy as np
 
-from actuator.model import Actuator
+from actuator.model import IDEAL, Actuator
 from actuator.parts import CompliantMount
 from control.force_loop import ForceLoop
-from vehicle.commands import Command, Controller, Feedback
+from vehicle.commands import Command, Feedback
 from vehicle.damping import DamperCurve
+from vehicle.errors import VehicleError
 from vehicle.models import Vehicle
 from vehicle.motion import AXLE, BODY, CONTROL, FEEDS_BACK, FOLLOWS_CURVE, HELD, MASS, VELOCITY, Equations, jacobian
 
 _STABLE = 2.0  # step times the fastest rate; the limit of the Runge-Kutta rule is 2.78 when damped, 2.83 when not
 _NO_CURVE = np.array([[-1.0, 1.0], [0.0, 0.0]])
+_GROWS = 1e-3  # 1/s, e-fold in a quarter of an hour; less is rounding, or does not matter
 _INTO = 1e-3  # m, beyond an end stop
 _STEEPEST = (0.0, 0.75, 1.0)  # shares of a mount's transition; near the second its force is steepest
 
@@ -115,9 +117,16 @@ def _steepest_at(curve: DamperCurve) -> float:
     return float(v[k] + v[k + 1]) / 2
 
 
-def is_sampled(command: Command) -> bool:
-    """Whether the command is asked for once a sample."""
-    return isinstance(command, Controller)
+def require_stable_law(vehicle: Vehicle, law: Feedback) -> None:
+    """VehicleError for a law that makes the vehicle swing by itself, with an ideal actuator about equilibrium."""
+    e = equations(vehicle, IDEAL, law, None, 0.0)
+    moving = 2 * (2 + len(vehicle.axles))
+    growth = np.linalg.eigvals(jacobian(e, np.zeros(e.size))[:moving, :moving]).real.max()
+    if growth > _GROWS:
+        raise VehicleError(
+            f"control law '{law.name}': unstable, the motion grows with {growth:.3g} /s even with an ideal actuator; "
+            "change its coefficients"
+        )
 
 
 def stored_energy(vehicle: Vehicle, actuator: Actuator, state: np.ndarray, road: np.ndarray) -> float:

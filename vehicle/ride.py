@@ -9,13 +9,14 @@ from typing import TypeVar
 
 import numpy as np
 
+from actuator.linear import require_stable
 from actuator.model import IDEAL, Actuator
 from actuator.parts import RigidMount
 from control.force_loop import ForceLoop
 from vehicle.comfort import weighted_acceleration
-from vehicle.commands import Command, Controller, Felt
+from vehicle.commands import Command, Controller, Feedback, Felt
 from vehicle.damping import DamperCurve
-from vehicle.equations import equations, largest_step, stored_energy
+from vehicle.equations import equations, largest_step, require_stable_law, stored_energy
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 from vehicle.models import Vehicle
 from vehicle.motion import MASS, SEEN, VELOCITY, WORK, WORKS, Equations, follow
@@ -189,6 +190,7 @@ def ride_of_run(run: Run) -> RideHistory:
     scenario = run.scenario
     time = np.arange(round(scenario.duration / scenario.time_step) + 1) * scenario.time_step
     road = road_under_wheels(run, time)
+    _require_stable_control(run)
     e = equations(run.vehicle, run.actuator, run.command, run.loop, run.vehicle.total_mass * scenario.longitudinal)
     parts = ceil(scenario.time_step / largest_step(run.vehicle, run.actuator, run.command, e))
     states, seen = _followed(run, e, np.ascontiguousarray(road.T), parts)
@@ -199,6 +201,13 @@ def ride_of_run(run: Run) -> RideHistory:
             "give a smaller time step"
         )
     return _history(run, time, road, states, seen)
+
+
+def _require_stable_control(run: Run) -> None:
+    if run.loop is not None:
+        require_stable(run.actuator, run.loop)
+    if isinstance(run.command, Feedback):
+        require_stable_law(run.vehicle, run.command)
 
 
 def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
