@@ -6,11 +6,12 @@ second time, on arrays; a test holds the two together.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 
+Record = Any  # of numpy, whose fields the compiled code reads as attributes
 # Kept between processes; a division by zero gives inf, as in numpy, which makes the code smaller and faster.
 compiled = njit(cache=True, error_model="numpy")
 
@@ -30,7 +31,7 @@ class ActuatorNumbers(NamedTuple):
     ratio: strokes [m] and tau_t [m/rad], (2, n); torque: speeds [rad/s], driving and braking torques [Nm], (3, m)
     """
 
-    numbers: np.void
+    numbers: Record
     ratio: np.ndarray
     torque: np.ndarray
 
@@ -89,7 +90,7 @@ def slope_at(x: float, table: np.ndarray) -> float:
 
 
 @compiled
-def engagement(mount: np.void, beyond: float) -> float:
+def engagement(mount: Record, beyond: float) -> float:
     """s, dimensionless, as far beyond the play [m]."""
     if beyond <= 0:
         return 0.0
@@ -100,7 +101,7 @@ def engagement(mount: np.void, beyond: float) -> float:
 
 
 @compiled
-def elastic_force(mount: np.void, deformation: float) -> float:
+def elastic_force(mount: Record, deformation: float) -> float:
     """Part of the mount's force that stores energy [N] at a deformation [m]."""
     beyond = abs(deformation) - mount.play
     force = engagement(mount, beyond) * mount.stiffness * beyond
@@ -108,7 +109,7 @@ def elastic_force(mount: np.void, deformation: float) -> float:
 
 
 @compiled
-def damping_of(mount: np.void, deformation: float) -> float:
+def damping_of(mount: Record, deformation: float) -> float:
     """Damping of the mount [Ns/m] at a deformation [m]."""
     return mount.damping + engagement(mount, abs(deformation) - mount.play) * mount.contact_damping
 
@@ -123,7 +124,7 @@ def largest_torque(limit: np.ndarray, speed: float, torque: float) -> float:
 
 
 @compiled
-def limited_torque(drive: np.void, limit: np.ndarray, speed: float, command: float) -> float:
+def limited_torque(drive: Record, limit: np.ndarray, speed: float, command: float) -> float:
     """Torque that the drive aims at [Nm]: the command [Nm] within the limit at a speed [rad/s]; a bridge has its own.
 
     limit: as in ``ActuatorNumbers`` [rad/s, Nm], (3, m)
@@ -135,7 +136,7 @@ def limited_torque(drive: np.void, limit: np.ndarray, speed: float, command: flo
 
 
 @compiled
-def inside(part: np.void, ratio: np.ndarray, stroke: float, rate: float, x: float, v: float, torque: float) -> Inside:
+def inside(part: Record, ratio: np.ndarray, stroke: float, rate: float, x: float, v: float, torque: float) -> Inside:
     """Forces and powers at a stroke [m] and its rate [m/s], with the equivalent mass at x [m] and v [m/s].
 
     torque: of the rotor [Nm]; ratio: as in ``ActuatorNumbers`` [m, m/rad], (2, n)

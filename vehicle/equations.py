@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from actuator.compiled import Record
 from actuator.model import IDEAL, Actuator
 from actuator.parts import CompliantMount
 from control.force_loop import ForceLoop
@@ -55,7 +56,7 @@ def equations(
     )
 
 
-def _record(kind: np.dtype, values: tuple[float, ...]) -> np.void:
+def _record(kind: np.dtype, values: tuple[float, ...]) -> Record:
     return np.array([values], kind)[0]
 
 
@@ -98,8 +99,9 @@ def _fastest_of_vehicle(vehicle: Vehicle) -> float:
 def _probes(actuator: Actuator, command: Command, e: Equations) -> Iterator[np.ndarray]:
     """States at which something is steep: the mount, the command's curve, an end stop, or all of them."""
     mount, stops = actuator.mount, e.axles[-1]
-    soft = isinstance(mount, CompliantMount)
-    deformations = [mount.play + share * mount.transition + 1e-9 for share in _STEEPEST] if soft else [0.0]
+    deformations = [0.0]
+    if isinstance(mount, CompliantMount):
+        deformations = [mount.play + share * mount.transition + 1e-9 for share in _STEEPEST]
     strokes = [0.0, stops["rebound"] + _INTO] if stops["stop"] > 0 else [0.0]
     rates = [0.0, _steepest_at(command)] if isinstance(command, DamperCurve) else [0.0]
     body_rate, own = 2 + len(e.axles), 2 * (2 + len(e.axles))

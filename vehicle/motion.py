@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actuator.compiled import at, compiled, inside, limited_torque
+from actuator.compiled import Record, at, compiled, inside, limited_torque
 
 BODY = np.dtype([(name, np.float64) for name in ("mass", "pitch_inertia", "cog_height", "propulsion")])
 _AXLE = ("position", "unsprung_mass", "spring", "bump", "rebound", "stop", "tyre", "load")
@@ -39,13 +39,13 @@ class Equations(NamedTuple):
     Ns/m, Ns/m], (4,); held: wanted force that somebody else sets [N], (1,)
     """
 
-    body: np.void
+    body: Record
     axles: np.ndarray
     dampers: np.ndarray
-    part: np.void
+    part: Record
     ratio: np.ndarray
     limit: np.ndarray
-    control: np.void
+    control: Record
     curve: np.ndarray
     row: np.ndarray
     held: np.ndarray
@@ -76,7 +76,7 @@ def line(v: float, table: np.ndarray) -> float:
 
 
 @compiled
-def stop_force(axle: np.void, stroke: float) -> float:
+def stop_force(axle: Record, stroke: float) -> float:
     """Force of the end stops [N] at a stroke [m]."""
     if stroke > axle.rebound:
         return axle.stop * (stroke - axle.rebound)
@@ -142,7 +142,7 @@ def wanted_force(e: Equations, state: np.ndarray, stroke: float, moving: float) 
 
 
 @compiled
-def loop_output(control: np.void, error: float, own: np.ndarray) -> float:
+def loop_output(control: Record, error: float, own: np.ndarray) -> float:
     """P e + I integral(e) + D N (e - e_f) [N] of the error e [N] (4.30); own: the actuator's state [SI], (own,)."""
     derivative = control.derivative * control.filter * (error - own[FILTERED])
     return control.proportional * error + control.integral * own[INTEGRAL] + derivative
