@@ -6,13 +6,22 @@ second time, on arrays; a test holds the two together.
 
 from __future__ import annotations
 
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import config, njit
 
 Record = Any  # of numpy, whose fields the compiled code reads as attributes
-# Kept between processes; a division by zero gives inf, as in numpy, which makes the code smaller and faster.
+
+# numba keeps compiled code beside its source and asks whether that one file has changed, not those that it calls. All
+# of them are therefore asked for here: their folder bears the hash of every file with compiled code.
+SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "vehicle/motion.py")
+_PROJECT = Path(__file__).resolve().parent.parent
+_HASH = sha256(b"".join((_PROJECT / source).read_bytes() for source in SOURCES)).hexdigest()[:16]
+config.CACHE_DIR = str(_PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}")
+# A division by zero gives inf, as in numpy, which makes the code smaller and faster.
 compiled = njit(cache=True, error_model="numpy")
 
 

@@ -26,7 +26,7 @@ ALLOWED = {
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
     "control": set(),
     "actuator": {"control"},
-    "vehicle": {"thermal", "drivetrain", "gearbox", "control", "actuator"},
+    "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
     "study": _DESIGN,
