@@ -89,11 +89,12 @@ def working_points(found: EnergyOutcome) -> Figure:
 
 @styled
 def where_the_power_goes(found: EnergyOutcome) -> Figure:
-    """Mean powers of every case with their scatter over the roads; what comes from the suspension is their sum."""
-    figure = new_figure(0.9 + 0.36 * len(found.cases))
+    """Mean powers with their scatter over the roads; what swings by itself, by some hundred times more, is left out."""
+    cases = [case for case in found.cases if not case.swings]
+    figure = new_figure(0.9 + 0.36 * len(cases))
     axis = figure.subplots()
-    names = [f"{case.command}, {case.actuator}" for case in found.cases]
-    for place, case in enumerate(found.cases):
+    names = [f"{case.command}, {case.actuator}" for case in cases]
+    for place, case in enumerate(cases):
         _bar(axis, place, scatter(case.energies))
     for _, words, colour in _PARTS:
         axis.barh([0], [0], color=colour, label=words)

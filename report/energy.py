@@ -15,7 +15,6 @@ from units import FACTORS, GRAVITY
 from vehicle.demands import RideCase
 from vehicle.energy import Scatter, scatter
 from vehicle.energy_stage import (
-    OPEN,
     QUASI_IDEAL,
     REAL,
     SHOWN,
@@ -51,7 +50,10 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
             _text(found),
             *(Remark(line) for line in remarks(found)),
             Table(power_table(found), f"Mean powers over the random road; ± over the roads. All of it is in {TABLE}."),
-            Picture(picture_name(POWERS), "Where the power goes. A bar to the left: power that the battery gives."),
+            Picture(
+                picture_name(POWERS),
+                "Where the power goes, but for what swings by itself. To the left: power that the battery gives.",
+            ),
             Table(duty_table(found), "Duty, power factors and what the ride becomes, means over the roads."),
             Picture(picture_name(TIME), f"From {first:g} to {last:g} s of the first road, real actuator."),
             Picture(picture_name(POINTS), "Working points of the same time at suspension and rotor."),
@@ -68,9 +70,9 @@ def remarks(found: EnergyOutcome) -> Iterator[str]:
     if taking:
         names = ", ".join(f"{case.command} ({-_mean(case, 'battery.active'):.1f} W)" for case in taking)
         yield f"On the random road the real actuator takes power from the battery with: {names}."
-    swinging = [case.command for case in found.cases if case.actuator == OPEN and _swings(case)]
+    swinging = [f"{case.command} ({case.actuator})" for case in found.cases if case.swings]
     if swinging:
-        yield f"Without its force loop the real actuator swings by itself with: {', '.join(swinging)}."
+        yield f"The actuator swings by itself with: {', '.join(swinging)}."
     weak = [point for point in found.loop if point.phase_margin < (1 - _GENEROUS) * WANTED_MARGIN]
     if weak:
         forces = ", ".join(f"{np.degrees(point.phase_margin):.0f}° about {point.force:g} N" for point in weak)
@@ -79,11 +81,6 @@ def remarks(found: EnergyOutcome) -> Iterator[str]:
     open_ = max(abs(one.closure) for case in found.cases for one in case.energies)
     if open_ > _LOST:
         yield f"The balance of energy leaves up to {100 * open_:.2g} % open: the history is sampled too coarsely."
-
-
-def _swings(case: EnergyCase) -> bool:
-    """Whether the mount takes more than the suspension gives."""
-    return _mean(case, "mount_loss") > _mean(case, "shaft.active")
 
 
 def whole_table(found: EnergyOutcome) -> pd.DataFrame:
@@ -172,7 +169,7 @@ def _gains(loop: ForceLoop | None) -> str:
     if loop is None:
         return "no PID has them"
     ms = loop.derivative / FACTORS["ms"]
-    return f"P {loop.proportional:.2g}, I {loop.integral:.3g} 1/s, D {ms:.2g} ms, N {loop.filter:.3g} rad/s"
+    return f"P {loop.proportional:.2g}, I {loop.integral:.4g} 1/s, D {ms:.2g} ms, N {loop.filter:.4g} rad/s"
 
 
 def _loop_words(loop: ForceLoop) -> str:

@@ -49,6 +49,11 @@ class EnergyCase:
     actuator: str
     energies: tuple[RideEnergy, ...]
 
+    @property
+    def swings(self) -> bool:
+        """Whether it swings by itself: the mount takes more than the suspension gives."""
+        return sum(one.mount_loss for one in self.energies) > sum(one.shaft.active for one in self.energies)
+
 
 @dataclass(frozen=True)
 class LoopPoint:
