@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -53,9 +55,10 @@ def powers_over_time(found: EnergyOutcome) -> Figure:
     return figure
 
 
-def _legends(figure: Figure, axes: np.ndarray) -> None:
-    handles, names = (sum((one.get_legend_handles_labels()[k] for one in axes), []) for k in (0, 1))
-    figure.legend(handles, names, loc="outside lower center", ncols=5, frameon=False)
+def _legends(figure: Figure, axes: Iterable[Axes]) -> None:
+    pairs = [pair for axis in axes for pair in zip(*axis.get_legend_handles_labels(), strict=True)]
+    handles, names = zip(*pairs, strict=True)
+    figure.legend(handles, names, loc="outside lower center", ncols=5, frameon=False, markerscale=6)
 
 
 @styled
@@ -77,8 +80,7 @@ def working_points(found: EnergyOutcome) -> Figure:
     left.set(xlabel="velocity of the suspension / (m/s)", ylabel="force at the suspension / N")
     right.set(xlabel="speed of the rotor / (rad/s)", ylabel="torque, positive against rebound / Nm")
     right.set_xlim(-fastest, fastest)
-    handles, names = (sum((one.get_legend_handles_labels()[k] for one in (left, right)), []) for k in (0, 1))
-    figure.legend(handles, names, loc="outside lower center", ncols=4, frameon=False, markerscale=6)
+    _legends(figure, (left, right))
     for axis in (left, right):
         axis.axhline(0, color=LIGHT_GREY, linewidth=0.8)
         axis.axvline(0, color=LIGHT_GREY, linewidth=0.8)

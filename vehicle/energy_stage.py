@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from actuator.linear import tangent_plant
+from actuator.linear import stiffness_about, tangent_plant
 from actuator.model import Actuator
 from actuator.parts import LOSSLESS, NO_LOSS, RIGID
 from control.design import loop_for
@@ -147,11 +147,11 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
     for force in WORKING_FORCES:
         plant = tangent_plant(own.actuator, force)
         through = plant.times(own.loop.transfer)
-        stiffness = own.actuator.mount.tangent(own.actuator.mount.deformation(force))[0]
         try:
             designed = loop_for(plant, WANTED_BANDWIDTH, WANTED_MARGIN)
         except ControlError:
             designed = None
+        stiffness = stiffness_about(own.actuator, force)
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
