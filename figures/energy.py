@@ -122,6 +122,21 @@ def _bar(axis: Axes, place: int, values: dict[str, Scatter]) -> None:
 
 
 @styled
+def temperatures_under_the_ride(found: EnergyOutcome) -> Figure:
+    """Copper and magnets over time under the mean losses of the first road, one colour a command."""
+    figure = new_figure(3.8)
+    axis = figure.subplots()
+    for one, colour in zip(found.temperatures, SERIES, strict=False):
+        minutes = one.time / 60.0
+        axis.plot(minutes, one.copper, color=colour, label=f"{one.command}, copper")
+        axis.plot(minutes, one.magnets, color=colour, linestyle="--", label=f"{one.command}, magnets")
+    axis.set(xlabel="time / min", ylabel="mean temperature / °C", xlim=(0.0, None))
+    show_grid(axis)
+    figure.legend(loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+@styled
 def force_loop(found: EnergyOutcome) -> Figure:
     """Bode plot of the open force loop about the working forces; the force wanted over that of the suspension."""
     figure = new_figure(4.4)

@@ -8,7 +8,13 @@ import numpy as np
 import pandas as pd
 
 from control.force_loop import ForceLoop
-from figures.energy import force_loop, powers_over_time, where_the_power_goes, working_points
+from figures.energy import (
+    force_loop,
+    powers_over_time,
+    temperatures_under_the_ride,
+    where_the_power_goes,
+    working_points,
+)
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Remark, Section, Table
 from units import FACTORS, GRAVITY
@@ -28,6 +34,8 @@ from vehicle.printed_energy import PrintedEnergy, printed_energy
 
 TABLE = "energy.csv"
 TIME, POINTS, POWERS, LOOP = "energy_over_time", "energy_points", "energy_powers", "energy_loop"
+HEAT = "energy_temperatures"
+_HOUR = 3600.0  # s
 _GENEROUS = 0.05  # of the wanted bandwidth or margin
 _LOST = 0.01  # of the mechanical power, which the balance may leave open
 
@@ -39,6 +47,8 @@ def files(found: EnergyOutcome) -> Iterator[File]:
     yield figure_file(POINTS, working_points(found))
     yield figure_file(POWERS, where_the_power_goes(found))
     yield figure_file(LOOP, force_loop(found))
+    if found.temperatures:
+        yield figure_file(HEAT, temperatures_under_the_ride(found))
 
 
 def section(found: EnergyOutcome, case: RideCase) -> Section:
@@ -59,6 +69,7 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
             Picture(picture_name(POINTS), "Working points of the same time at suspension and rotor."),
             Table(loop_table(found), _loop_words(found.own.loop)),
             Picture(picture_name(LOOP), "The force loop with the output held, about three forces of the mount."),
+            *_temperatures(found),
             *_printed(case),
         ),
     )
@@ -176,6 +187,22 @@ def _loop_words(loop: ForceLoop) -> str:
     return (
         f"The force loop ({_gains(loop)}) with the output held; bandwidth: where the closed loop first falls by 3 dB."
     )
+
+
+def _temperatures(found: EnergyOutcome) -> Iterator[Table | Picture]:
+    """How warm the machine becomes, where that is known."""
+    if found.temperatures:
+        rows = [
+            {
+                "command": one.command,
+                "copper after an hour / °C": float(np.interp(_HOUR, one.time, one.copper)),
+                "magnets after an hour / °C": float(np.interp(_HOUR, one.time, one.magnets)),
+                "hottest copper in the end / °C": one.hottest_copper,
+            }
+            for one in found.temperatures
+        ]
+        yield Table(pd.DataFrame(rows), "Temperatures with the losses of the first road, real actuator.")
+        yield Picture(picture_name(HEAT), "Warming up under the mean losses of the first road.")
 
 
 def _printed(case: RideCase) -> Iterator[Table]:

@@ -16,6 +16,7 @@ from control.errors import ControlError
 from control.force_loop import ForceLoop
 from control.transfer import bandwidth, margins
 from tasks import Workers
+from thermal.stage import Assembled
 from vehicle.commands import Feedback
 from vehicle.damping import DamperCurve
 from vehicle.demands import RideCase
@@ -23,7 +24,8 @@ from vehicle.designed import DesignedActuator
 from vehicle.energy import RideEnergy, ride_energy
 from vehicle.models import QuarterCar, Vehicle
 from vehicle.quarter_car import LqrWeights, lqr
-from vehicle.ride import Run, simulate
+from vehicle.ride import RideHistory, Run, simulate
+from vehicle.ride_heat import RideTemperature, ride_temperature
 
 QUASI_IDEAL, REAL, OPEN = "quasi-ideal", "real", "real, no force loop"
 # Settings of Table 4.1, as the grid has them on which they were found.
@@ -77,12 +79,14 @@ class EnergyOutcome:
     own: the actuator and its loop; cases: every command with every actuator; loop: about the working forces
     traces: of the first road with the real actuator, over (command, time): time [s], (t,), wanted, force [N], shaft,
     electrical, lost: powers [W], velocity [m/s], torque [Nm], rotor_speed [rad/s], each (command, t)
+    temperatures: under the first road with the real actuator, one a command; none where no thermal model was given
     """
 
     own: DesignedActuator
     cases: tuple[EnergyCase, ...]
     loop: tuple[LoopPoint, ...]
     traces: xr.Dataset
+    temperatures: tuple[RideTemperature, ...]
 
     def case(self, command: str, actuator: str) -> EnergyCase:
         """One of the cases by its names."""
@@ -99,7 +103,7 @@ def energy_of(task: EnergyTask) -> RideEnergy:
     return ride_energy(simulate([task.run])[0])
 
 
-def energy_stage(case: RideCase, own: DesignedActuator, workers: Workers) -> EnergyOutcome:
+def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | None, workers: Workers) -> EnergyOutcome:
     """Every seed of the road with every command: quasi-ideal, real, and the damper curves without force loop.
 
     Raises ControlError where the force loop is unstable on the mount, VehicleError or ActuatorError where a motion or
@@ -112,7 +116,9 @@ def energy_stage(case: RideCase, own: DesignedActuator, workers: Workers) -> Ene
     found = iter(workers.map("rides", energy_of, tasks).values())
     cases = tuple(EnergyCase(*name, tuple(next(found) for _ in group)) for name, group in runs.items())
     first = {command: group[0] for (command, kind), group in runs.items() if kind == REAL}
-    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(first))
+    histories = dict(zip(first, simulate(list(first.values())), strict=True))
+    warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
+    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(histories), tuple(warm))
 
 
 def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:
@@ -155,12 +161,11 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
-def _traces(runs: dict[str, Run]) -> xr.Dataset:
-    histories = simulate(list(runs.values()))
-    time = histories[0].time
+def _traces(histories: dict[str, RideHistory]) -> xr.Dataset:
+    time = next(iter(histories.values())).time
     shown = (time >= SHOWN[0]) & (time <= SHOWN[1])
     rows: dict[str, list[np.ndarray]] = {}
-    for history in histories:
+    for history in histories.values():
         inside, lost = history.inside, _lost(history.run.actuator, history.inside.torque, history.inside.rotor_speed)
         values = {
             "wanted": inside.wanted,
@@ -175,7 +180,7 @@ def _traces(runs: dict[str, Run]) -> xr.Dataset:
         for name, value in values.items():
             rows.setdefault(name, []).append(value[shown])
     data = {name: (("command", "time"), np.array(value)) for name, value in rows.items()}
-    return xr.Dataset(data, {"command": list(runs), "time": time[shown]})
+    return xr.Dataset(data, {"command": list(histories), "time": time[shown]})
 
 
 def _lost(actuator: Actuator, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:

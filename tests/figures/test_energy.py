@@ -32,7 +32,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def found(case):
-    return energy_stage(case, DesignedActuator(prototype(), FORCE_LOOP), InThisProcess())
+    return energy_stage(case, DesignedActuator(prototype(), FORCE_LOOP), None, InThisProcess())
 
 
 def test_every_command_with_every_actuator(found):
