@@ -23,7 +23,6 @@ from vehicle.energy import Scatter, scatter
 from vehicle.energy_stage import (
     QUASI_IDEAL,
     REAL,
-    SHOWN,
     WANTED_BANDWIDTH,
     WANTED_MARGIN,
     EnergyCase,
@@ -53,7 +52,6 @@ def files(found: EnergyOutcome) -> Iterator[File]:
 
 def section(found: EnergyOutcome, case: RideCase) -> Section:
     """Where the energy of the ride goes."""
-    first, last = SHOWN
     return Section(
         "Energy on the road",
         (
@@ -65,7 +63,7 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
                 "Where the power goes, but for what swings by itself. To the left: power that the battery gives.",
             ),
             Table(duty_table(found), "Duty, power factors and what the ride becomes, means over the roads."),
-            Picture(picture_name(TIME), f"From {first:g} to {last:g} s of the first road, real actuator."),
+            Picture(picture_name(TIME), "Some seconds of the first road, real actuator."),
             Picture(picture_name(POINTS), "Working points of the same time at suspension and rotor."),
             Table(loop_table(found), _loop_words(found.own.loop)),
             Picture(picture_name(LOOP), "The force loop with the output held, about three forces of the mount."),

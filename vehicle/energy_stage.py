@@ -31,7 +31,7 @@ QUASI_IDEAL, REAL, OPEN = "quasi-ideal", "real", "real, no force loop"
 # Settings of Table 4.1, as the grid has them on which they were found.
 LQR_SETTINGS = {"LQR trade-off": LqrWeights(42.9, 3.556e5), "LQR handling": LqrWeights(3.39e6, 2.223e7)}
 STEP = 5e-4  # s, of the histories: means of powers are taken over their samples
-SHOWN = (4.0, 8.0)  # s, of the first road, in figures
+SHOWN = (4.0, 8.0)  # s, of the first road, in figures; of a shorter one its second half
 WORKING_FORCES = (100.0, 300.0, 1000.0)  # N, about which the force loop is looked at
 WANTED_BANDWIDTH, WANTED_MARGIN = 60.0, np.radians(50.0)  # Hz (text to Table 4.5) and rad (a usual choice)
 
@@ -87,15 +87,6 @@ class EnergyOutcome:
     loop: tuple[LoopPoint, ...]
     traces: xr.Dataset
     temperatures: tuple[RideTemperature, ...]
-
-    def case(self, command: str, actuator: str) -> EnergyCase:
-        """One of the cases by its names."""
-        return next(one for one in self.cases if (one.command, one.actuator) == (command, actuator))
-
-    @property
-    def commands(self) -> tuple[str, ...]:
-        """Their names, in the order of the cases."""
-        return tuple(dict.fromkeys(one.command for one in self.cases))
 
 
 def energy_of(task: EnergyTask) -> RideEnergy:
@@ -163,10 +154,11 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
 
 def _traces(histories: dict[str, RideHistory]) -> xr.Dataset:
     time = next(iter(histories.values())).time
-    shown = (time >= SHOWN[0]) & (time <= SHOWN[1])
+    shown = (time >= min(SHOWN[0], time[-1] / 2)) & (time <= SHOWN[1])
     rows: dict[str, list[np.ndarray]] = {}
     for history in histories.values():
-        inside, lost = history.inside, _lost(history.run.actuator, history.inside.torque, history.inside.rotor_speed)
+        inside = history.inside
+        lost = history.run.actuator.drive.loss.at(inside.torque, inside.rotor_speed)
         values = {
             "wanted": inside.wanted,
             "force": history.suspension_force,
@@ -181,7 +173,3 @@ def _traces(histories: dict[str, RideHistory]) -> xr.Dataset:
             rows.setdefault(name, []).append(value[shown])
     data = {name: (("command", "time"), np.array(value)) for name, value in rows.items()}
     return xr.Dataset(data, {"command": list(histories), "time": time[shown]})
-
-
-def _lost(actuator: Actuator, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    return actuator.drive.loss.at(torque, speed)
