@@ -35,7 +35,7 @@ def tangent_plant(actuator: Actuator, force: float) -> TransferFunction:
 
 
 def stiffness_about(actuator: Actuator, force: float) -> float:
-    """Of the mount at a steady force [N/m]; force [N]. Raises ActuatorError for a rigid mount."""
+    """Of the mount [N/m] under a load; force: the load [N]. Raises ActuatorError for a rigid mount."""
     return _tangent_about(actuator, force)[0]
 
 

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from actuator.parts import CompliantMount
-from control.force_loop import ForceLoop
+from dataclasses import fields, replace
+from typing import Any, TypeVar
+
 from study.schema import Study
-from vehicle.designed import ActuatorInputs
+from vehicle.designed import PROTOTYPE_LAG, PROTOTYPE_LOOP, PROTOTYPE_MOUNT, ActuatorInputs
+
+Part = TypeVar("Part", bound=Any)
 
 
 def actuator_inputs(study: Study) -> ActuatorInputs:
     """Mount, torque lag and force loop."""
     section = study.actuator.si
     return ActuatorInputs(
-        mount=CompliantMount(
-            section.mount_stiffness,
-            section.mount_damping,
-            section.mount_play,
-            section.mount_contact_damping,
-            section.mount_transition,
-        ),
-        torque_lag=section.torque_lag,
-        loop=ForceLoop(section.loop_proportional, section.loop_integral, section.loop_derivative, section.loop_filter),
+        mount=_stated(PROTOTYPE_MOUNT, section, "mount"),
+        torque_lag=PROTOTYPE_LAG if section.torque_lag is None else section.torque_lag,
+        loop=_stated(PROTOTYPE_LOOP, section, "loop"),
     )
+
+
+def _stated(part: Part, section: Any, prefix: str) -> Part:
+    """The part with what the section states of it, ``<prefix>_<field>``."""
+    values = {field.name: getattr(section, f"{prefix}_{field.name}") for field in fields(part)}
+    return replace(part, **{name: value for name, value in values.items() if value is not None})

@@ -19,6 +19,18 @@ from gearbox.stage import GearboxOutcome
 from losses.stage import LossMap
 from magnetostatics.flux_map_stage import FluxMap
 
+# The prototype of thesis chapter 4, whose mount and loop stand in for those of an actuator that was not measured:
+# nominal value times identified gain (Table 4.2), printed loop (Table 4.5), and the lag of a current control (4.2.1).
+PROTOTYPE_MOUNT = CompliantMount(
+    stiffness=5e5 * 1.352,
+    damping=500.0 * 0.590,
+    play=2e-4 * 0.046,
+    contact_damping=100.0 * 5.452,
+    transition=1.5e-3 * 2.558,
+)
+PROTOTYPE_LOOP = ForceLoop(proportional=7.4, integral=1000.0, derivative=5.9e-3, filter=6283.0)
+PROTOTYPE_LAG = 1e-3  # s
+
 
 @dataclass(frozen=True)
 class ActuatorInputs:
