@@ -636,6 +636,23 @@ class ThermalSection(Section):
     ] = None
 
 
+class ActuatorSection(Section):
+    """Mount, drive and force loop; what is not stated has the values of the prototype (``vehicle.designed``)."""
+
+    mount_stiffness_kN_per_m: Annotated[float | None, Quantity("stiffness of the mount in full contact", 1, 1e6)] = None
+    mount_damping_Ns_per_m: Annotated[float | None, Quantity("damping of the mount, in its play too", 0, 1e6)] = None
+    mount_contact_damping_Ns_per_m: Annotated[float | None, Quantity("damping of the mount in contact", 0, 1e6)] = None
+    mount_play_um: Annotated[float | None, Quantity("half of the clearance of mount and gears", 0, 1e4)] = None
+    mount_transition_mm: Annotated[float | None, Quantity("deformation over which the contact builds up", 0, 100)] = (
+        None
+    )
+    torque_lag_ms: Annotated[float | None, Quantity("time constant of the torque under current control", 0, 100)] = None
+    loop_proportional: Annotated[float | None, Quantity("proportional gain of the force loop", 0, 1e3)] = None
+    loop_integral_rad_per_s: Annotated[float | None, Quantity("integral gain of the force loop", 0, 1e6)] = None
+    loop_derivative_ms: Annotated[float | None, Quantity("derivative gain of the force loop", 0, 1e3)] = None
+    loop_filter_rad_per_s: Annotated[float | None, Quantity("filter of the derivative", 0, 1e6)] = None
+
+
 class Study(Section):
     """A whole study file."""
 
@@ -665,6 +682,7 @@ class Study(Section):
     thermal: ThermalSection = ThermalSection()
     gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
+    actuator: ActuatorSection = ActuatorSection()
     prices: PricesSection | None = None
     mechanics: MechanicsSection = MechanicsSection()
     printed_actuator: PrintedActuatorSection | None = None

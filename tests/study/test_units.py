@@ -30,6 +30,7 @@ PURE_NUMBERS = set(
     gearbox.printed_shifts printed_actuator.gearbox_ratio
     mechanics.overspeed_factor mechanics.glue_safety mechanics.sleeve_safety mechanics.yield_safety
     mechanics.critical_speed_factor mechanics.eccentricity_fraction
+    actuator.loop_proportional
     """.split()
 )
 

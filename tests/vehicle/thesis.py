@@ -69,6 +69,15 @@ def quarter_car_damping() -> tuple[DamperCurve, DamperCurve]:
     return linear_damper(10e3, "maximum"), linear_damper(2.6e3, "minimum")
 
 
+def digressive_minimum() -> DamperCurve:
+    """A guess at the minimum damping of Fig. 4.21: its steepest part up to 200 N, 1200 Ns/m beyond."""
+    knee, end = 200.0 / 2.6e3, 3.0
+    force = 200.0 + 1200.0 * (end - knee)
+    return DamperCurve(
+        "minimum, digressive", (-end, -knee, 0.0, knee, end), (-force, -200.0, 0.0, 200.0, force), "guess"
+    )
+
+
 # ---- results of the motorcycle, columns maximum, minimum, mixed -----------------------------------------------------
 
 TABLE_3_4 = {  # ISO B at 70 km/h, 30 s, one seed that is not printed
