@@ -22,6 +22,7 @@ from scipy.optimize import least_squares
 from scipy.stats import norm
 
 from bench.errors import RecordError
+from bench.memory import memory_of
 
 Model = Callable[[Mapping[str, float]], Sequence[np.ndarray]]  # values by name -> answer to every record
 
@@ -169,21 +170,7 @@ def _covariance(
         silent = unknowns[int(np.argmin(sizes))].name
         raise RecordError(f"identification: no reading depends on {silent}; state it or record what shows it.")
     scaled = jacobian / sizes
-    memory = _memory(np.split(residual, np.cumsum(lengths)[:-1]))
+    memory = float(np.mean([memory_of(one) for one in np.split(residual, np.cumsum(lengths)[:-1])]))
     variance = memory * float(residual @ residual) / (len(residual) - len(unknowns))
     return variance * np.linalg.pinv(scaled.T @ scaled, hermitian=True) / np.outer(sizes, sizes), memory
 
-
-def _memory(residuals: Sequence[np.ndarray]) -> float:
-    """1 + 2 sum rho_k over the first run of positive autocorrelations, the mean over the records; 1 at least."""
-    return float(np.mean([_memory_of(one) for one in residuals]))
-
-
-def _memory_of(residual: np.ndarray) -> float:
-    spectrum = np.abs(np.fft.rfft(residual - residual.mean(), 2 * len(residual))) ** 2
-    correlation = np.fft.irfft(spectrum)[: len(residual)]
-    if correlation[0] <= 0:
-        return 1.0
-    rho = correlation[1:] / correlation[0]
-    run = int(np.argmax(rho <= 0)) if (rho <= 0).any() else len(rho)
-    return 1.0 + 2.0 * float(rho[:run].sum())

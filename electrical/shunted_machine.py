@@ -22,6 +22,7 @@ from math import ceil, pi, sqrt
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import solve_banded
 
 from electrical.dq import require
 from electrical.synchronous_machine import SynchronousMachine
@@ -179,15 +180,16 @@ def _swing_of_dq(machine: SynchronousMachine, nu: float, top_speed: float) -> co
     """
     swing = machine.pole_pairs * top_speed
     most = ceil(swing / nu) + _SIDE_ORDERS
-    orders, neighbours = np.arange(-most, most + 1), 0.5 * swing * (np.eye(2 * most + 1, k=1) + np.eye(2 * most + 1, k=-1))
-    rate = np.diag(1j * nu * orders)
-    matrix = np.block([
-        [rate + np.eye(len(orders)) * machine.resistance / machine.inductance_d, -neighbours],
-        [neighbours, rate + np.eye(len(orders)) * machine.resistance / machine.inductance_q],
-    ])  # fmt: skip
+    orders = np.arange(-most, most + 1)
+    rates = [1j * nu * orders + machine.resistance / one for one in (machine.inductance_d, machine.inductance_q)]
+    bands = np.zeros((7, 2 * len(orders)), dtype=complex)  # of the unknowns psi_d,n and psi_q,n in turn
+    bands[3] = np.ravel(rates, order="F")
+    bands[[0, 4], 1::2] = -0.5 * swing  # of psi_q in the equation of psi_d, one order lower and one higher
+    bands[[2, 6], 0::2] = 0.5 * swing
     source = np.zeros(2 * len(orders), dtype=complex)
-    source[most] = machine.resistance * machine.psi_m / machine.inductance_d
-    psi_d, psi_q = (_over_time(part, orders) for part in np.split(np.linalg.solve(matrix, source), 2))
+    source[2 * most] = machine.resistance * machine.psi_m / machine.inductance_d
+    found = solve_banded((3, 3), bands, source, check_finite=False)
+    psi_d, psi_q = (_over_time(found[start::2], orders) for start in (0, 1))
     i_d, i_q = (psi_d - machine.psi_m) / machine.inductance_d, psi_q / machine.inductance_q
     angles = 2 * pi * np.arange(len(psi_d)) / len(psi_d)
     return complex(-2 * np.mean(machine.torque(i_d, i_q) * np.exp(-1j * angles)) / top_speed)

@@ -19,8 +19,9 @@ from electrical.synchronous_machine import SynchronousMachine
 from units import Values
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 
-_CLOSE = 1e-10  # change of the rotor's swing, relative, at which it is found
-_MOST_STEPS = 200
+_CLOSE = 1e-8  # relative error of the rotor's swing at which it is found
+_SLOPES = (0.2, 5.0)  # of a step, over what is missing
+_MOST_STEPS = 50
 
 
 @dataclass(frozen=True)
@@ -86,15 +87,23 @@ class LumpedActuator:
     def _rotor_velocity(
         self, frequency: np.ndarray, shunt: np.ndarray, driver: np.ndarray, mount: np.ndarray
     ) -> np.ndarray:
-        """|v_rotor| = |v_driver| / |1 + Z_i(v_rotor) / Z_m|, by damped steps."""
+        """|v_rotor| = |v_driver| / |1 + Z_i(v_rotor) / Z_m|, by the secant rule on the logarithm."""
         if np.isinf(self.mount_stiffness):
             return driver
-        velocity = driver
+
+        def missing(logarithm: np.ndarray) -> np.ndarray:
+            inner = self._inner(frequency, shunt, np.exp(logarithm))
+            return np.log(driver / np.abs(1 + inner / mount)) - logarithm
+
+        before, wrong_before = np.log(driver), missing(np.log(driver))
+        here = before + wrong_before
         for _ in range(_MOST_STEPS):
-            found = driver / np.abs(1 + self._inner(frequency, shunt, velocity) / mount)
-            if np.allclose(found, velocity, rtol=_CLOSE, atol=0):
-                return found
-            velocity = 0.5 * (velocity + found)
+            wrong = missing(here)
+            if np.all(np.abs(wrong) < _CLOSE):
+                return np.exp(here)
+            change = wrong_before - wrong
+            slope = np.divide(here - before, change, out=np.ones_like(here), where=np.abs(change) > _CLOSE * np.abs(wrong))
+            before, wrong_before, here = here, wrong, here + np.clip(slope, *_SLOPES) * wrong
         raise VehicleError(
             "impedance: no swing of the rotor was found that fits the driver's velocity; ask for smaller amplitudes"
         )
