@@ -1,0 +1,187 @@
+"""Motor and drive of an actuator: a mapped motor under torque control in four quadrants, or a passive diode bridge.
+
+Torques are those of the rotor with the passive sign: T omega > 0 flows from the suspension into the machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from actuator.errors import ActuatorError, require_not_negative, require_positive
+
+UNBOUNDED = 1e200  # Nm and rad/s, of a motor without limits
+
+
+@dataclass(frozen=True)
+class TorqueLimit:
+    """Largest torques over speed within current and voltage, straight between the points, none beyond the last.
+
+    speed [rad/s], rising from 0; driving, braking: magnitudes [Nm] where T omega is negative and positive
+    Raises ActuatorError for tables of other shapes, speeds that do not rise, or negative torques.
+    """
+
+    speed: tuple[float, ...]
+    driving: tuple[float, ...]
+    braking: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        w, *torques = (np.array(one, dtype=float) for one in (self.speed, self.driving, self.braking))
+        alike = all(one.shape == w.shape and np.isfinite(one).all() and (one >= 0).all() for one in torques)
+        if not (w.size >= 2 and alike and w[0] == 0 and (np.diff(w) > 0).all()):
+            raise ActuatorError(
+                "torque limit: expected finite torques of zero or more over speeds that rise from 0, found "
+                f"{', '.join(str(one.size) for one in torques)} torques over {w.size} speeds; correct the table"
+            )
+
+    def driving_at(self, speed: float | np.ndarray) -> np.ndarray:
+        """[Nm], of that shape; speed: [rad/s], any shape."""
+        return np.asarray(np.interp(np.abs(speed), self.speed, self.driving, right=0.0))
+
+    def braking_at(self, speed: float | np.ndarray) -> np.ndarray:
+        """[Nm], of that shape; speed: [rad/s], any shape."""
+        return np.asarray(np.interp(np.abs(speed), self.speed, self.braking, right=0.0))
+
+
+NO_LIMIT = TorqueLimit((0.0, UNBOUNDED), (UNBOUNDED, UNBOUNDED), (UNBOUNDED, UNBOUNDED))
+
+
+def flat_limit(torque: float, fastest: float) -> TorqueLimit:
+    """The same torque [Nm] in all quadrants up to the fastest [rad/s]."""
+    return TorqueLimit((0.0, fastest), (torque, torque), (torque, torque))
+
+
+class LossLaw:
+    """Losses of a machine and its drive over torque and speed; the concrete laws are below."""
+
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """[W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class QuadraticLoss(LossLaw):
+    """P = a T^2 + b omega^2: copper of an unsaturated machine and eddy currents at constant flux.
+
+    copper: a [W/(Nm)^2]; iron: b [W s^2/rad^2]
+    """
+
+    copper: float
+    iron: float
+
+    def __post_init__(self) -> None:
+        require_not_negative("loss law", copper=self.copper, iron=self.iron)
+
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """[W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape."""
+        return self.copper * np.square(torque) + self.iron * np.square(speed)
+
+
+LOSS_FREE = QuadraticLoss(0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class MappedMotor:
+    """A motor under torque control (thesis Fig. 4.4): limits, losses, and how fast the torque follows.
+
+    limit: current and voltage as torques over speed; loss: of machine and drive; time_constant: of the torque [s], 0
+    for one that follows at once.
+    """
+
+    limit: TorqueLimit = NO_LIMIT
+    loss: LossLaw = LOSS_FREE
+    time_constant: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_not_negative("mapped motor", time_constant=self.time_constant)
+
+
+IDEAL_MOTOR = MappedMotor()
+
+
+@dataclass(frozen=True)
+class DcLoad:
+    """What a diode bridge feeds: a resistance [ohm] and a voltage [V] that stands against the current (a battery)."""
+
+    resistance: float
+    voltage: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_not_negative("load of the diode bridge", resistance=self.resistance, voltage=self.voltage)
+
+
+@dataclass(frozen=True)
+class DiodeBridge(LossLaw):
+    """A machine that feeds a load through a six-pulse bridge, without control.
+
+    U_d0 = 3 sqrt(3) / pi K_e w,   I = (U_d0 - 2 V_d - V) / (2 R_ph + 3/pi p w L + R),   T = (U_d0 - 3/pi p w L I) I / w
+
+    Mean values with a smooth direct current; the overlap of the commutation costs voltage and no power (standard
+    textbook formulas of the line-commutated bridge, e.g. Mohan, Undeland, Robbins, Power Electronics, ch. 5).
+    torque_constant: K_t [Nm/A] of the peak phase current, K_e = 2/3 K_t; phase_resistance: R_ph [ohm]
+    phase_inductance: L [H]; pole_pairs: p; diode_drop: V_d of one diode [V]; fastest: rotor speed up to which it is
+    known [rad/s]
+    Valid below the speed where the overlap exceeds 60 degrees.
+    """
+
+    torque_constant: float
+    phase_resistance: float
+    phase_inductance: float
+    pole_pairs: int
+    load: DcLoad
+    diode_drop: float
+    fastest: float
+
+    def __post_init__(self) -> None:
+        require_positive(
+            "diode bridge",
+            torque_constant=self.torque_constant,
+            phase_resistance=self.phase_resistance,
+            fastest=self.fastest,
+        )
+        require_not_negative("diode bridge", phase_inductance=self.phase_inductance, diode_drop=self.diode_drop)
+
+    def open_voltage(self, speed: np.ndarray) -> np.ndarray:
+        """U_d0, mean without current [V], of that shape; speed: [rad/s], any shape."""
+        return 3 * sqrt(3) / pi * (2 / 3 * self.torque_constant) * np.abs(speed)
+
+    def current(self, speed: np.ndarray) -> np.ndarray:
+        """Mean direct current [A], of that shape; speed: [rad/s], any shape."""
+        drive = self.open_voltage(speed) - 2 * self.diode_drop - self.load.voltage
+        return np.maximum(drive, 0.0) / (2 * self.phase_resistance + self._overlap(speed) + self.load.resistance)
+
+    def torque(self, speed: np.ndarray) -> np.ndarray:
+        """Steady braking torque [Nm], of that shape, magnitude; speed: [rad/s], any shape."""
+        current = self.current(speed)
+        power = (self.open_voltage(speed) - self._overlap(speed) * current) * current
+        return np.divide(power, np.abs(speed), out=np.zeros_like(power), where=np.abs(speed) > 0)
+
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Power that does not reach the load [W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape."""
+        current = self.current(speed)
+        return torque * speed - self.load.resistance * current**2 - self.load.voltage * current
+
+    def _overlap(self, speed: np.ndarray) -> np.ndarray:
+        return 3 / pi * self.pole_pairs * np.abs(speed) * self.phase_inductance
+
+    @property
+    def limit(self) -> TorqueLimit:
+        """The steady torque as a table, against the motion only."""
+        speed = self.fastest * np.linspace(0.0, 1.0, _TABLE) ** 2  # dense where the diodes begin to conduct
+        return TorqueLimit(tuple(speed), (0.0,) * _TABLE, tuple(self.torque(speed)))
+
+    @property
+    def time_constant(self) -> float:
+        """Of the direct current, 2 L / (2 R_ph + R) [s]."""
+        return 2 * self.phase_inductance / (2 * self.phase_resistance + self.load.resistance)
+
+    @property
+    def loss(self) -> LossLaw:
+        """Of machine and diodes."""
+        return self
+
+
+_TABLE = 401  # speeds
+Drive = MappedMotor | DiodeBridge
