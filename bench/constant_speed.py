@@ -64,8 +64,8 @@ def _require_steady(record: Record, velocity: np.ndarray) -> None:
     first, last, mean = velocity[:third].mean(), velocity[-third:].mean(), velocity.mean()
     if abs(last - first) > _LARGEST_DRIFT * abs(mean):
         raise RecordError(
-            f"{record.name}: expected a constant speed, found {first:.4g} m/s at the beginning and {last:.4g} m/s at the "
-            "end; cut out the part at constant speed."
+            f"{record.name}: expected a constant speed, found {first:.4g} m/s at the beginning and {last:.4g} m/s at "
+            f"the end; cut out the part at constant speed."
         )
 
 

@@ -85,7 +85,12 @@ class LoopMatch:
 
 
 # Nominal values of thesis table 4.2, from which its own search began. Names say what the tables show; values are in SI.
-MASS, PLAY, STIFFNESS, CONTACT = "equivalent_mass_kg", "play_mm", "contact_stiffness_kN_per_m", "contact_damping_Ns_per_m"
+MASS, PLAY, STIFFNESS, CONTACT = (
+    "equivalent_mass_kg",
+    "play_mm",
+    "contact_stiffness_kN_per_m",
+    "contact_damping_Ns_per_m",
+)
 TRANSITION, LOSS = "transition_mm", "viscous_loss_Ns_per_m"
 MOUNT_DAMPING, TORQUE_CONSTANT = "mount_damping_Ns_per_m", "torque_constant_mNm_per_A"
 NOMINAL = {

@@ -1,14 +1,16 @@
 """Frequency responses of records by averaged spectra, with coherence and confidence bands.
 
-    H_1 = S_xy / S_xx  (noise on the output),  H_2 = S_yy / S_yx  (noise on the input),  gamma^2 = |S_xy|^2 / (S_xx S_yy)
+    H_1 = S_xy / S_xx  (noise on the output),  H_2 = S_yy / S_yx  (noise on the input),
+    gamma^2 = |S_xy|^2 / (S_xx S_yy)
 
 over overlapping segments. The band about H_1 is that of Bendat and Piersol, Random Data, section 9.2 (eq. 9.83 ff.):
 
     |H - H_1|^2 <= 2 / (n - 2) F(2, n - 2; 0.95) (1 - gamma^2) S_yy / S_xx,   n = 2 n_d
 
-with n_d segments that share nothing; overlapping ones count for less. Seen from a given input it is the band of a complex
-regression of the segments, so that it holds for a sweep as well, as long as the noise is stationary. It says nothing about
-leakage: a segment must be longer than the answer rings.
+with n_d segments that share nothing; overlapping ones count for less. Seen from a given input it is the band of a
+complex
+regression of the segments, so that it holds for a sweep as well, as long as the noise is stationary. It says nothing
+about leakage: a segment must be longer than the answer rings.
 """
 
 from __future__ import annotations
@@ -48,11 +50,11 @@ class FrequencyResponse:
         inside = (self.frequency >= lowest) & (self.frequency <= highest)
         if not inside.any():
             raise RecordError(
-                f"frequency response: expected frequencies between {lowest:g} and {highest:g} Hz, found none in steps of "
-                f"{self.frequency[1]:.3g} Hz; use longer segments."
+                f"frequency response: expected frequencies between {lowest:g} and {highest:g} Hz, found none in "
+                f"steps of {self.frequency[1]:.3g} Hz; use longer segments."
             )
-        parts = (one[inside] for one in (self.frequency, self.h1, self.h2, self.coherence))
-        return FrequencyResponse(*parts, self.averages, self.radius[inside])
+        h1, h2, coherence, radius = (one[inside] for one in (self.h1, self.h2, self.coherence, self.radius))
+        return FrequencyResponse(self.frequency[inside], h1, h2, coherence, self.averages, radius)
 
 
 def frequency_response(record: Record, cause: np.ndarray, answer: np.ndarray, segment: float) -> FrequencyResponse:
@@ -66,8 +68,8 @@ def frequency_response(record: Record, cause: np.ndarray, answer: np.ndarray, se
     count = (record.samples - length) // hop + 1
     if count < _FEWEST_SEGMENTS:
         raise RecordError(
-            f"{record.name}: expected {_FEWEST_SEGMENTS} segments of {segment:g} s or more for an averaged spectrum, found "
-            f"{max(count, 0)} in {record.duration:.3g} s; record longer or state a shorter segment."
+            f"{record.name}: expected {_FEWEST_SEGMENTS} segments of {segment:g} s or more for an averaged spectrum, "
+            f"found {max(count, 0)} in {record.duration:.3g} s; record longer or state a shorter segment."
         )
     transform = ShortTimeFFT(hann(length, sym=False), hop, 1 / record.step, scale_to="psd")
     whole = slice(transform.lower_border_end[1], transform.upper_border_begin(record.samples)[1])

@@ -173,4 +173,3 @@ def _covariance(
     memory = float(np.mean([memory_of(one) for one in np.split(residual, np.cumsum(lengths)[:-1])]))
     variance = memory * float(residual @ residual) / (len(residual) - len(unknowns))
     return variance * np.linalg.pinv(scaled.T @ scaled, hermitian=True) / np.outer(sizes, sizes), memory
-

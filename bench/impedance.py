@@ -1,7 +1,7 @@
 """Mechanical impedance Z = F / v from records of a driven output (thesis eq. B.1): of a sine, or of a sweep.
 
-A sine with its harmonics is fitted to stroke and force by least squares, the frequency free (as the four-parameter fit of
-IEEE 1057); the impedance is the ratio of the fundamentals. What is left is noise, which says how sure that is.
+A sine with its harmonics is fitted to stroke and force by least squares, the frequency free (as the four-parameter fit
+of IEEE 1057); the impedance is the ratio of the fundamentals. What is left is noise, which says how sure that is.
 """
 
 from __future__ import annotations
@@ -76,15 +76,17 @@ def _frequency(record: Record, stroke: np.ndarray) -> float:
     def left(frequency: float) -> float:
         return float(np.sum(np.square(_harmonics(stroke, frequency, record.step)[1])))
 
-    return float(minimize_scalar(left, bounds=(start - line, start + line), method="bounded", options={"xatol": 1e-6 * line}).x)
+    return float(
+        minimize_scalar(left, bounds=(start - line, start + line), method="bounded", options={"xatol": 1e-6 * line}).x
+    )
 
 
 def _require_resolved(record: Record, frequency: float) -> None:
     periods, per_period = frequency * record.duration, 1 / (frequency * record.step) if frequency else 0.0
     if periods < _FEWEST_PERIODS or per_period < _FEWEST_PER_PERIOD:
         raise RecordError(
-            f"{record.name}: expected a sine of {_FEWEST_PERIODS} periods or more with {_FEWEST_PER_PERIOD} samples each, "
-            f"found {periods:.3g} periods with {per_period:.3g}; record longer or sample faster."
+            f"{record.name}: expected a sine of {_FEWEST_PERIODS} periods or more with {_FEWEST_PER_PERIOD} samples "
+            f"each, found {periods:.3g} periods with {per_period:.3g}; record longer or sample faster."
         )
 
 
@@ -101,4 +103,3 @@ def _harmonics(signal: np.ndarray, frequency: float, step: float) -> tuple[np.nd
 def _error(rest: np.ndarray) -> float:
     """Standard deviation of either part of an amplitude: sigma sqrt(2 g / n)."""
     return float(np.std(rest)) * sqrt(2 * memory_of(rest) / len(rest))
-

@@ -58,8 +58,8 @@ def passes(record: Record, window: float) -> tuple[Pass, ...]:
     found = [_pass(record, run, window) for run in runs if len(run) >= _FEWEST]
     if not found:
         raise RecordError(
-            f"{record.name}: expected passes of {_FEWEST} samples or more through the middle {window * 1e3:g} mm of the "
-            "stroke, found none; widen the window with --value window_mm=... or sample faster."
+            f"{record.name}: expected passes of {_FEWEST} samples or more through the middle {window * 1e3:g} mm of "
+            f"the stroke, found none; widen the window with --value window_mm=... or sample faster."
         )
     return tuple(found)
 
@@ -81,8 +81,8 @@ def _pass(record: Record, run: np.ndarray, window: float) -> Pass:
     beside = float(np.std(stroke - np.polyval(line, record.time[run])))
     if beside > _STRAIGHT * window:
         raise RecordError(
-            f"{record.name}: expected a constant speed in the middle of the stroke, found {beside * 1e3:.2g} mm beside a "
-            "straight line; drive a saw tooth or narrow the window."
+            f"{record.name}: expected a constant speed in the middle of the stroke, found {beside * 1e3:.2g} mm "
+            f"beside a straight line; drive a saw tooth or narrow the window."
         )
     electrical = record.channel("dc_voltage")[run] * record.channel("dc_current")[run]
     velocity = float(line[0])

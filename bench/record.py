@@ -90,7 +90,9 @@ class Record:
     def velocity(self) -> np.ndarray:
         """The channel velocity where it was recorded, else the stroke's derivative by central differences [m/s],
         (n,)."""
-        return self.channel("velocity") if "velocity" in self.channels else np.gradient(self.channel("stroke"), self.step)
+        return (
+            self.channel("velocity") if "velocity" in self.channels else np.gradient(self.channel("stroke"), self.step)
+        )
 
 
 _UNITS = {"stroke": "mm", "force": "N", "velocity": "m_per_s", "shunt": "mohm", "pressure": "Pa", "angle": "deg"}
@@ -116,7 +118,10 @@ def read_record(path: Path, columns: Mapping[str, str], stated: Mapping[str, flo
     places = {names.get(h.written, names.get(h.name, h.name)): k for k, h in enumerate(raw.headings)}
     channels = {quantity: _inside(raw, place, quantity) for quantity, place in places.items() if _is_number(raw, place)}
     if "time" not in channels:
-        raise RecordError(f"{raw.where}: expected a column 'time' with its unit, such as time_s, found none; name it with --column time=HEADING.")
+        raise RecordError(
+            f"{raw.where}: expected a column 'time' with its unit, such as time_s, found none; name it with --column "
+            f"time=HEADING."
+        )
     step = _step(raw.where, channels.pop("time"))
     constants = {quantity: np.full(raw.rows, value) for quantity, value in stated.items()}
     return Record(raw.where, step, {**constants, **channels})
@@ -148,14 +153,15 @@ def _inside(raw: RawTable, place: int, quantity: str) -> np.ndarray:
 def _step(where: str, time: np.ndarray) -> float:
     """Time between samples [s]; raises RecordError where they are not equally spaced."""
     if len(time) < 2 or not np.isfinite(time).all():
-        raise RecordError(f"{where}: expected finite times of two samples or more, found {len(time)}; complete the record.")
+        raise RecordError(
+            f"{where}: expected finite times of two samples or more, found {len(time)}; complete the record."
+        )
     step = float(time[-1] - time[0]) / (len(time) - 1)
     beside = np.abs(time - time[0] - step * np.arange(len(time)))
     worst = int(np.argmax(beside))
     if step <= 0 or beside[worst] > _JITTER * step:
         raise RecordError(
-            f"{where}: expected equally spaced times, found sample {worst + 1} at {time[worst]:g} s, {beside[worst]:.2g} s "
-            f"beside its place in steps of {step:.4g} s; resample the record or cut out the gap."
+            f"{where}: expected equally spaced times, found sample {worst + 1} at {time[worst]:g} s, "
+            f"{beside[worst]:.2g} s beside its place in steps of {step:.4g} s; resample the record or cut out the gap."
         )
     return step
-

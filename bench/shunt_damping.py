@@ -1,8 +1,8 @@
 """Which static law does the damping of a shunted machine follow over the resistance of the shunt?
 
 Every law is a ``LumpedActuator`` in a line (``static_damping``), with no free numbers or with a few, fitted to the
-logarithm of the damping. A shunt of zero is a short circuit: whether of the machine's terminals or of what stands behind
-its rectifier is rarely written down, so laws are fitted to the other points unless their name says otherwise.
+logarithm of the damping. A shunt of zero is a short circuit: whether of the machine's terminals or of what stands
+behind its rectifier is rarely written down, so laws are fitted to the other points unless their name says otherwise.
 """
 
 from __future__ import annotations
@@ -179,11 +179,12 @@ def _fitted_laws(device: ShuntDevice, points: ShuntPoints) -> tuple[JudgedLaw, .
     constant, resistance = {"A_Ns_per_m_ohm": _CONSTANT}, {"R_ohm": _RESISTANCE}
     laws = (
         _FreeLaw("A and R fitted", constant | resistance, shunted, lambda a, r: _series(a, r, 0.0)),
-        _FreeLaw("A and R fitted, friction of low speed", constant | resistance, shunted, lambda a, r: _series(a, r, low)),
+        _FreeLaw("A and R fitted, friction of low speed", constant | resistance, shunted,
+                 lambda a, r: _series(a, r, low)),
         _FreeLaw("six-pulse bridge, half the resistance a phase", constant | {"diode_ohm": 1e-3}, shunted,
                  lambda a, diode: _law(a, half, stated, ShortedAtTerminals(Bridge(0.0, diode)))),
-        _FreeLaw("A, R and friction fitted, short circuit too", constant | resistance | {"friction_Ns_per_m": _FRICTION},
-                 points, _series),
+        _FreeLaw("A, R and friction fitted, short circuit too",
+                 constant | resistance | {"friction_Ns_per_m": _FRICTION}, points, _series),
         _FreeLaw("A, R and rectifier fitted, short circuit of the terminals too",
                  constant | resistance | {"rectifier_ohm": _RESISTANCE}, points,
                  lambda a, r, behind: _law(a, r, stated, ShortedAtTerminals(Star(behind)))),

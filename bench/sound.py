@@ -2,9 +2,9 @@
 
     H_A(s) = K s^4 / ((s + w_1)^2 (s + w_2) (s + w_3) (s + w_4)^2),   0 dB at 1 kHz
 
-with w = 2 pi (20.6, 107.7, 737.9, 12194) Hz = (129.4, 676.4, 4636, 7.66e4) rad/s. (Thesis eq. 5.2 prints 12.4 for 129.4,
-which reads 3 dB too much at 31.5 Hz.) The weighting acts on the spectrum of the whole record, so that it is that of the
-analogue filter up to half the sampling frequency. The level is
+with w = 2 pi (20.6, 107.7, 737.9, 12194) Hz = (129.4, 676.4, 4636, 7.66e4) rad/s. (Thesis eq. 5.2 prints 12.4 for
+129.4, which reads 3 dB too much at 31.5 Hz.) The weighting acts on the spectrum of the whole record, so that it is
+that of the analogue filter up to half the sampling frequency. The level is
 
     L = 20 log10(p_A,rms / 20 uPa)                                                                    (5.3)
 """
@@ -31,8 +31,8 @@ class SoundLevels:
     """Levels of one record.
 
     record: its name; equivalent: A-weighted over the whole record [dB]; unweighted: the same without weighting [dB]
-    loudest: largest of the fast level once it has settled [dB]; time [s], (n,), and fast: A-weighted level with the time
-    weighting F [dB], (n,)
+    loudest: largest of the fast level once it has settled [dB]; time [s], (n,); fast: A-weighted level with the
+    time weighting F [dB], (n,)
     """
 
     record: str

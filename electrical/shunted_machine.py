@@ -196,17 +196,21 @@ def _swing_of_dq(machine: SynchronousMachine, nu: float, top_speed: float) -> co
 
 
 def _over_time(harmonics: np.ndarray, orders: np.ndarray) -> np.ndarray:
-    """A signal of one period in equal steps, twice as many as harmonics: products of two signals stay below aliasing."""
+    """A signal of one period in equal steps, twice as many as harmonics, so that a product of two does not alias."""
     spectrum = np.zeros(2 * len(orders), dtype=complex)
     spectrum[orders] = harmonics
     return np.real(np.fft.ifft(spectrum)) * len(spectrum)
 
 
-def seen_in_a_line(force_constant: float, resistance: float, inductance: float, pole_pairs: int = 1) -> SynchronousMachine:
+def seen_in_a_line(
+    force_constant: float, resistance: float, inductance: float, pole_pairs: int = 1
+) -> SynchronousMachine:
     """The machine of a linear damper F = K^2 / R v, with speeds in m/s and torques in N.
 
     force_constant: K = sqrt(K_t K_e) / tau [N/A = Vs/m]; resistance, inductance: of one phase [ohm], [H]
     pole_pairs: p / tau of the electrical angle over the travel, if it matters; 1 where only the slope is asked for
     """
     psi_m = force_constant / (sqrt(1.5) * pole_pairs)
-    return replace(SynchronousMachine(pole_pairs, psi_m, 1.0, 1.0, resistance), inductance_d=inductance, inductance_q=inductance)
+    return replace(
+        SynchronousMachine(pole_pairs, psi_m, 1.0, 1.0, resistance), inductance_d=inductance, inductance_q=inductance
+    )

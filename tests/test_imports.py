@@ -25,14 +25,15 @@ ALLOWED = {
     "mechanics": {*_FIELD, "gearbox"},
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
     "actuator": set(),
-    "vehicle": {"thermal", "drivetrain", "gearbox", "actuator"},
+    "vehicle": {"electrical", "thermal", "drivetrain", "gearbox", "actuator"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
+    "bench": {"electrical", "actuator", "vehicle", "workbench", "figures"},
     "study": _DESIGN,
     "figures": _DESIGN - {"optimisation", "materials"},
     "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain"},
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
-    "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench"},
+    "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }
 BOTTOM = {"units", "tasks", "disk", "processes"}
 

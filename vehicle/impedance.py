@@ -3,8 +3,8 @@
     driver --mount (k_m, c_m)-- m_eq --friction c_eq and machine-- ground
     Z = F / v = Z_m Z_i / (Z_m + Z_i),   Z_m = c_m + k_m / s,   Z_i = s m_eq + c_eq + N / tau^2      (B.4)
 
-N is the torque over the speed of the swinging machine (``electrical.shunted_machine``): K_t K_e / (R + s L) for one with a
-commutator, as printed; a synchronous machine depends on how far it swings as well, and so does a diode bridge.
+N is the torque over the speed of the swinging machine (``electrical.shunted_machine``): K_t K_e / (R + s L) for one
+with a commutator, as printed; a synchronous machine depends on how far it swings as well, and so does a diode bridge.
 """
 
 from __future__ import annotations
@@ -71,7 +71,9 @@ class LumpedActuator:
         answer has their shape. The rotor's motion is taken as a sine.
         Raises VehicleError where no amplitude of the rotor fits that of the driver.
         """
-        frequency, shunt, driver = np.broadcast_arrays(*(np.asarray(v, float) for v in (frequency, shunt, top_velocity)))
+        frequency, shunt, driver = np.broadcast_arrays(
+            *(np.asarray(v, float) for v in (frequency, shunt, top_velocity))
+        )
         mount = self._mount(frequency)
         inner = self._inner(frequency, shunt, self._rotor_velocity(frequency, shunt, driver, mount))
         return inner / (1 + inner / mount)
@@ -102,7 +104,9 @@ class LumpedActuator:
             if np.all(np.abs(wrong) < _CLOSE):
                 return np.exp(here)
             change = wrong_before - wrong
-            slope = np.divide(here - before, change, out=np.ones_like(here), where=np.abs(change) > _CLOSE * np.abs(wrong))
+            slope = np.divide(
+                here - before, change, out=np.ones_like(here), where=np.abs(change) > _CLOSE * np.abs(wrong)
+            )
             before, wrong_before, here = here, wrong, here + np.clip(slope, *_SLOPES) * wrong
         raise VehicleError(
             "impedance: no swing of the rotor was found that fits the driver's velocity; ask for smaller amplitudes"

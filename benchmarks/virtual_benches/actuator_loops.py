@@ -3,9 +3,9 @@
     m x'' = F_m - c_l x' - K_t i / tau,   F = F_m = s(l) (k (|d| - b) + c |d|') sgn d + c_m d',   d = z - x
     l = clip((|d| - b) / w, 0, 1),  s = 3 l^2 - 2 l^3
 
-z is the imposed stroke, i the q-axis current that a damping logic asks for (thesis section 4.3.1): K_t,nom i = tau c z'.
-Integrated by LSODA (or Radau's method) with its own choice of steps: no step, order or event is shared with a model that
-is fitted.
+z is the imposed stroke, i the q-axis current that a damping logic asks for (thesis 4.3.1): K_t,nom i = tau c z'.
+Integrated by LSODA (or Radau's method) with its own choice of steps: no step, order or event is shared with a model
+that is fitted.
 """
 
 from __future__ import annotations
