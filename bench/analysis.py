@@ -50,18 +50,18 @@ class Analysis:
 
 @dataclass(frozen=True)
 class Settings:
-    """What is stated beside the records: quantities in SI by name."""
+    """stated: beside the records, by name [SI]."""
 
     stated: Mapping[str, float]
 
     def needed(self, name: str, example: str) -> float:
-        """A quantity that the tool cannot do without; raises RecordError where it is not stated."""
+        """A quantity that is needed [SI]; raises RecordError where it is not stated."""
         if name not in self.stated:
             raise RecordError(f"expected --value {example}, found no {name.replace('_', ' ')}; state it.")
         return self.stated[name]
 
     def get(self, name: str, default: float) -> float:
-        """A quantity with a default, of the same unit."""
+        """get: a quantity [SI]; default: where it is not stated [SI]."""
         return self.stated.get(name, default)
 
 
@@ -69,5 +69,8 @@ Records = Sequence[Record]
 
 
 def relative_size(errors: np.ndarray, sizes: np.ndarray, least: float = 1e-4) -> str:
-    """The largest relative error as the factor of a formula, at least ``least``."""
+    """The largest relative error as the factor of a formula.
+
+    errors: standard deviations (n,), sizes: of the readings (n,), both [SI]; least: smallest answer, dimensionless
+    """
     return f"{max(float(np.max(errors / sizes)), least):.2g}"

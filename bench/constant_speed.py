@@ -73,8 +73,8 @@ def _require_steady(record: Record, velocity: np.ndarray) -> None:
 class StraightLine:
     """F = c v + F_0 over the points of one shunt.
 
-    shunt [ohm]; damping: c [Ns/m]; intercept: F_0 [N]; damping_error, intercept_error: standard errors, NaN for two
-    points; fastest: largest velocity [m/s]; best_efficiency: dimensionless; most_power: in the shunt [W]
+    shunt [ohm]; damping: c [Ns/m]; intercept: F_0 [N]; damping_error [Ns/m], intercept_error [N]: standard errors, NaN
+    for two points; fastest: largest velocity [m/s]; best_efficiency: dimensionless; most_power: in the shunt [W]
     """
 
     shunt: float

@@ -106,12 +106,12 @@ NOMINAL = {
 
 
 def unknowns(nominal: Mapping[str, float]) -> tuple[Unknown, ...]:
-    """The eight parameters, each with a nominal value in SI under the names of ``NOMINAL``."""
+    """The eight parameters. nominal: values under the names of ``NOMINAL`` [SI]."""
     return tuple(Unknown(name, nominal[name]) for name in NOMINAL)
 
 
 def actuator_of(values: Mapping[str, float], ratio: float) -> Actuator:
-    """The actuator with these values, SI under the names of ``NOMINAL``; ratio: tau_t [m/rad]."""
+    """The actuator. values: under the names of ``NOMINAL`` [SI]; ratio: tau_t [m/rad]."""
     mount = CompliantMount(
         values[STIFFNESS],
         damping=values[MOUNT_DAMPING],
@@ -129,7 +129,7 @@ def identify_loops(
 ) -> tuple[Identification, tuple[LoopMatch, ...]]:
     """The eight parameters from all loops together, and every loop beside the identified model.
 
-    nominal: where the search begins, SI under the names of ``NOMINAL``; ratio: tau_t [m/rad]
+    nominal: where the search begins [SI], under the names of ``NOMINAL``; ratio: tau_t [m/rad]
     noise: standard deviation of a reading of the force [N]; the intervals come from the residuals, whatever it is
     """
 

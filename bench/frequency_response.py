@@ -45,6 +45,11 @@ class FrequencyResponse:
     averages: float
     radius: np.ndarray
 
+    @property
+    def is_sure(self) -> np.ndarray:
+        """Whether the band is narrower than the response is large (m,)."""
+        return self.radius < np.abs(self.h1)
+
     def between(self, lowest: float, highest: float) -> FrequencyResponse:
         """The part from lowest to highest frequency [Hz]; raises RecordError where nothing lies there."""
         inside = (self.frequency >= lowest) & (self.frequency <= highest)
@@ -58,7 +63,7 @@ class FrequencyResponse:
 
 
 def frequency_response(record: Record, cause: np.ndarray, answer: np.ndarray, segment: float) -> FrequencyResponse:
-    """Response of answer to cause, channels of a record (n,), their means taken off.
+    """Response of answer [SI], (n,), to cause [SI], (n,), channels of a record, their means taken off.
 
     segment: duration of a segment [s]; its inverse is the distance of the frequencies
     Raises RecordError where the record holds too few segments.

@@ -37,7 +37,7 @@ _LARGEST_GAIN = 50.0
 class Unknown:
     """A parameter to be found.
 
-    name: with its unit at the end as the tables show it; nominal: where the search begins, in SI
+    name: with its unit at the end as the tables show it; nominal: where the search begins [SI]
     smallest, largest: bounds of the gain, dimensionless
     """
 
@@ -58,7 +58,7 @@ class Unknown:
 class Found:
     """An identified parameter.
 
-    unknown: what was looked for; value: in the unit of the nominal value; deviation: relative standard deviation
+    unknown: what was looked for; value: found [SI]; deviation: relative standard deviation
     at_bound: whether the search ended at a bound of the gain
     """
 
@@ -74,7 +74,7 @@ class Found:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """90 % interval, in the unit of the value."""
+        """90 % interval [SI]."""
         factor = exp(NINETY * self.deviation)
         return self.value / factor, self.value * factor
 
@@ -89,7 +89,7 @@ class Identification:
     """What a fit has found.
 
     found: the parameters; correlation: of their logarithms, dimensionless (m, m)
-    answers: of the identified model to every record, as measured; residuals: measured less answer, of each record
+    answers: of the identified model to every record [SI], (n_k,); residuals: measured less answer [SI], (n_k,)
     memory: g, by how much the residuals' memory widens the squares of the deviations, dimensionless
     evaluations: number of runs of the model
     """
@@ -103,7 +103,7 @@ class Identification:
 
     @property
     def values(self) -> dict[str, float]:
-        """Identified values by name."""
+        """Identified values by name [SI]."""
         return {one.unknown.name: one.value for one in self.found}
 
     @property
@@ -121,8 +121,8 @@ def identify(
 ) -> Identification:
     """Fit a model to records.
 
-    model: answers every record for values by name; measured: readings of every record, each (n_k,)
-    noise: standard deviation of a reading of each record, in its unit; only their ratios weigh
+    model: answers every record for values by name; measured: readings of every record [SI], each (n_k,)
+    noise: standard deviation of a reading of each record [SI]; only their ratios weigh
     Raises:
         RecordError: fewer readings than unknowns, or the readings do not depend on one of them.
     """

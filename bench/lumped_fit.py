@@ -46,7 +46,7 @@ _OPEN = 1e6  # ohm, instead of an open circuit
 
 
 def lumped_with(device: LumpedActuator, values: Mapping[str, float]) -> LumpedActuator:
-    """The same machine with other mechanical values, SI under the names of this module."""
+    """The same machine with other mechanical values [SI], under the names of this module."""
     return replace(
         device,
         equivalent_mass=values[MASS],

@@ -6,8 +6,9 @@ import numpy as np
 
 
 def memory_of(readings: np.ndarray) -> float:
-    """g = 1 + 2 sum rho_k over the first run of positive autocorrelations, dimensionless, 1 at least; (n,).
+    """g = 1 + 2 sum rho_k over the first run of positive autocorrelations, dimensionless, 1 at least.
 
+    readings: [SI], (n,)
     The variance of a mean of n readings is g sigma^2 / n. Standard textbook formula; the first negative autocorrelation
     ends the sum, since those beyond are noise (Geyer's initial positive sequence in its simplest form).
     """
@@ -21,6 +22,6 @@ def memory_of(readings: np.ndarray) -> float:
 
 
 def mean_and_error(readings: np.ndarray) -> tuple[float, float]:
-    """Mean of the readings (n,) and its standard error, both in their unit."""
+    """mean_and_error: mean of the readings [SI], (n,), and its standard error [SI]."""
     spread = float(np.std(readings, ddof=1))
     return float(np.mean(readings)), spread * float(np.sqrt(memory_of(readings) / len(readings)))

@@ -25,6 +25,7 @@ from figures.style import (
     GREY,
     LIGHT_GREY,
     ORANGE,
+    SKY,
     VERMILION,
     letter,
     new_figure,
@@ -36,6 +37,7 @@ from units import MILLIMETRE, MILLIOHM
 
 _LARGEST_SHOWN_ERROR = 75.0  # percent, of a law; beyond it a mark stands at the edge
 _MOST_LOOPS = 6  # shown
+_AROUND = 1.1  # of the outermost point, to the edge of a map
 
 
 def shunt_words(shunt: float) -> str:
@@ -119,6 +121,8 @@ def _map(figure: Figure, axes: Axes, found: Sequence[Pass], values: np.ndarray, 
     axes.axhline(0, color=GREY, linewidth=0.7)
     axes.axvline(0, color=GREY, linewidth=0.7)
     axes.set(xlabel="velocity / (m/s)", ylabel="force / N")
+    axes.set_xlim(*_AROUND * np.max(np.abs(velocity)) * np.array([-1, 1]))
+    axes.set_ylim(*_AROUND * np.max(np.abs(force)) * np.array([-1, 1]))
     figure.colorbar(dots, ax=axes, pad=0.02).set_label(label)
 
 
@@ -150,13 +154,15 @@ def response(found: FrequencyResponse, label: str) -> Figure:
     """H_1 with its 95 % band, H_2, phase and coherence over frequency; label: of the size, with its unit."""
     figure = new_figure(7.0)
     size, phase, coherence = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1.3, 1))
-    gain = np.abs(found.h1)
+    gain, sure = np.abs(found.h1), found.is_sure
     low, high = np.maximum(gain - found.radius, 1e-3 * gain), gain + found.radius
     size.fill_between(found.frequency, low, high, color=LIGHT_GREY, linewidth=0, label="95 % band")
     size.plot(found.frequency, gain, color=BLUE, label="H₁")
     size.plot(found.frequency, np.abs(found.h2), color=ORANGE, linestyle="--", label="H₂")
     size.set(xscale="log", yscale="log", ylabel=label)
-    phase.plot(found.frequency, np.angle(found.h1, deg=True), color=BLUE)
+    if sure.any():
+        size.set_ylim(0.3 * gain[sure].min(), 3 * gain[sure].max())
+        phase.plot(found.frequency[sure], np.degrees(np.unwrap(np.angle(found.h1[sure]))), color=BLUE)
     phase.set(ylabel="phase of H₁ / °")
     coherence.plot(found.frequency, found.coherence, color=BLUE)
     coherence.set(xlabel="frequency / Hz", ylabel="coherence", ylim=(0, 1.05))
@@ -196,8 +202,8 @@ def loops(matches: Sequence[LoopMatch]) -> Figure:
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, match in zip(grid, shown):
         stroke = match.loop.stroke[match.loop.compared] / MILLIMETRE
-        axes.plot(stroke, match.loop.measured, color=GREY, linewidth=0.8, label="measured")
-        axes.plot(stroke, match.answer, color=VERMILION, linewidth=1.0, label="identified model")
+        axes.plot(stroke, match.loop.measured, color=SKY, linewidth=4.0, label="measured")
+        axes.plot(stroke, match.answer, color=BLACK, linewidth=0.9, label="identified model")
         axes.set(xlabel="stroke / mm", ylabel="force / N")
         axes.set_title(match.loop.name, loc="left")
     for axes in grid[len(shown) :]:

@@ -26,7 +26,7 @@ _ALIKE = 1e-6  # relative spread of a quantity that does not change
 class Record:
     """Channels over time.
 
-    name: of the file; step: time between samples [s]; channels: by quantity, in SI, each (n,)
+    name: of the file; step: time between samples [s]; channels: by quantity [SI], each (n,)
     """
 
     name: str
@@ -55,7 +55,7 @@ class Record:
         return self.step * self.samples
 
     def channel(self, quantity: str) -> np.ndarray:
-        """A channel in SI (n,). Raises RecordError where the record has none of this name, or gaps in it."""
+        """A channel [SI], (n,). Raises RecordError where the record has none of this name, or gaps in it."""
         if quantity not in self.channels:
             found = ", ".join(self.channels)
             raise RecordError(
@@ -72,7 +72,7 @@ class Record:
         return values
 
     def constant(self, quantity: str) -> float:
-        """The value of a channel that does not change, infinite for an open circuit.
+        """The value of a constant channel [SI], infinite for an open circuit.
 
         Raises RecordError where it changes or is missing.
         """
@@ -107,7 +107,7 @@ def _example(quantity: str) -> str:
 def read_record(path: Path, columns: Mapping[str, str], stated: Mapping[str, float]) -> Record:
     """The record of a file.
 
-    columns: heading by quantity, where the heading is another word; stated: quantities in SI that hold for the whole
+    columns: heading by quantity, where the heading is another word; stated: quantities [SI] that hold for the whole
     record and stand in no column
     Raises:
         RecordError: no time, unequal sampling, a unit that is missing or unknown, too few samples.

@@ -64,7 +64,7 @@ class ShuntDevice:
 class JudgedLaw:
     """A law beside the points.
 
-    name: of the law; fitted: values of its free numbers by name with unit; fitted_to: in words, empty without any
+    name: of the law; fitted: values of its free numbers [unit of the name]; fitted_to: in words, empty without any
     points: what was measured; predicted: damping of the law at each [Ns/m], (n,)
     """
 
@@ -80,7 +80,7 @@ class JudgedLaw:
         return self.predicted / self.points.damping - 1
 
     def log_rms(self, chosen: np.ndarray | None = None) -> float:
-        """RMS of ln(predicted / measured), dimensionless; chosen: which points (n,), all without it."""
+        """RMS of ln(predicted / measured), dimensionless; chosen: whether a point counts (n,), all without it."""
         error = np.log(self.predicted / self.points.damping)
         return float(np.sqrt(np.mean(np.square(error if chosen is None else error[chosen]))))
 

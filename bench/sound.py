@@ -44,7 +44,7 @@ class SoundLevels:
 
 
 def a_weighting(frequency: np.ndarray) -> np.ndarray:
-    """H_A at these frequencies [Hz], complex, dimensionless, of their shape; 1 in size at 1 kHz."""
+    """H_A, complex, dimensionless, 1 in size at 1 kHz; frequency: [Hz], any shape, which the answer has."""
     low, second, third, high = (2 * pi * f for f in CORNERS)
     poles = [-low, -low, -second, -third, -high, -high]
 

@@ -26,6 +26,9 @@ from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Tabl
 from units import FACTORS, MILLIMETRE, MILLIOHM, split_unit
 from workbench.data.table import OPEN_CIRCUIT
 
+_MEMORY = 2.0  # readings that say as much as one, from which on the model is called not quite right
+_STRONG = 0.3  # part of a combination of parameters that is named
+
 
 @dataclass(frozen=True)
 class Tool:
@@ -248,13 +251,14 @@ def _response_analysis(found: FrequencyResponse, record: Record, title: str, qua
             "coherence": found.coherence,
         }
     )
-    peak = int(np.argmax(np.abs(found.h1)))
+    peak = int(np.argmax(np.where(found.is_sure, np.abs(found.h1), -1.0)))
     section = Section(
         title,
         (
             f"{record.name}: averaged over {found.averages:.3g} independent segments. H₁ takes the noise to be on the "
             "output, H₂ on the input; the truth lies between them where both are noisy. The band holds with 95 % for "
-            "stationary noise; where the coherence falls with little noise, the device is not linear or the segment is "
+            "stationary noise, and the phase is drawn where it is narrower than the response; where the coherence "
+            "falls with little noise, the device is not linear or the segment is "
             "shorter than it rings.",
             KeyNumbers(
                 (
@@ -319,6 +323,7 @@ def loops(records: Records, settings: Settings) -> Analysis:
             "beside the model and hold where the model is right; what is the same in all records, such as the gain "
             "of the load "
             "cell, is not in them.",
+            _weakest(found),
             *map(Remark, remarks),
             Table(table, "Values with their 90 % intervals; the gain is over the nominal value (thesis eq. 4.29)."),
             Picture(
@@ -354,20 +359,25 @@ def _identified_row(one: Found) -> dict[str, object]:
 
 
 def _identification_remarks(found: Identification) -> tuple[str, ...]:
-    lost = [split_unit(one.unknown.name)[0].replace("_", " ") for one in found.found if not one.is_identified]
-    deviation, parts = found.weakest
-    strong = [split_unit(name)[0].replace("_", " ") for name, part in parts.items() if abs(part) > 0.3]
+    lost = [_words(one.unknown.name) for one in found.found if not one.is_identified]
     said = [f"The records do not say the size of: {', '.join(lost)}."] if lost else []
-    said.append(
-        f"What they say least about is {' with '.join(strong)}, known to {100 * deviation:.2g} % (one standard "
-        f"deviation)."
-    )
-    if found.memory > 2:
+    if found.memory > _MEMORY:
         said.append(
             f"What is left beside the model has a memory: {found.memory:.3g} readings say as much as one independent "
-            f"one. The model is not quite right, and the intervals are widened for the memory, not for what it lacks."
+            f"one. "
+            "The model is not quite right, and the intervals are widened for the memory, not for what it lacks."
         )
     return tuple(said)
+
+
+def _weakest(found: Identification) -> str:
+    deviation, parts = found.weakest
+    strong = " with ".join(_words(name) for name, part in parts.items() if abs(part) > _STRONG)
+    return f"What the records say least about is {strong}, known to {100 * deviation:.2g} % (one standard deviation)."
+
+
+def _words(name: str) -> str:
+    return split_unit(name)[0].replace("_", " ")
 
 
 def _match_table(matches: Sequence[LoopMatch]) -> pd.DataFrame:

@@ -6,7 +6,7 @@ either with its short circuit at the machine's own terminals. Steady, in star, w
     T = K_t K_e w R / (R^2 + (p w L)^2),   K_t = 1.5 p psi_m,   K_e = p psi_m       (thesis 3.70, for L_d = L_q = L)
 
 so the electrical pole R / L acts on the electrical speed p w. A machine that swings, w = W cos(nu t), answers with both
-the speed and the frequency; ``swing`` solves the dq equations for it. Two limits are known in closed form:
+the speed and the frequency; ``dynamic_damping`` solves the dq equations for it. Two limits are known in closed form:
 
     p W << R / L:   T / w = K_t K_e / (R + j nu L)          the pole acts on the frequency, as in thesis B.4
     nu << R / L:    fundamental of the steady torque        the pole acts on the speed, as in thesis 3.70
@@ -43,10 +43,13 @@ class Circuit(Protocol):
     def torque(self, machine: SynchronousMachine, speed: Values, shunt: Values) -> Values:
         """Steady braking torque [Nm] at mechanical speed [rad/s] and shunt [ohm], which broadcast."""
 
-    def swing(self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values) -> np.ndarray:
+    def dynamic_damping(
+        self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
+    ) -> np.ndarray:
         """Fundamental of the braking torque over that of w = top_speed cos(2 pi frequency t) [Nms/rad], complex.
 
-        frequency: [Hz]; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast, the answer has their shape
+        frequency: [Hz]; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast
+        Returns: dynamic_damping of their shape
         """
 
 
@@ -66,8 +69,13 @@ class Star:
         scale = machine.psi_m * omega / (whole**2 + omega**2 * machine.inductance_d * machine.inductance_q)
         return -machine.torque(-omega * machine.inductance_q * scale, -whole * scale)
 
-    def swing(self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values) -> np.ndarray:
-        """From the dq equations, exact to the harmonics kept (see ``Circuit``)."""
+    def dynamic_damping(
+        self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
+    ) -> np.ndarray:
+        """dynamic_damping [Nms/rad], complex, of the arguments' shape, from the dq equations, exact to the harmonics kept.
+
+        frequency: [Hz]; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast
+        """
         rows = np.broadcast_arrays(frequency, top_speed, self._whole(machine, shunt))
         answers = [_swing_of_dq(machine.with_resistance(r), 2 * pi * f, w) for f, w, r in zip(*(v.flat for v in rows))]
         return np.array(answers).reshape(rows[0].shape)
@@ -80,8 +88,13 @@ class Star:
 class LinearStar(Star):
     """A star at a machine of commutator kind, or at a synchronous one that hardly swings: thesis eqs B.2, B.3, B.5."""
 
-    def swing(self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values) -> np.ndarray:
-        """K_t K_e / (R + j omega L_q) [Nms/rad], whatever the top_speed [rad/s]; frequency: [Hz], shunt: [ohm]."""
+    def dynamic_damping(
+        self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
+    ) -> np.ndarray:
+        """dynamic_damping = K_t K_e / (R + j omega L_q) [Nms/rad], of the arguments' shape, whatever the top_speed [rad/s]
+
+        frequency: [Hz]; shunt: [ohm]
+        """
         whole = self._whole(machine, shunt)
         pole = 1 + 2j * pi * np.asarray(frequency) * machine.inductance_q / whole
         return np.asarray(self.slope(machine, shunt) / pole + 0.0 * np.asarray(top_speed))
@@ -122,8 +135,13 @@ class Bridge:
         power = current * (current * self._whole(machine, shunt) + 2 * self.drop)
         return power * np.divide(1.0, speed, out=np.zeros_like(power), where=speed != 0)
 
-    def swing(self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values) -> np.ndarray:
-        """Fundamental of the steady torque (see ``Circuit``): for frequencies [Hz] well below that of the pole."""
+    def dynamic_damping(
+        self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
+    ) -> np.ndarray:
+        """dynamic_damping [Nms/rad], of the arguments' shape: fundamental of the steady torque, for slow swings.
+
+        frequency: [Hz], well below the electrical pole; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast
+        """
         of_speed = _fundamental(lambda speed, at: self.torque(machine, speed, at), top_speed, shunt)
         return np.asarray(of_speed + 0j * np.asarray(frequency))
 
@@ -146,9 +164,14 @@ class ShortedAtTerminals:
         """As the circuit behind, or shorted [Nm]; speed: [rad/s], shunt: [ohm], which broadcast."""
         return self._chosen(lambda circuit: circuit.torque(machine, speed, shunt), shunt)
 
-    def swing(self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values) -> np.ndarray:
-        """As the circuit behind, or shorted; frequency: [Hz], top_speed: [rad/s], shunt: [ohm], which broadcast."""
-        return self._chosen(lambda circuit: circuit.swing(machine, frequency, top_speed, shunt), shunt)
+    def dynamic_damping(
+        self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
+    ) -> np.ndarray:
+        """dynamic_damping [Nms/rad], of the arguments' shape, as the circuit behind, or shorted.
+
+        frequency: [Hz]; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast
+        """
+        return self._chosen(lambda circuit: circuit.dynamic_damping(machine, frequency, top_speed, shunt), shunt)
 
     def _chosen(self, ask: Callable[[Circuit], Values], shunt: Values) -> np.ndarray:
         return np.where(np.asarray(shunt) > 0, ask(self.behind), ask(self.short))
@@ -157,8 +180,9 @@ class ShortedAtTerminals:
 def steady_fundamental(top_speed: Values, pole_speed: Values) -> Values:
     """Fundamental of v / (1 + (v / v_p)^2) at v = V cos, over V, dimensionless: 2 / a^2 (1 - 1 / sqrt(1 + a^2)).
 
-    top_speed: V; pole_speed: v_p at which the machine brakes most, both [rad/s] or [m/s], a = V / v_p; they broadcast.
-    The limit of ``Star.swing`` for slow swings, with L_d = L_q.
+    top_speed: V [rad/s or m/s]; pole_speed: v_p at which the machine brakes most [rad/s or m/s]; a = V / v_p.
+    steady_fundamental is dimensionless, of the shape that both broadcast to.
+    The limit of ``Star.dynamic_damping`` for slow swings, with L_d = L_q.
     """
     a2 = np.square(np.asarray(top_speed, dtype=float) / pole_speed)
     root = np.sqrt(1 + a2)

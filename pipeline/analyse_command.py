@@ -96,7 +96,7 @@ def write_results(out: Path, tool: str, found: Analysis) -> None:
 
 def _feeds(entry: str, file: str) -> Section:
     words = (
-        f"{file} is a table of a campaign. Beside a campaign.toml with the device these lines let `airgap diagnose` "
+        f"{file} is a table of a campaign. Beside a campaign.toml with the device these lines let airgap diagnose "
         f"read it; --like with a campaign of the same device writes the whole. The uncertainty is that of the "
         f"records alone: "
         "sensors have gains and offsets of their own."

@@ -67,8 +67,8 @@ class LumpedActuator:
     def impedance(self, frequency: Values, shunt: Values, top_velocity: Values) -> np.ndarray:
         """Fundamental of the force over that of the velocity at the driver [Ns/m], complex.
 
-        frequency: [Hz]; shunt: [ohm]; top_velocity: amplitude of the driver's velocity [m/s]; they broadcast, and the
-        answer has their shape. The rotor's motion is taken as a sine.
+        frequency: [Hz]; shunt: [ohm]; top_velocity: amplitude of the driver's velocity [m/s]; they broadcast.
+        Returns: impedance of their shape. The rotor's motion is taken as a sine.
         Raises VehicleError where no amplitude of the rotor fits that of the driver.
         """
         frequency, shunt, driver = np.broadcast_arrays(
@@ -83,7 +83,7 @@ class LumpedActuator:
 
     def _inner(self, frequency: np.ndarray, shunt: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Z_i where the rotor, seen at the output, swings with this velocity."""
-        machine = self.circuit.swing(self.machine, frequency, velocity / self.transmission_ratio, shunt)
+        machine = self.circuit.dynamic_damping(self.machine, frequency, velocity / self.transmission_ratio, shunt)
         return 2j * pi * frequency * self.equivalent_mass + self.viscous_friction + machine / self.transmission_ratio**2
 
     def _rotor_velocity(
