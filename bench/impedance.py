@@ -95,7 +95,7 @@ def _harmonics(signal: np.ndarray, frequency: float, step: float) -> tuple[np.nd
     time = step * np.arange(len(signal))
     turning = np.exp(2j * pi * frequency * np.outer(time, np.arange(1, _HARMONICS + 1)))
     basis = np.column_stack([np.ones_like(time), time / time[-1], turning.real, -turning.imag])
-    found = np.linalg.lstsq(basis, signal)[0]
+    found = np.linalg.solve(basis.T @ basis, basis.T @ signal)
     real, imaginary = np.split(found[2:], 2)
     return real + 1j * imaginary, signal - basis @ found
 

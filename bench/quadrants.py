@@ -16,7 +16,7 @@ from bench.errors import RecordError
 from bench.record import Record
 
 _FEWEST = 8  # samples of a pass
-_STRAIGHT = 0.05  # rms of the stroke beside a straight line, of the window: a pass at constant speed
+_STRAIGHT = 0.02  # rms of the stroke beside a straight line, of the window: a pass at constant speed
 
 
 @dataclass(frozen=True)

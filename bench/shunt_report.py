@@ -13,6 +13,7 @@ from bench.shunt_damping import JudgedLaw, LeftOut, ShuntDevice, ShuntPoints, ea
 from figures.report import Picture, Remark, Section, Table
 from units import MILLIOHM
 
+_HEADINGS = {"A_Ns_per_m_ohm": "A / (Ω Ns/m)"}
 AGREES = 0.05  # largest error at the points with a resistance of a law that is called right
 _UNRESOLVED = 1.35  # measured over predicted damping, either way, of a point that the others do not explain
 
@@ -34,7 +35,7 @@ def shunt_analysis(device: ShuntDevice, points: ShuntPoints) -> Analysis:
             *map(Remark, remarks),
             Table(_shown(laws), "Predicted damping with its error, and the rms error of the logarithm."),
             Picture(pictures.law_errors(laws), "Errors of the laws; a mark at the edge lies beyond it."),
-            Table(_fitted_numbers(laws), "Numbers that were fitted; A is the square of the force constant."),
+            Table(_fitted_numbers(laws), "Numbers that were fitted; A is the square of the force constant.", _HEADINGS),
             Table(_left_out_table(left_out), "Every point predicted from the others by friction + A / (R + shunt)."),
         ),
     )  # fmt: skip

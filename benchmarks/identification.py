@@ -16,7 +16,17 @@ import numpy as np
 import pandas as pd
 
 from bench.force_loops import (
-    CONTACT, LOSS, MASS, MOUNT_DAMPING, NOMINAL, PLAY, STIFFNESS, TORQUE_CONSTANT, TRANSITION, ForceLoop, identify_loops,
+    CONTACT,
+    LOSS,
+    MASS,
+    MOUNT_DAMPING,
+    NOMINAL,
+    PLAY,
+    STIFFNESS,
+    TORQUE_CONSTANT,
+    TRANSITION,
+    ForceLoop,
+    identify_loops,
 )  # fmt: skip
 from bench.identification import Identification
 from benchmarks.virtual_benches.actuator_loops import TRANSMISSION, Drive, Loop, Truth, loop_of

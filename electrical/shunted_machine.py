@@ -72,7 +72,7 @@ class Star:
     def dynamic_damping(
         self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
     ) -> np.ndarray:
-        """dynamic_damping [Nms/rad], complex, of the arguments' shape, from the dq equations, exact to the harmonics kept.
+        """dynamic_damping [Nms/rad], complex, of the arguments' shape: dq equations, exact to the harmonics kept.
 
         frequency: [Hz]; top_speed: mechanical [rad/s]; shunt: [ohm]; they broadcast
         """
@@ -91,7 +91,7 @@ class LinearStar(Star):
     def dynamic_damping(
         self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values
     ) -> np.ndarray:
-        """dynamic_damping = K_t K_e / (R + j omega L_q) [Nms/rad], of the arguments' shape, whatever the top_speed [rad/s]
+        """dynamic_damping = K_t K_e / (R + j omega L_q) [Nms/rad], of that shape, whatever the top_speed [rad/s]
 
         frequency: [Hz]; shunt: [ohm]
         """

@@ -5,7 +5,16 @@ import pytest
 
 from bench.errors import RecordError
 from bench.force_loops import (
-    CONTACT, LOSS, MASS, MOUNT_DAMPING, NOMINAL, PLAY, STIFFNESS, TORQUE_CONSTANT, TRANSITION, ForceLoop,
+    CONTACT,
+    LOSS,
+    MASS,
+    MOUNT_DAMPING,
+    NOMINAL,
+    PLAY,
+    STIFFNESS,
+    TORQUE_CONSTANT,
+    TRANSITION,
+    ForceLoop,
     identify_loops,
 )  # fmt: skip
 from bench.identification import Unknown, identify

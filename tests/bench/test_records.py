@@ -39,10 +39,10 @@ def test_a_rounded_clock_is_no_gap(tmp_path):
 
 WRONG = {
     "no time": ({"force_N": TIME}, {}, "expected a column 'time'"),
-    "a gap in time": ({"time_s": np.r_[TIME[:20], TIME[20:] + 0.01], "force_N": TIME}, {}, "equally spaced times, found sample"),
+    "a gap in time": ({"time_s": np.r_[TIME[:20], TIME[20:] + 0.01], "force_N": TIME}, {}, "times, found sample"),
     "time that turns back": ({"time_s": -TIME, "force_N": TIME}, {}, "equally spaced times"),
     "too short": ({"time_s": TIME[:5], "force_N": TIME[:5]}, {}, "16 samples or more, found 5"),
-    "a heading that is not there": ({"time_s": TIME, "force_N": TIME}, {"force": "Kraft"}, "--column force=Kraft names no column"),
+    "a heading that is not there": ({"time_s": TIME, "force_N": TIME}, {"force": "Kraft"}, "force=Kraft names no column"),
     "an unknown unit": ({"time_s": TIME, "force [lbf]": TIME}, {}, "the unit 'lbf' is not known"),
 }  # fmt: skip
 

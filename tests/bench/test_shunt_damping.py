@@ -79,7 +79,7 @@ def test_the_identified_constant_reaches_the_rectifier_points_within_five_percen
 
 
 def test_one_point_after_the_other_left_out():
-    """The short circuit is 1.9 times what the others say (1.48 with the friction of low speed), all others 0.82 to 1.32."""
+    """The short circuit is 1.9 times what the others say (1.48 with the friction of low speed), others 0.82 to 1.32."""
     for friction, ratio in ((0.0, 1.95), (70.0, 1.87), (351.0, 1.48)):
         found = each_left_out(friction, table_5_1())
         assert found[-1].shunt == 0 and found[-1].ratio == pytest.approx(ratio, abs=0.01)

@@ -69,7 +69,7 @@ def test_the_star_takes_all_power_into_its_resistances():
 
 
 def test_the_bridge_is_that_of_six_switches_without_smoothing():
-    """A resistive load without inductance: the highest phase feeds it, the lowest takes it back; mean of the squares."""
+    """A resistive load without inductance: the highest phase feeds it, the lowest takes it back; mean square."""
     stiff = SynchronousMachine(P, K_T / (1.5 * P), 1e-12, 1e-12, 1e-6)  # no commutation to speak of
     angle = 2 * pi * (np.arange(20000) + 0.5) / 20000
     emf = P * stiff.psi_m * 100.0 * np.cos(angle + np.array([[0.0], [2 * pi / 3], [-2 * pi / 3]]))

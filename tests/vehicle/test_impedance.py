@@ -1,4 +1,4 @@
-"""Lumped impedance against eq. B.4 as printed, the workbench's damper, integration in time, and the thesis's numbers."""
+"""Lumped impedance against eq. B.4 as printed, the workbench's damper, integration in time, the thesis's numbers."""
 
 from math import pi
 
