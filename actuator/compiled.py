@@ -6,12 +6,22 @@ second time, on arrays; a test holds the two together.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import config, njit
 
-# Kept between processes; a division by zero gives inf, as in numpy, which makes the code smaller and faster.
+Record = Any  # of numpy, whose fields the compiled code reads as attributes
+
+# numba keeps compiled code beside its source and asks whether that one file has changed, not those that it calls. All
+# of them are therefore asked for here: their folder bears the hash of every file with compiled code.
+SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "vehicle/motion.py")
+_PROJECT = Path(__file__).resolve().parent.parent
+_HASH = sha256(b"".join((_PROJECT / source).read_bytes() for source in SOURCES)).hexdigest()[:16]
+config.CACHE_DIR = str(_PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}")
+# A division by zero gives inf, as in numpy, which makes the code smaller and faster.
 compiled = njit(cache=True, error_model="numpy")
 
 
@@ -30,7 +40,7 @@ class ActuatorNumbers(NamedTuple):
     ratio: strokes [m] and tau_t [m/rad], (2, n); torque: speeds [rad/s], driving and braking torques [Nm], (3, m)
     """
 
-    numbers: np.void
+    numbers: Record
     ratio: np.ndarray
     torque: np.ndarray
 
@@ -75,7 +85,10 @@ def at(x: float, table: np.ndarray, row: int) -> float:
 
 @compiled
 def slope_at(x: float, table: np.ndarray) -> float:
-    """Slope of the second row over the first, 0 beyond the ends; x: [unit of the first]; table: [any units], (2, n)."""
+    """Slope of the second row over the first.
+
+    slope_at: [units of the rows], 0 beyond the ends; x: [unit of the first]; table: [any units], (2, n)
+    """
     last = table.shape[1] - 1
     if x <= table[0, 0] or x >= table[0, last]:
         return 0.0
@@ -86,7 +99,7 @@ def slope_at(x: float, table: np.ndarray) -> float:
 
 
 @compiled
-def engagement(mount: np.void, beyond: float) -> float:
+def engagement(mount: Record, beyond: float) -> float:
     """s, dimensionless, as far beyond the play [m]."""
     if beyond <= 0:
         return 0.0
@@ -97,7 +110,7 @@ def engagement(mount: np.void, beyond: float) -> float:
 
 
 @compiled
-def elastic_force(mount: np.void, deformation: float) -> float:
+def elastic_force(mount: Record, deformation: float) -> float:
     """Part of the mount's force that stores energy [N] at a deformation [m]."""
     beyond = abs(deformation) - mount.play
     force = engagement(mount, beyond) * mount.stiffness * beyond
@@ -105,7 +118,7 @@ def elastic_force(mount: np.void, deformation: float) -> float:
 
 
 @compiled
-def damping_of(mount: np.void, deformation: float) -> float:
+def damping_of(mount: Record, deformation: float) -> float:
     """Damping of the mount [Ns/m] at a deformation [m]."""
     return mount.damping + engagement(mount, abs(deformation) - mount.play) * mount.contact_damping
 
@@ -120,7 +133,7 @@ def largest_torque(limit: np.ndarray, speed: float, torque: float) -> float:
 
 
 @compiled
-def limited_torque(drive: np.void, limit: np.ndarray, speed: float, command: float) -> float:
+def limited_torque(drive: Record, limit: np.ndarray, speed: float, command: float) -> float:
     """Torque that the drive aims at [Nm]: the command [Nm] within the limit at a speed [rad/s]; a bridge has its own.
 
     limit: as in ``ActuatorNumbers`` [rad/s, Nm], (3, m)
@@ -132,7 +145,7 @@ def limited_torque(drive: np.void, limit: np.ndarray, speed: float, command: flo
 
 
 @compiled
-def inside(part: np.void, ratio: np.ndarray, stroke: float, rate: float, x: float, v: float, torque: float) -> Inside:
+def inside(part: Record, ratio: np.ndarray, stroke: float, rate: float, x: float, v: float, torque: float) -> Inside:
     """Forces and powers at a stroke [m] and its rate [m/s], with the equivalent mass at x [m] and v [m/s].
 
     torque: of the rotor [Nm]; ratio: as in ``ActuatorNumbers`` [m, m/rad], (2, n)

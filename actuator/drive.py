@@ -6,9 +6,11 @@ Torques are those of the rotor with the passive sign: T omega > 0 flows from the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi, sqrt
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from actuator.errors import ActuatorError, require_not_negative, require_positive
 
@@ -80,6 +82,52 @@ class QuadraticLoss(LossLaw):
 
 
 LOSS_FREE = QuadraticLoss(0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class MappedLoss(LossLaw):
+    """Losses of a map (thesis Fig. 4.5), straight between its points; the same in both senses of rotation.
+
+    torque: of a motor, from generating (negative) to motoring [Nm], (m,), rising; speed [rad/s], (n,), rising from 0
+    power: losses [W], (m, n), NaN out of reach; there the loss at the limit of that speed stands, since a torque that
+    follows its command with a lag may be beyond it for a moment
+    Raises ActuatorError for tables that do not fit, or a speed at which nothing is known.
+    """
+
+    torque: np.ndarray
+    speed: np.ndarray
+    power: np.ndarray
+
+    def __post_init__(self) -> None:
+        known = np.isfinite(self.power)
+        fits = self.power.shape == (self.torque.size, self.speed.size)
+        if not (fits and known.any(axis=0).all() and self.speed[0] == 0):
+            raise ActuatorError(
+                f"loss map: expected losses over torque and speed from 0, some at each speed, found a table of "
+                f"{self.power.shape} over {self.torque.size} torques and {self.speed.size} speeds; correct the map"
+            )
+
+    @cached_property
+    def _table(self) -> RegularGridInterpolator:
+        columns = [_held(self.torque, column) for column in self.power.T]
+        return RegularGridInterpolator((self.torque, self.speed), np.transpose(columns))
+
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """[W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape, up to the last of the map."""
+        motoring = -np.asarray(torque) * np.where(np.asarray(speed) < 0, -1.0, 1.0)
+        fast = np.abs(speed)
+        if np.max(fast, initial=0.0) > self.speed[-1]:
+            raise ActuatorError(
+                f"loss map: the rotor turns with up to {np.max(fast):.4g} rad/s, the map ends at {self.speed[-1]:.4g} "
+                "rad/s; map the machine up to a larger speed (speed_max_rpm)"
+            )
+        return np.asarray(self._table((np.clip(motoring, self.torque[0], self.torque[-1]), fast)))
+
+
+def _held(torque: np.ndarray, column: np.ndarray) -> np.ndarray:
+    """A column with its first and last known values beyond them."""
+    known = np.isfinite(column)
+    return np.interp(torque, torque[known], column[known])
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from actuator.compiled import compiled, inside, limited_torque, rotor_speed
+from actuator.compiled import Record, compiled, inside, limited_torque, rotor_speed
 from actuator.errors import ActuatorError
 from actuator.model import Actuator
 from actuator.stiffness import fastest_rate
@@ -74,7 +74,9 @@ def imposed_motion(
     x, v = states[:, _MASS], states[:, _VELOCITY]
     speed = v / actuator.ratio.at(x)
     drawn = states[:, _TORQUE] if actuator.drive.time_constant > 0 else _aimed(*numbers, speed, columns[3])
-    return ImposedHistory(*columns[:3], force, x, v, speed, drawn, *states[:, _LOST:].T)
+    mount, gears, friction, motor = states[:, _LOST:].T
+    time, stroke, velocity, _ = columns
+    return ImposedHistory(time, stroke, velocity, force, x, v, speed, drawn, mount, gears, friction, motor)
 
 
 def _require_alike(time: np.ndarray, *others: np.ndarray) -> None:
@@ -88,7 +90,7 @@ def _require_alike(time: np.ndarray, *others: np.ndarray) -> None:
 
 
 @compiled
-def _aimed(part: np.void, _: np.ndarray, limit: np.ndarray, speed: np.ndarray, command: np.ndarray) -> np.ndarray:
+def _aimed(part: Record, _: np.ndarray, limit: np.ndarray, speed: np.ndarray, command: np.ndarray) -> np.ndarray:
     aimed = np.empty_like(speed)
     for k in range(speed.size):
         aimed[k] = limited_torque(part, limit, speed[k], command[k])
@@ -97,7 +99,7 @@ def _aimed(part: np.void, _: np.ndarray, limit: np.ndarray, speed: np.ndarray, c
 
 @compiled
 def _impose(
-    part: np.void,
+    part: Record,
     ratio: np.ndarray,
     limit: np.ndarray,
     step: float,
@@ -135,7 +137,7 @@ def _impose(
 
 @compiled
 def _rates(
-    part: np.void,
+    part: Record,
     ratio: np.ndarray,
     limit: np.ndarray,
     step: float,

@@ -72,7 +72,7 @@ class Actuator:
             "nominal_ratio": self.ratio.nominal,
             "time_constant": self.drive.time_constant,
         }
-        record = np.array([tuple(values[name] for name in NUMBERS.names)], NUMBERS)[0]
+        record = np.array([tuple(values[name] for name in NUMBERS.names or ())], NUMBERS)[0]
         ratio = np.array([self.ratio.stroke, self.ratio.value], dtype=float)
         return ActuatorNumbers(record, ratio, np.array([limit.speed, limit.driving, limit.braking], dtype=float))
 

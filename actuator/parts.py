@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from actuator.errors import ActuatorError, require_not_negative, require_positive
 
@@ -151,6 +152,14 @@ class CompliantMount(Mount):
         share = min(beyond / self.transition, 1.0) if self.transition else 1.0
         steepening = 6 * share * (1 - share) / self.transition if self.transition else 0.0
         return self.stiffness * (s + steepening * beyond), s * self.contact_damping + self.damping
+
+    def deformation(self, force: float) -> float:
+        """d, positive, where the mount holds a load [m].
+
+        force: the load [N], its magnitude counts
+        """
+        wanted, most = abs(force), self.play + self.transition + abs(force) / self.stiffness
+        return float(brentq(lambda d: float(self.force(d, 0.0)) - wanted, 0.0, most, xtol=1e-12)) if wanted else 0.0
 
     def energy(self, deformation: float | np.ndarray) -> np.ndarray:
         """Elastic energy [J], of that shape, the integral of s K (|d| - b); deformation: [m], any shape."""

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 
 from figures.style import BLACK, GREY, LIGHT_GREY, MARKERS, SERIES, letter, new_figure, show_grid, styled
 from units import MILLIMETRE
-from vehicle.actuator import ForceSpeedLimit
 from vehicle.ride import RideHistory
 from vehicle.traces import Trace
 
@@ -78,12 +77,12 @@ def _thinned(time: np.ndarray) -> slice:
 def force_velocity_cloud(
     histories: Mapping[str, Trace | RideHistory],
     *,
-    limit: ForceSpeedLimit | None = None,
+    limit: Callable[[np.ndarray], np.ndarray] | None = None,
     required: Sequence[tuple[str, float, float]] = (),
 ) -> Figure:
     """Working points of the actuator in the force-velocity plane.
 
-    histories: ``RideHistory`` by label; limit: ``ForceSpeedLimit`` whose bound is drawn in all quadrants, or None;
+    histories: ``RideHistory`` by label; limit: largest force [N] over speed [m/s], drawn in all quadrants, or None;
     required: name, force [N] and velocity [m/s] of points to mark
     """
     figure = new_figure(4.8)
@@ -106,9 +105,9 @@ def force_velocity_cloud(
     return figure
 
 
-def _draw_limit(axis: Axes, limit: ForceSpeedLimit, fastest: float) -> None:
+def _draw_limit(axis: Axes, limit: Callable[[np.ndarray], np.ndarray], fastest: float) -> None:
     speed = np.linspace(0, max(fastest, 1e-3), 400)
-    force = limit.at(speed) / _KILONEWTON
+    force = limit(speed) / _KILONEWTON
     for number, (sign_v, sign_f) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):
         label = None if number else "limit of the actuator"
         axis.plot(sign_v * speed, sign_f * force, "--", color=GREY, linewidth=1.2, label=label)

@@ -7,6 +7,8 @@ searched or stated; gears or a direct drive.
 
 from __future__ import annotations
 
+from actuator.errors import ActuatorError
+from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
 from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
@@ -49,6 +51,7 @@ from report import (
     braking,
     datasheet,
     drive,
+    energy,
     fields,
     fits,
     flux_map,
@@ -70,6 +73,7 @@ from report import (
 )
 from report import learned as learned_report
 from study.chain import drives, searches_linkage
+from study.inputs_actuator import actuator_inputs
 from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
 from study.inputs_field import saturation_limit, sweep_grid
@@ -92,15 +96,17 @@ from study.schema import Study
 from thermal.errors import ThermalError
 from thermal.stage import heat_stage
 from vehicle.demands import required, requirements_stage
+from vehicle.designed import designed_actuator
+from vehicle.energy_stage import energy_stage
 from vehicle.errors import VehicleError
 from vehicle.gear_loads import road_loads
 from vehicle.heat_duty import road_duty
 from vehicle.ride_again import ride_again_stage
 
 REFUSALS = (
-    FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError, GearboxError, GearError, GeometryError,
-    LinkageError, LossError, MatchError, MaterialError, NoOptimumError, StepError, ThermalError, VehicleError,
-    WindingError,
+    ActuatorError, ControlError, FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError,
+    GearboxError, GearError, GeometryError, LinkageError, LossError, MatchError, MaterialError,
+    NoOptimumError, StepError, ThermalError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (
@@ -120,6 +126,11 @@ _VEHICLE: tuple[Node, ...] = (
     View(road_duty),
     Stage("ride", ride_again_stage, "the vehicle with what was designed", ride.files),
     View(actuator_limits),
+)
+_ENERGY: tuple[Node, ...] = (
+    Source(actuator_inputs),
+    View(designed_actuator),
+    Stage("energy", energy_stage, "power and duty on the road", energy.files, remarks=energy.remarks),
 )
 _STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))
 _SEARCHED: tuple[Node, ...] = (
@@ -199,6 +210,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *_MACHINE,
         *(_MAGNETS if _has_grade(study) else ()),
         *(_LOSSES if _has_loss_data(study) else _NO_LOSSES),
+        *(_ENERGY if driven and _has_loss_data(study) else ()),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
@@ -244,6 +256,7 @@ def _sections(study: Study) -> tuple[Function, ...]:
         heat.section,
         package.section,
         *((ride.section,) if driven else ()),
+        *((energy.section,) if driven and _has_loss_data(study) else ()),
     )
 
 

@@ -189,7 +189,7 @@ def _obstacle_points(found: RideRequirements, case: RideCase) -> dict[tuple[floa
     points, damping = {}, found.demands.force_peak.set_by.damping
     for run, one in zip(case.overload_runs, found.overload, strict=True):
         road = run.scenario.road
-        if isinstance(road, Obstacle) and run.damping.name == damping:
+        if isinstance(road, Obstacle) and run.command.name == damping:
             points[run.scenario.speed, road.amplitude] = one.at_force_peak
     return points
 

@@ -24,7 +24,7 @@ def files(found: RideAgain, limits: ActuatorLimits, requirements: Requirements) 
     """Figures of the worst case with both actuators."""
     pair = found.worst_traces.by_name
     points = [("required peak force", requirements.force_peak, requirements.velocity_at_force_peak)]
-    cloud = force_velocity_cloud(pair, limit=driven_actuator(limits).limit, required=points)
+    cloud = force_velocity_cloud(pair, limit=driven_actuator(limits).drive.limit.driving_at, required=points)
     yield figure_file("outcome_points", cloud)
     span = span_shown(pair, on_road=found.set_by.seed is not None)
     yield figure_file("outcome_histories", time_histories(pair, span=span))

@@ -636,6 +636,21 @@ class ThermalSection(Section):
     ] = None
 
 
+class ActuatorSection(Section):
+    """Mount, drive and force loop; the defaults are those of the prototype of thesis chapter 4 (Tables 4.2 and 4.5)."""
+
+    mount_stiffness_kN_per_m: Annotated[float, Quantity("stiffness of the mount in full contact", 1, 1e6)] = 676.0
+    mount_damping_Ns_per_m: Annotated[float, Quantity("damping of the mount, in its play too", 0, 1e6)] = 295.0
+    mount_contact_damping_Ns_per_m: Annotated[float, Quantity("damping of the mount in contact", 0, 1e6)] = 545.2
+    mount_play_um: Annotated[float, Quantity("half of the clearance of mount and gears", 0, 1e4)] = 9.2
+    mount_transition_mm: Annotated[float, Quantity("deformation over which the contact builds up", 0, 100)] = 3.837
+    torque_lag_ms: Annotated[float, Quantity("time constant of the torque under current control", 0, 100)] = 1.0
+    loop_proportional: Annotated[float, Quantity("proportional gain of the force loop", 0, 1e3)] = 7.4
+    loop_integral_rad_per_s: Annotated[float, Quantity("integral gain of the force loop", 0, 1e6)] = 1000.0
+    loop_derivative_ms: Annotated[float, Quantity("derivative gain of the force loop", 0, 1e3)] = 5.9
+    loop_filter_rad_per_s: Annotated[float, Quantity("filter of the derivative", 0, 1e6)] = 6283.0
+
+
 class Study(Section):
     """A whole study file."""
 
@@ -665,6 +680,7 @@ class Study(Section):
     thermal: ThermalSection = ThermalSection()
     gearbox: GearboxSection | None = None  # not for a direct drive
     assembly: AssemblySection
+    actuator: ActuatorSection = ActuatorSection()
     prices: PricesSection | None = None
     mechanics: MechanicsSection = MechanicsSection()
     printed_actuator: PrintedActuatorSection | None = None

@@ -1,4 +1,4 @@
-"""Damper characteristics at the wheel as tables, and what can be made of them: mixed, capped, limited, added.
+"""Damper characteristics at the wheel as tables, and what can be made of them: mixed, capped, limited.
 
 A damping strategy of the actuator is such a curve: ``maximum``, ``minimum``, ``mixed(rebound=maximum, bump=minimum)``,
 each ``capped`` at the regenerative damping.
@@ -119,10 +119,3 @@ def bounded(
     v = np.union1d(v, crossing)
     force = np.sign(v) * np.minimum(np.abs(curve.at(v)), bound(v))
     return replace(curve, velocity=tuple(v), force=tuple(force), source=f"{curve.source}; {note}")
-
-
-def added(first: DamperCurve, second: DamperCurve, name: str) -> DamperCurve:
-    """Sum of two curves where both are defined."""
-    low, high = max(first.velocity[0], second.velocity[0]), min(first.velocity[-1], second.velocity[-1])
-    v = np.array([x for x in np.union1d(first.velocity, second.velocity) if low <= x <= high])
-    return DamperCurve(name, tuple(v), tuple(first.at(v) + second.at(v)), f"{first.source} + {second.source}")

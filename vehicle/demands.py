@@ -77,7 +77,7 @@ class RideCase:
 
     def run(self, set_by: SetBy) -> Run:
         """The one run that set a value."""
-        return next(run for run in self.runs_on(set_by) if run.damping.name == set_by.damping)
+        return next(run for run in self.runs_on(set_by) if run.command.name == set_by.damping)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,7 @@ def _summaries(part: str, runs: Sequence[Run], together: int, workers: Workers) 
 
 def _kept(case: RideCase, demands: Demands) -> tuple[xr.Dataset, Traces, Traces]:
     """The nominal working point over all seeds, the first road and the worst case, simulated in one go."""
-    nominal = [run for run in case.road_runs if run.damping.name == demands.force_rms.set_by.damping]
+    nominal = [run for run in case.road_runs if run.command.name == demands.force_rms.set_by.damping]
     road = case.road_runs[: len(case.curves)]
     worst = case.runs_on(demands.force_peak.set_by)
     found = iter(simulate([*nominal, *road, *worst]))

@@ -74,7 +74,7 @@ def summary(history: RideHistory) -> RideSummary:
     return RideSummary(
         scenario=history.run.scenario.name,
         seed=history.run.scenario.road.random_seed,
-        damping=history.run.damping.name,
+        damping=history.run.command.name,
         comfort_rms=rms(felt),
         comfort_peak=float(felt[at_largest(felt)]),
         road_holding_rms=rms(holding),

@@ -13,6 +13,7 @@ from scipy.linalg import solve_continuous_are
 
 from units import GRAVITY
 from vehicle.comfort import WEIGHTING
+from vehicle.commands import Feedback
 from vehicle.errors import require_not_negative, require_positive
 from vehicle.models import QuarterCar
 
@@ -36,13 +37,6 @@ def state_space(car: QuarterCar) -> tuple[np.ndarray, np.ndarray, np.ndarray, np
     c[6, :2] = 1.0, -1.0
     d[4, 1], d[5, 0] = 1 / car.sprung_mass, -1.0
     return a, b, c, d
-
-
-@dataclass(frozen=True)
-class Feedback:
-    """F_act = row x: coefficients of the stroke [N/m], wheel height [N/m], body and wheel velocity [Ns/m]."""
-
-    row: tuple[float, float, float, float]
 
 
 def damping_feedback(damping: float) -> Feedback:

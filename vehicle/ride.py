@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from math import ceil
 from typing import TypeVar
 
 import numpy as np
 
-from vehicle.actuator import IDEAL, Actuator
+from actuator.linear import require_stable
+from actuator.model import IDEAL, Actuator
+from actuator.parts import RigidMount
+from control.force_loop import ForceLoop
 from vehicle.comfort import weighted_acceleration
+from vehicle.commands import Command, Controller, Feedback, Felt
 from vehicle.damping import DamperCurve
+from vehicle.equations import equations, largest_step, require_stable_law, stored_energy
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 from vehicle.models import Vehicle
-from vehicle.motion import AxleForces, Motion, integrate
+from vehicle.motion import MASS, SEEN, VELOCITY, WORK, WORKS, Equations, follow
 from vehicle.road import FlatRoad, Road
 
 Kept = TypeVar("Kept")
-_MOST_TOGETHER = 64  # runs in one integration, which bounds the memory
 BALANCE_TOLERANCE = 5e-3  # of the energy that went through the vehicle
 
 
@@ -54,12 +58,24 @@ class Scenario:
 
 @dataclass(frozen=True)
 class Run:
-    """A vehicle in a scenario with an actuator that is commanded a damper curve."""
+    """A vehicle in a scenario with an actuator that is asked for a force.
+
+    loop: force loop around the actuator; None: the motor is asked for the wanted force itself
+    Raises VehicleError for a loop around an actuator whose force is its motor's.
+    """
 
     vehicle: Vehicle
-    damping: DamperCurve
+    command: Command
     scenario: Scenario
     actuator: Actuator = IDEAL
+    loop: ForceLoop | None = None
+
+    def __post_init__(self) -> None:
+        if self.loop is not None and (isinstance(self.actuator.mount, RigidMount) or self.actuator.is_passive):
+            raise VehicleError(
+                "a force loop needs an actuator under torque control behind a compliant mount, found one whose force "
+                "follows its motor at once or takes no command; leave the loop out"
+            )
 
 
 @dataclass(frozen=True)
@@ -67,8 +83,8 @@ class EnergyBalance:
     """Where the energy of a run came from and went to [J].
 
     road: work of the road on the tyres above the static load [J]; propulsion: of its force on the pitch [J]
-    passive: taken by the dampers of the other axles [J]; actuator: by the actuated axle (machine and friction) [J]
-    stored: left in masses, springs and tyres at the end [J]
+    passive: taken by the dampers of the other axles [J]; actuator: by machine, friction, gears and mount [J]
+    stored: left in masses, springs and tyres at the end, of the actuator too [J]
     """
 
     road: float
@@ -85,8 +101,30 @@ class EnergyBalance:
     @property
     def error(self) -> float:
         """Residual relative to the energy that was dissipated or stored; zero for a vehicle that nothing moves."""
-        moved = self.passive + self.actuator + abs(self.stored)
+        moved = abs(self.passive) + abs(self.actuator) + abs(self.stored)
         return abs(self.residual) / moved if moved or self.residual else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class InsideActuator:
+    """What goes on inside the actuator over time, arrays (t,).
+
+    wanted: force that was asked for [N], (t,); torque: of the rotor, positive against rebound [Nm], (t,); rotor_speed
+    [rad/s], (t,); mass_stroke [m], (t,), mass_velocity [m/s], (t,): of the equivalent mass, at the wheel
+    shaft: work of the suspension since the start [J], (t,); mount [J], (t,), gears [J], (t,), friction [J], (t,), and
+    motor [J], (t,): what they have taken of it
+    """
+
+    wanted: np.ndarray
+    torque: np.ndarray
+    rotor_speed: np.ndarray
+    mass_stroke: np.ndarray
+    mass_velocity: np.ndarray
+    shaft: np.ndarray
+    mount: np.ndarray
+    gears: np.ndarray
+    friction: np.ndarray
+    motor: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +134,8 @@ class RideHistory:
     time [s]; road: heights under the wheels [m], (n, t); body_height [m], pitch [rad] and wheel_heights [m], (n, t),
     above static equilibrium; body_acceleration [m/s^2], (t,), vertical; tyre_loads: on the road [N], (n, t).
     Of the actuated axle: stroke [m], (t,), and velocity [m/s], (t,), positive in rebound
-    actuator_force: of the machine [N], (t,); suspension_force: with friction and reflected inertia [N], (t,)
-    stop_force [N], (t,)
+    actuator_force: of the machine [N], (t,); suspension_force: with friction, inertia and mount [N], (t,)
+    stop_force [N], (t,); inside: the actuator
     """
 
     run: Run
@@ -113,6 +151,7 @@ class RideHistory:
     actuator_force: np.ndarray
     suspension_force: np.ndarray
     stop_force: np.ndarray
+    inside: InsideActuator
     energy: EnergyBalance
 
     @property
@@ -139,35 +178,69 @@ def simulate(runs: Sequence[Run]) -> list[RideHistory]:
 def simulate_and_keep(what: Callable[[RideHistory], Kept], runs: Sequence[Run]) -> list[Kept]:
     """``what(history)`` of every run, in their order; the histories themselves are let go.
 
-    Runs of the same vehicle, duration and time step are integrated together, which costs little more than one.
+    Classical Runge-Kutta of fourth order; the scenario's step is divided where something moves faster.
     Raises VehicleError when a suspension is faster than its damper curve knows, the energy balance is off by more than
     0.5 %, or the motion has no bounds.
     """
-    found: dict[int, Kept] = {}
-    order = sorted(range(len(runs)), key=lambda k: _kind(runs, k))
-    for _, group in groupby(order, key=lambda k: _kind(runs, k)):
-        alike = list(group)
-        for first in range(0, len(alike), _MOST_TOGETHER):
-            numbers = alike[first : first + _MOST_TOGETHER]
-            found |= zip(numbers, map(what, _together([runs[k] for k in numbers])), strict=True)
-    return [found[k] for k in range(len(runs))]
+    return [what(ride_of_run(run)) for run in runs]
 
 
-def _kind(runs: Sequence[Run], number: int) -> tuple[int, float, float]:
-    """What runs must share to be integrated together; the vehicle by its first place in the list."""
-    run = runs[number]
-    vehicle = next(k for k, other in enumerate(runs) if other.vehicle == run.vehicle)
-    return vehicle, run.scenario.duration, run.scenario.time_step
+def ride_of_run(run: Run) -> RideHistory:
+    """One run; see ``simulate_and_keep``."""
+    scenario = run.scenario
+    time = np.arange(round(scenario.duration / scenario.time_step) + 1) * scenario.time_step
+    road = road_under_wheels(run, time)
+    _require_stable_control(run)
+    e = equations(run.vehicle, run.actuator, run.command, run.loop, run.vehicle.total_mass * scenario.longitudinal)
+    parts = ceil(scenario.time_step / largest_step(run.vehicle, run.actuator, run.command, e))
+    states, seen = _followed(run, e, np.ascontiguousarray(road.T), parts)
+    if not np.isfinite(states[-1]).all():
+        step = scenario.time_step / parts
+        raise VehicleError(
+            f"scenario '{scenario.title}': the motion has no bounds (steps of {step:g} s); the control is unstable, or "
+            "give a smaller time step"
+        )
+    return _history(run, time, road, states, seen)
 
 
-def _together(runs: Sequence[Run]) -> Iterator[RideHistory]:
-    scenario = runs[0].scenario
-    steps = round(scenario.duration / scenario.time_step)
-    time = np.arange(steps + 1) * scenario.time_step
-    road = np.stack([road_under_wheels(run, time) for run in runs], axis=-1)
-    motion = motion_of(runs)
-    states = integrate(motion, np.moveaxis(road, 1, 0), scenario.time_step)
-    return (_history(run, time, road[..., k], states[..., k]) for k, run in enumerate(runs))
+def _require_stable_control(run: Run) -> None:
+    if run.loop is not None:
+        require_stable(run.actuator, run.loop)
+    if isinstance(run.command, Feedback):
+        require_stable_law(run.vehicle, run.command)
+
+
+def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """States (t, size) and what is seen of them (t, seen)."""
+    step = run.scenario.time_step
+    states, seen, state = np.empty((len(road), e.size)), np.empty((len(road), e.seen)), np.zeros(e.size)
+    if not isinstance(run.command, Controller):
+        follow(e, state, road, step, parts, states, seen)
+        return states, seen
+    every = _samples_between(run.command, step)
+    for k in range(0, len(road) - 1, every):
+        here = slice(k, k + every + 1)
+        follow(e, state, road[here][:1], step, parts, states[here][:1], seen[here][:1])
+        e.held[0] = run.command.law(_felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
+        follow(e, state, road[here], step, parts, states[here], seen[here])
+    return states, seen
+
+
+def _samples_between(controller: Controller, step: float) -> int:
+    every = round(controller.sample_time / step)
+    if every < 1 or abs(every * step - controller.sample_time) > 1e-9:
+        raise VehicleError(
+            f"controller '{controller.name}': its sample time must be a multiple of the scenario's step of {step:g} s, "
+            f"found {controller.sample_time:g} s; change one of them"
+        )
+    return every
+
+
+def _felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
+    of_axles = seen[len(SEEN) :].reshape(4, count)
+    stroke, moving = of_axles[1, -1], of_axles[2, -1]
+    wheel, wheel_rate = state[1 + count], state[3 + 2 * count]
+    return Felt(time, stroke, wheel, moving + wheel_rate, wheel_rate, seen[1], seen[0])
 
 
 def road_under_wheels(run: Run, time: np.ndarray) -> np.ndarray:
@@ -179,60 +252,52 @@ def road_under_wheels(run: Run, time: np.ndarray) -> np.ndarray:
     return np.array([scenario.road.heights(time - delay, scenario.speed) for delay in delays])
 
 
-def motion_of(runs: Sequence[Run]) -> Motion:
-    """The equations of motion of runs of one vehicle."""
-    vehicle = runs[0].vehicle
-    dampers = [[curve] * len(runs) for curve in vehicle.passive_dampers]
-    dampers.append([run.actuator.suspension_curve(run.damping) for run in runs])
-    masses = [run.actuator.equivalent_mass for run in runs]
-    return Motion(vehicle, dampers, masses, [vehicle.total_mass * run.scenario.longitudinal for run in runs])
-
-
-def _history(run: Run, time: np.ndarray, road: np.ndarray, states: np.ndarray) -> RideHistory:
-    motion = motion_of([run])
-    state = np.moveaxis(states, 0, -1)  # the moments take the place of the runs
-    forces, change = motion.forces(state, road), motion.derivative(state, road)
-    _require_known_velocities(run, forces)
+def _history(run: Run, time: np.ndarray, road: np.ndarray, states: np.ndarray, seen: np.ndarray) -> RideHistory:
+    count = len(run.vehicle.axles)
+    state, of_axles = states.T, seen.T[len(SEEN) :].reshape(4, count, -1)
+    own = state[2 * (2 + count) :]
+    tyre, stroke, velocity, stop = of_axles
+    acceleration, force, wanted, machine, speed, torque = seen.T[: len(SEEN)]
+    _require_known_velocities(run, velocity)
+    rigid = isinstance(run.actuator.mount, RigidMount)
+    x, v = (stroke[-1], velocity[-1]) if rigid else (own[MASS], own[VELOCITY])
+    loads = np.array([[axle.static_load] for axle in run.vehicle.axles])
     history = RideHistory(
         run=run,
         time=time,
         road=road,
-        body_height=state[0, 0],
-        pitch=state[0, 1],
-        wheel_heights=state[0, 2:],
-        body_acceleration=change[1, 0],
-        tyre_loads=motion.load - forces.tyre,
-        stroke=forces.stroke[-1],
-        velocity=forces.rate[-1],
-        actuator_force=run.actuator.machine_curve(run.damping).at(forces.rate[-1]),
-        suspension_force=forces.damper[-1] + motion.inertia_force(state, change),
-        stop_force=forces.stop[-1],
-        energy=_balance(motion, time, state, road, forces),
+        body_height=state[0],
+        pitch=state[1],
+        wheel_heights=state[2 : 2 + count],
+        body_acceleration=acceleration,
+        tyre_loads=loads - tyre,
+        stroke=stroke[-1],
+        velocity=velocity[-1],
+        actuator_force=machine,
+        suspension_force=force,
+        stop_force=stop[-1],
+        inside=InsideActuator(wanted, torque, speed, x, v, *own[WORK + 3 :]),
+        energy=_balance(run, road, states),
     )
     _require_balance(history)
     return history
 
 
-def _balance(
-    motion: Motion, time: np.ndarray, state: np.ndarray, road: np.ndarray, forces: AxleForces
-) -> EnergyBalance:
-    """Works by the trapezoidal rule over the history."""
-    dissipated = np.trapezoid(forces.damper * forces.rate, time)
-    lift = -(forces.tyre[:, 1:] + forces.tyre[:, :-1]) / 2 * np.diff(road)
-    moment = (state[0, 0] + motion.vehicle.cog_height) * motion.propulsion
-    energy = motion.energy(state[..., [0, -1]], road[:, [0, -1]])
+def _balance(run: Run, road: np.ndarray, states: np.ndarray) -> EnergyBalance:
+    works = dict(zip(WORKS, (float(work) for work in states[-1, -len(WORKS) :]), strict=True))
     return EnergyBalance(
-        road=float(lift.sum()),
-        propulsion=float(np.trapezoid(moment * state[1, 1], time)),
-        passive=float(dissipated[:-1].sum()),
-        actuator=float(dissipated[-1]),
-        stored=float(energy[1] - energy[0]),
+        road=works["road"],
+        propulsion=works["propulsion"],
+        passive=works["passive"],
+        actuator=works["mount"] + works["gears"] + works["friction"] + works["motor"],
+        stored=stored_energy(run.vehicle, run.actuator, states[-1], road[:, -1])
+        - stored_energy(run.vehicle, run.actuator, states[0], road[:, 0]),
     )
 
 
-def _require_known_velocities(run: Run, forces: AxleForces) -> None:
-    curves = (*run.vehicle.passive_dampers, run.damping)
-    for curve, rate in zip(curves, forces.rate, strict=True):
+def _require_known_velocities(run: Run, rates: np.ndarray) -> None:
+    own = (run.command,) if isinstance(run.command, DamperCurve) else ()
+    for curve, rate in zip((*run.vehicle.passive_dampers, *own), rates, strict=False):
         if rate.min() < curve.velocity[0] or rate.max() > curve.velocity[-1]:
             raise VehicleError(
                 f"scenario '{run.scenario.title}': the suspension moves at {rate.min():.3g} to {rate.max():.3g} m/s, "

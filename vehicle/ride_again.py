@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from actuator.drive import MappedMotor, TorqueLimit
+from actuator.model import Actuator
+from actuator.parts import MechanicalLoss
 from drivetrain.actuator_limits import ActuatorLimits
-from vehicle.actuator import Actuator, ForceSpeedLimit
 from vehicle.damping import DamperCurve
 from vehicle.demands import RideCase, RideRequirements
 from vehicle.most_demanding import SetBy
@@ -61,20 +63,20 @@ def ride_again_stage(case: RideCase, found: RideRequirements, actuator: Actuator
     set_by, own = found.demands.force_peak.set_by, driven_actuator(actuator)
     run = case.run(set_by)
     (designed,) = simulate([replace(run, actuator=own)])
+    command = next(curve for curve in case.damping if curve.name == set_by.damping)
     pair = traces((IDEAL_NAME, DESIGNED_NAME), (found.worst_traces.by_name[set_by.damping], designed))
-    cases = {name: worst_case(trace, run.damping) for name, trace in pair.by_name.items()}
+    cases = {name: worst_case(trace, command) for name, trace in pair.by_name.items()}
     road = ride_means(summaries([replace(one, actuator=own) for one in case.road_runs]))
     return RideAgain(set_by, cases[IDEAL_NAME], cases[DESIGNED_NAME], pair, found.ride, road)
 
 
 def driven_actuator(limits: ActuatorLimits) -> Actuator:
-    """The actuator as the vehicle feels it."""
+    """The actuator as the vehicle feels it: a motor at the wheel, without the ratio, the lag and the mount."""
     speed, force = (tuple(values.tolist()) for values in (limits.speed, limits.force))
     return Actuator(
-        ForceSpeedLimit(speed, force),
+        MappedMotor(TorqueLimit(speed, force, force)),
         equivalent_mass=limits.equivalent_mass,
-        coulomb_friction=limits.coulomb_friction,
-        viscous_friction=limits.viscous_friction,
+        loss=MechanicalLoss(limits.viscous_friction, limits.coulomb_friction),
     )
 
 

@@ -9,9 +9,10 @@ from math import sqrt
 import numpy as np
 from scipy.linalg import expm, solve_continuous_lyapunov
 
+from vehicle.commands import Feedback
 from vehicle.errors import VehicleError
 from vehicle.models import QuarterCar
-from vehicle.quarter_car import Feedback, LinearRide, linear_ride
+from vehicle.quarter_car import LinearRide, linear_ride
 from vehicle.road import NOISE_INTENSITY, IsoRoad
 
 
@@ -49,6 +50,25 @@ def stationary_indices(ride: LinearRide) -> RideIndices:
         )
     noise = NOISE_INTENSITY * np.outer(ride.b, ride.b)
     return _indices(ride, solve_continuous_lyapunov(ride.a, -noise))
+
+
+def stationary_covariances(a: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """P of A P + P A' + Q = 0 for many loops at once, NaN where one is not stable.
+
+    a: A [SI], (n, s, s); noise: Q, of all of them [SI], (s, s); stationary_covariances: P [SI], (n, s, s)
+    As linear equations for the elements of P, (A x 1 + 1 x A) vec P = -vec Q, whatever the eigenvectors are.
+    """
+    size = a.shape[-1]
+    found = np.full(a.shape, np.nan)
+    stable = np.flatnonzero(np.linalg.eigvals(a).real.max(axis=-1) < 0)
+    for some in np.array_split(stable, max(1, len(stable) // _TOGETHER)):
+        both = np.einsum("nij,kl->nikjl", a[some], np.eye(size)) + np.einsum("ij,nkl->nikjl", np.eye(size), a[some])
+        matrix = both.reshape(len(some), size**2, size**2)
+        found[some] = np.linalg.solve(matrix, -noise.reshape(-1, 1))[..., 0].reshape(-1, size, size)
+    return found
+
+
+_TOGETHER = 256  # loops whose equations are in memory at the same time, 32 kB each
 
 
 def indices_from_rest(ride: LinearRide, duration: float, step: float = 5e-3) -> RideIndices:
@@ -170,20 +190,39 @@ def carpet(
     law: Callable[[float, float], Feedback],
     first: np.ndarray,
     second: np.ndarray,
-    indices: Callable[[LinearRide], RideIndices] = stationary_indices,
 ) -> Carpet:
-    """A control law over its two tuning parameters (thesis Figs 4.13-4.17).
+    """A control law over its two tuning parameters, stationary (thesis Figs 4.13-4.17); NaN where it is not stable.
 
     first, second: parameters [unit of the law], (n,), (m,); speed: of the vehicle [m/s]
     law: the control law of a first and a second parameter [its units]
-    indices: how a ride is judged, refusing with VehicleError
     """
-    found = np.full((3, len(first), len(second)), np.nan)
-    for i, one in enumerate(first):
-        for j, other in enumerate(second):
-            try:
-                seen = indices(ride_of(car, law(one, other), road, speed))
-            except VehicleError:
-                continue  # stays NaN
-            found[:, i, j] = seen.comfort, seen.road_holding, seen.stroke
-    return Carpet(np.asarray(first), np.asarray(second), *found)
+    rides = [ride_of(car, law(one, other), road, speed) for one in first for other in second]
+    b = rides[0].b
+    covariance = stationary_covariances(np.array([ride.a for ride in rides]), NOISE_INTENSITY * np.outer(b, b))
+    rows = np.array([rides[0].comfort, rides[0].road_holding, rides[0].stroke])
+    squares = np.einsum("ki,nij,kj->kn", rows, covariance, rows)
+    indices = np.sqrt(np.maximum(squares, 0.0)).reshape(3, len(first), len(second))
+    return Carpet(np.asarray(first), np.asarray(second), *indices)
+
+
+def carpet_from_rest(
+    car: QuarterCar,
+    road: IsoRoad,
+    speed: float,
+    law: Callable[[float, float], Feedback],
+    first: np.ndarray,
+    second: np.ndarray,
+    duration: float,
+) -> Carpet:
+    """The same over a run of a duration [s] that begins at rest, of loops that need not be stable.
+
+    first, second: parameters [unit of the law], (n,), (m,); speed: of the vehicle [m/s]
+    law: the control law of a first and a second parameter [its units]
+    """
+    rides = (ride_of(car, law(one, other), road, speed) for one in first for other in second)
+    seen = [indices_from_rest(ride, duration, _COARSE) for ride in rides]
+    table = np.array([[one.comfort, one.road_holding, one.stroke] for one in seen]).T
+    return Carpet(np.asarray(first), np.asarray(second), *table.reshape(3, len(first), len(second)))
+
+
+_COARSE = 1e-2  # s, of the average over time

@@ -42,7 +42,7 @@ WRONG = {
     "a gap in time": ({"time_s": np.r_[TIME[:20], TIME[20:] + 0.01], "force_N": TIME}, {}, "times, found sample"),
     "time that turns back": ({"time_s": -TIME, "force_N": TIME}, {}, "equally spaced times"),
     "too short": ({"time_s": TIME[:5], "force_N": TIME[:5]}, {}, "16 samples or more, found 5"),
-    "a heading that is not there": ({"time_s": TIME, "force_N": TIME}, {"force": "Kraft"}, "force=Kraft names no column"),
+    "a heading that is not there": ({"time_s": TIME, "force_N": TIME}, {"force": "Kraft"}, "names no column"),
     "an unknown unit": ({"time_s": TIME, "force [lbf]": TIME}, {}, "the unit 'lbf' is not known"),
 }  # fmt: skip
 

@@ -44,7 +44,10 @@ def test_a_flat_road_is_left_out(assert_readable):
 
 
 def test_cloud_with_limit_and_required_points(assert_readable):
-    limit = SimpleNamespace(at=lambda speed: np.interp(speed, (0, 0.1, 0.3), (200, 200, 50)))
+
+    def limit(speed):
+        return np.interp(speed, (0, 0.1, 0.3), (200, 200, 50))
+
     figure = force_velocity_cloud({"ideal": history()}, limit=limit, required=[("peak force", 280.0, 0.19)])
     axis = figure.axes[0]
     dashed = [line for line in axis.lines if line.get_linestyle() == "--"]

@@ -57,7 +57,7 @@ def test_histories_for_the_gears_are_those_of_the_nominal_point(found, case):
     data, damping = found.nominal, found.demands.force_rms.set_by.damping
     assert dict(data.sizes) == {"seed": 2, "time": 1001} and data.seed.values.tolist() == [3, 4]
     assert np.sqrt((data.force**2).mean("time")).mean() == pytest.approx(found.demands.force_rms.value)
-    (again,) = simulate([run for run in case.road_runs if run.damping.name == damping][:1])
+    (again,) = simulate([run for run in case.road_runs if run.command.name == damping][:1])
     assert data.stroke.values[0] == pytest.approx(again.stroke)
     assert data.velocity.values[0] == pytest.approx(again.velocity)
 

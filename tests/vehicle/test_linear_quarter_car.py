@@ -1,7 +1,5 @@
 """Linear quarter car: LQR gains, stationary and transient indices, power theorem, carpets (thesis section 4.2.2)."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -19,11 +17,11 @@ from tests.vehicle.thesis import (
 )
 from units import GRAVITY
 from vehicle.comfort import WEIGHTING
+from vehicle.commands import Feedback
 from vehicle.damping import linear_damper
 from vehicle.errors import VehicleError
 from vehicle.quarter_car import (
     TO_STROKE_STATES,
-    Feedback,
     LqrWeights,
     damping_feedback,
     groundhook,
@@ -40,6 +38,7 @@ from vehicle.road import IsoRoad, roughness_of_class
 from vehicle.scenarios import runs_of, summaries
 from vehicle.spectral import (
     carpet,
+    carpet_from_rest,
     ensemble_indices,
     indices_from_rest,
     mean_power_theorem,
@@ -297,9 +296,8 @@ def test_spring_negation_carpet():
     _, _, holding = found.best(found.road_holding)
     near = stationary_indices(ride(spring_negation(2154.0, 9230.0))).road_holding
     assert near == pytest.approx(holding, rel=5e-3) and near == pytest.approx(0.056, rel=0.10)
-    from_rest = partial(indices_from_rest, duration=QUARTER_CAR_ROAD_DURATION, step=0.01)
     some = CAR.spring_stiffness * np.array([0.3, 0.9, 1])
-    corner = carpet(CAR, ROAD, CRUISE_SPEED, spring_negation, C_GRID[::12], some, from_rest)
+    corner = carpet_from_rest(CAR, ROAD, CRUISE_SPEED, spring_negation, C_GRID[::12], some, QUARTER_CAR_ROAD_DURATION)
     c, negated, comfort = corner.best(corner.comfort)
     assert c == 10 and negated == CAR.spring_stiffness
     assert 0.5 < comfort / GRAVITY / 0.002 < 2  # a transient, the body is not held

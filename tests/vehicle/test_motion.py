@@ -7,6 +7,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import fsolve
 
+from actuator.model import Actuator
+from actuator.parts import MechanicalLoss
 from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
@@ -16,11 +18,11 @@ from tests.vehicle.thesis import (
     quarter_car,
 )
 from units import GRAVITY
-from vehicle.actuator import Actuator
 from vehicle.damping import DamperCurve, linear_damper
+from vehicle.equations import equations
 from vehicle.errors import VehicleError
 from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyre
-from vehicle.motion import Motion
+from vehicle.motion import SEEN, act, ride
 from vehicle.ride import Run, Scenario, simulate
 from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
 
@@ -96,20 +98,38 @@ def test_static_deflections():
 
 @pytest.mark.parametrize("vehicle", [BIKE, FREE, quarter_car()], ids=["stops", "no stops", "car"])
 def test_the_acceleration_is_that_of_the_forces(vehicle):
-    """m a = F for each body from the forces at the axles, beyond the stops and in the air too (3.8)."""
-    count, curves = 2 + len(vehicle.axles), motorcycle_damping()
-    dampers = [*([curve] * 3 for curve in vehicle.passive_dampers), curves]
-    motion, draw = Motion(vehicle, dampers, np.zeros(3), np.zeros(3)), np.random.default_rng(3)
+    """m a = F for each body, beyond the stops and in the air too (3.8), and the torque of the propulsion."""
+    count, draw = len(vehicle.axles), np.random.default_rng(3)
+    curve, propulsion = motorcycle_damping()[2], 500.0
+    actuator = Actuator(equivalent_mass=5.0)
+    e = equations(vehicle, actuator, curve, None, propulsion)
+    seen, change, still = np.empty(e.seen), np.empty(e.size), np.zeros(count)
+    position = np.array([axle.position for axle in vehicle.axles])
+    unsprung = np.array([axle.unsprung_mass for axle in vehicle.axles])
     for _ in range(50):
-        state = draw.normal(size=(2, count, 3)) * np.array([0.1, 2.0])[:, None, None]
-        road = 0.05 * draw.normal(size=(count - 2, 3))
-        forces, change = motion.forces(state, road), motion.derivative(state, road)
-        pull, lever = forces.spring + forces.stop + forces.damper, np.cos(state[0, 1])
-        assert vehicle.sprung_mass * change[1, 0] == pytest.approx(-pull.sum(axis=0))
-        moment = -lever * (motion.position * pull).sum(axis=0)
-        assert vehicle.pitch_inertia * change[1, 1] == pytest.approx(moment, abs=1e-6)
-        assert motion.unsprung * change[1, 2:] == pytest.approx(pull - forces.tyre)
-    assert not motion.derivative(np.zeros((2, count, 3)), np.zeros((count - 2, 3))).any()
+        state = np.zeros(e.size)
+        state[: 4 + 2 * count] = draw.normal(size=4 + 2 * count) * np.repeat([0.1, 0.7], 2 + count)
+        road = 0.05 * draw.normal(size=count)
+        ride(e, state, road, still, change, seen)
+        act(e, state, change, seen)
+        tyre, stroke, moving, stop = seen[len(SEEN) :].reshape(4, count)
+        sine, cosine = np.sin(state[1]), np.cos(state[1])
+        assert stroke == pytest.approx(state[0] + position * sine - state[2 : 2 + count])
+        assert moving == pytest.approx(
+            state[2 + count] + position * cosine * state[3 + count] - state[4 + count :][:count]
+        )
+        acceleration = change[2 + count : 4 + 2 * count]
+        relative = acceleration[0] + position[-1] * (cosine * acceleration[1] - sine * state[3 + count] ** 2)
+        own = curve.at(moving[-1]) + 5.0 * (relative - acceleration[-1])
+        forces = [damper.at(v) for damper, v in zip(vehicle.passive_dampers, moving, strict=False)] + [own]
+        pull = np.array([axle.spring_stiffness for axle in vehicle.axles]) * stroke + stop + forces
+        assert vehicle.sprung_mass * acceleration[0] == pytest.approx(-pull.sum())
+        turning = (state[0] + vehicle.cog_height) * propulsion
+        moment = turning - cosine * (position * pull).sum()
+        assert vehicle.pitch_inertia * acceleration[1] == pytest.approx(moment, abs=1e-6)
+        assert unsprung * acceleration[2:] == pytest.approx(pull - tyre)
+    ride(equations(vehicle, actuator, curve, None, 0.0), 0 * state, still, still, change, seen)
+    assert not change.any()
 
 
 def test_vehicle_at_rest_stays_at_rest():
@@ -181,7 +201,7 @@ def test_energy_is_conserved_without_dampers():
             assert history.energy.stored > 1 and history.energy.error < error
 
 
-@pytest.mark.parametrize("actuator", [Actuator(), Actuator(equivalent_mass=15.0, coulomb_friction=70.0)])
+@pytest.mark.parametrize("actuator", [Actuator(), Actuator(equivalent_mass=15.0, loss=MechanicalLoss(coulomb=70.0))])
 def test_energy_balances_over_road_pothole_and_acceleration(actuator):
     bike, rear = motorcycle(), linear_damper(1500.0, "rear")
     scenarios = (

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from actuator.errors import ActuatorError
 from drivetrain.actuator_limits import ActuatorLimits
-from vehicle.errors import VehicleError
 from vehicle.ride_again import ride_again_stage
 
 STRONG = ActuatorLimits(np.array([0.0, 20.0]), np.array([1e5, 1e5]), 0.0, 0.0, 0.0)
@@ -49,5 +49,5 @@ def test_a_worst_case_on_the_road_is_driven_with_its_own_seed(on_road, found_on_
 
 
 def test_a_limit_that_is_no_curve_is_refused(case, found):
-    with pytest.raises(VehicleError, match="force-speed limit"):
+    with pytest.raises(ActuatorError, match="torque limit"):
         ride_again_stage(case, found, replace(STRONG, speed=np.array([1.0, 20.0])))

@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from actuator.drive import MappedMotor, TorqueLimit
+from actuator.model import Actuator
+from actuator.parts import MechanicalLoss
 from tests.vehicle.thesis import (
     CRUISE_SPEED,
     LONGITUDINAL_ACCELERATION,
@@ -19,7 +22,6 @@ from tests.vehicle.thesis import (
     motorcycle_damping,
     obstacle_shape,
 )
-from vehicle.actuator import Actuator, ForceSpeedLimit
 from vehicle.damping import capped
 from vehicle.errors import VehicleError
 from vehicle.most_demanding import most_demanding
@@ -143,11 +145,11 @@ def test_saturated_actuator_in_the_place_of_the_ideal_one():
     """Fig. 3.28: the force saturates, the tyre load hardly changes."""
     worst = [WORST_OBSTACLE_SPEED], [WORST_OBSTACLE_AMPLITUDE]
     pothole = obstacle_scenarios(obstacle_shape(), *worst, OBSTACLE_DURATION)[0]
-    limit = ForceSpeedLimit((0.0, 1.0, 4.0), (2600.0, 2600.0, 650.0))  # 2.6 kW
-    real = Actuator(limit, equivalent_mass=4.9, coulomb_friction=50.0)
+    limit = MappedMotor(TorqueLimit((0.0, 1.0, 4.0), *2 * ((2600.0, 2600.0, 650.0),)))  # 2.6 kW
+    real = Actuator(limit, equivalent_mass=4.9, loss=MechanicalLoss(coulomb=50.0))
     runs = [Run(BIKE, DAMPING[2], pothole, actuator) for actuator in (Actuator(), Actuator(limit), real)]
     ideal, saturated, complete = simulate(runs)
-    assert (np.abs(saturated.actuator_force) <= limit.at(saturated.velocity) + 1e-6).all()
+    assert (np.abs(saturated.actuator_force) <= limit.limit.driving_at(saturated.velocity) + 1e-6).all()
     assert np.abs(ideal.actuator_force).max() > 1.05 * np.abs(saturated.actuator_force).max()
     load = BIKE.rear.static_load
     assert np.sqrt(np.mean((ideal.tyre_loads[1] - saturated.tyre_loads[1]) ** 2)) < 0.2 * load

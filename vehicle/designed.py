@@ -1,0 +1,88 @@
+"""The actuator of a study, from what its stages have found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from actuator.drive import MappedLoss, MappedMotor, TorqueLimit
+from actuator.model import Actuator
+from actuator.parts import CompliantMount, GearEfficiency, MechanicalLoss, Ratio, fixed_ratio
+from control.force_loop import ForceLoop
+from drivetrain.linkage_stage import LinkageFront
+from drivetrain.outcome import Outcome
+from electrical.braking import strongest_braking
+from electrical.dq import torque_speed_envelope
+from electrical.winding_stage import WindingOutcome
+from gearbox.stage import GearboxOutcome
+from losses.stage import LossMap
+from magnetostatics.flux_map_stage import FluxMap
+
+
+@dataclass(frozen=True)
+class ActuatorInputs:
+    """What a study says of its actuator beyond machine, gears and linkage.
+
+    mount: between suspension and equivalent mass; torque_lag: of drive and current control [s]; loop: around the force
+    """
+
+    mount: CompliantMount
+    torque_lag: float
+    loop: ForceLoop
+
+
+@dataclass(frozen=True)
+class DesignedActuator:
+    """The actuator that was designed, and the loop around its force."""
+
+    actuator: Actuator
+    loop: ForceLoop
+
+
+def designed_actuator(
+    winding: WindingOutcome,
+    flux_map: FluxMap,
+    losses: LossMap,
+    gears: GearboxOutcome,
+    front: LinkageFront | None,
+    outcome: Outcome,
+    inputs: ActuatorInputs,
+) -> DesignedActuator:
+    """Motor on flux map and loss map, gears with their meshing losses, the linkage over its travel, the study's mount.
+
+    front: None for a linkage of which two ratios are all that is known; then the nominal one holds everywhere
+    """
+    limits = outcome.limits
+    actuator = Actuator(
+        drive=MappedMotor(torque_limit(winding, flux_map, losses), loss_law(losses), inputs.torque_lag),
+        ratio=fixed_ratio(gears.transmission_ratio) if front is None else ratio_over_stroke(front, gears),
+        equivalent_mass=limits.equivalent_mass,
+        mount=inputs.mount,
+        loss=MechanicalLoss(limits.viscous_friction, limits.coulomb_friction),
+        gears=GearEfficiency(*gears.train.efficiency),
+    )
+    return DesignedActuator(actuator, inputs.loop)
+
+
+def ratio_over_stroke(front: LinkageFront, gears: GearboxOutcome) -> Ratio:
+    """tau_t over the stroke of the suspension, which is the wheel travel with the other sign."""
+    motion = front.built.motion
+    order = np.argsort(-motion.travel)
+    ratio = motion.transmission_ratio[order] / gears.train.ratio
+    return Ratio(tuple((-motion.travel[order]).tolist()), tuple(ratio.tolist()))
+
+
+def loss_law(losses: LossMap) -> MappedLoss:
+    """Losses over torque and speed of the rotor, as motor and as generator."""
+    data = losses.losses
+    return MappedLoss(np.asarray(data.torque)[:, 0], np.asarray(data.speed)[0], np.asarray(data.total))
+
+
+def torque_limit(winding: WindingOutcome, flux_map: FluxMap, losses: LossMap) -> TorqueLimit:
+    """Within current and voltage over the speeds of the loss map; braking, no more than the peak torque."""
+    machine, speed = winding.wound.on_map(flux_map.data), np.asarray(losses.losses.speed)[0]
+    driving = np.nan_to_num(torque_speed_envelope(machine, winding.limits, speed).torque, nan=0.0)
+    braking = np.nan_to_num(strongest_braking(machine, winding.limits, speed[1:]).torque, nan=0.0)
+    braking = np.minimum(np.concatenate([driving[:1], braking]), winding.peak_torque)
+    return TorqueLimit(*(tuple(one.tolist()) for one in (speed, driving, braking)))

@@ -1,0 +1,177 @@
+"""The ride of a study with its actuator: energy and duty of every command, quasi-ideal and real (thesis 4.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from actuator.linear import tangent_plant
+from actuator.model import Actuator
+from actuator.parts import LOSSLESS, NO_LOSS, RIGID
+from control.design import loop_for
+from control.errors import ControlError
+from control.force_loop import ForceLoop
+from control.transfer import bandwidth, margins
+from tasks import Workers
+from vehicle.commands import Feedback
+from vehicle.damping import DamperCurve
+from vehicle.demands import RideCase
+from vehicle.designed import DesignedActuator
+from vehicle.energy import RideEnergy, ride_energy
+from vehicle.models import QuarterCar, Vehicle
+from vehicle.quarter_car import LqrWeights, lqr
+from vehicle.ride import Run, simulate
+
+QUASI_IDEAL, REAL, OPEN = "quasi-ideal", "real", "real, no force loop"
+# Settings of Table 4.1, as the grid has them on which they were found.
+LQR_SETTINGS = {"LQR trade-off": LqrWeights(42.9, 3.556e5), "LQR handling": LqrWeights(3.39e6, 2.223e7)}
+STEP = 5e-4  # s, of the histories: means of powers are taken over their samples
+SHOWN = (4.0, 8.0)  # s, of the first road, in figures
+WORKING_FORCES = (100.0, 300.0, 1000.0)  # N, about which the force loop is looked at
+WANTED_BANDWIDTH, WANTED_MARGIN = 60.0, np.radians(50.0)  # Hz (text to Table 4.5) and rad (a usual choice)
+
+
+@dataclass(frozen=True)
+class EnergyTask:
+    """One run of which the energy is wanted."""
+
+    run: Run
+
+
+@dataclass(frozen=True)
+class EnergyCase:
+    """A command with one of the actuators; energies: one a seed."""
+
+    command: str
+    actuator: str
+    energies: tuple[RideEnergy, ...]
+
+
+@dataclass(frozen=True)
+class LoopPoint:
+    """The force loop about one working force.
+
+    force [N]; stiffness: of the mount there [N/m]; bandwidth [Hz], phase_margin [rad]: of the loop as it is
+    designed: the loop for the wanted bandwidth and margin there, None where no PID has them
+    """
+
+    force: float
+    stiffness: float
+    bandwidth: float
+    phase_margin: float
+    designed: ForceLoop | None
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyOutcome:
+    """What the rides come to.
+
+    own: the actuator and its loop; cases: every command with every actuator; loop: about the working forces
+    traces: of the first road with the real actuator, over (command, time): time [s], (t,), wanted, force [N], shaft,
+    electrical, lost: powers [W], velocity [m/s], torque [Nm], rotor_speed [rad/s], each (command, t)
+    """
+
+    own: DesignedActuator
+    cases: tuple[EnergyCase, ...]
+    loop: tuple[LoopPoint, ...]
+    traces: xr.Dataset
+
+    def case(self, command: str, actuator: str) -> EnergyCase:
+        """One of the cases by its names."""
+        return next(one for one in self.cases if (one.command, one.actuator) == (command, actuator))
+
+    @property
+    def commands(self) -> tuple[str, ...]:
+        """Their names, in the order of the cases."""
+        return tuple(dict.fromkeys(one.command for one in self.cases))
+
+
+def energy_of(task: EnergyTask) -> RideEnergy:
+    """The energy of one run."""
+    return ride_energy(simulate([task.run])[0])
+
+
+def energy_stage(case: RideCase, own: DesignedActuator, workers: Workers) -> EnergyOutcome:
+    """Every seed of the road with every command: quasi-ideal, real, and the damper curves without force loop.
+
+    Raises ControlError where the force loop is unstable on the mount, VehicleError or ActuatorError where a motion or
+    a map does not allow the ride.
+    """
+    runs = {name: list(group) for name, group in _groups(case, own)}
+    tasks = {
+        f"{'; '.join(name)}, seed {k}": EnergyTask(run) for name, group in runs.items() for k, run in enumerate(group)
+    }
+    found = iter(workers.map("rides", energy_of, tasks).values())
+    cases = tuple(EnergyCase(*name, tuple(next(found) for _ in group)) for name, group in runs.items())
+    first = {command: group[0] for (command, kind), group in runs.items() if kind == REAL}
+    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(first))
+
+
+def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:
+    """The damper curves of a case, and for a quarter car the LQR settings of the thesis."""
+    found: dict[str, DamperCurve | Feedback] = {curve.name: curve for curve in case.damping}
+    return found | _feedbacks(case.vehicle)
+
+
+def _feedbacks(vehicle: Vehicle) -> dict[str, Feedback]:
+    if not isinstance(vehicle, QuarterCar):
+        return {}
+    return {name: replace(lqr(vehicle, weights), name=name) for name, weights in LQR_SETTINGS.items()}
+
+
+def _groups(case: RideCase, own: DesignedActuator) -> Iterator[tuple[tuple[str, str], Iterator[Run]]]:
+    """Command and actuator by name, and a run for each seed."""
+    roads = [replace(road, time_step=min(road.time_step, STEP)) for road in case.road]
+    for name, command in commands_of(case).items():
+        yield (name, QUASI_IDEAL), (Run(case.vehicle, command, road, quasi_ideal(own)) for road in roads)
+        yield (name, REAL), (Run(case.vehicle, command, road, own.actuator, own.loop) for road in roads)
+        if isinstance(command, DamperCurve):
+            yield (name, OPEN), (Run(case.vehicle, command, road, own.actuator) for road in roads)
+
+
+def quasi_ideal(own: DesignedActuator) -> Actuator:
+    """The same machine and ratio without inertia, friction, gear losses and mount."""
+    return replace(own.actuator, equivalent_mass=0.0, mount=RIGID, loss=NO_LOSS, gears=LOSSLESS)
+
+
+def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
+    """The loop as it is, and the one that would have the wanted bandwidth, about each working force."""
+    for force in WORKING_FORCES:
+        plant = tangent_plant(own.actuator, force)
+        through = plant.times(own.loop.transfer)
+        stiffness = own.actuator.mount.tangent(own.actuator.mount.deformation(force))[0]
+        try:
+            designed = loop_for(plant, WANTED_BANDWIDTH, WANTED_MARGIN)
+        except ControlError:
+            designed = None
+        yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
+
+
+def _traces(runs: dict[str, Run]) -> xr.Dataset:
+    histories = simulate(list(runs.values()))
+    time = histories[0].time
+    shown = (time >= SHOWN[0]) & (time <= SHOWN[1])
+    rows: dict[str, list[np.ndarray]] = {}
+    for history in histories:
+        inside, lost = history.inside, _lost(history.run.actuator, history.inside.torque, history.inside.rotor_speed)
+        values = {
+            "wanted": inside.wanted,
+            "force": history.suspension_force,
+            "shaft": history.suspension_force * history.velocity,
+            "electrical": inside.torque * inside.rotor_speed - lost,
+            "lost": lost,
+            "velocity": history.velocity,
+            "torque": inside.torque,
+            "rotor_speed": inside.rotor_speed,
+        }
+        for name, value in values.items():
+            rows.setdefault(name, []).append(value[shown])
+    data = {name: (("command", "time"), np.array(value)) for name, value in rows.items()}
+    return xr.Dataset(data, {"command": list(runs), "time": time[shown]})
+
+
+def _lost(actuator: Actuator, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    return actuator.drive.loss.at(torque, speed)
