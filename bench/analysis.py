@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
 import pandas as pd
 
 from bench.errors import RecordError
@@ -66,11 +65,3 @@ class Settings:
 
 
 Records = Sequence[Record]
-
-
-def relative_size(errors: np.ndarray, sizes: np.ndarray, least: float = 1e-4) -> str:
-    """The largest relative error as the factor of a formula.
-
-    errors: standard deviations (n,), sizes: of the readings (n,), both [SI]; least: smallest answer, dimensionless
-    """
-    return f"{max(float(np.max(errors / sizes)), least):.2g}"

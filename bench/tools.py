@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from bench import pictures
-from bench.analysis import Analysis, CampaignTable, Records, Settings, relative_size
+from bench.analysis import Analysis, CampaignTable, Records, Settings
 from bench.constant_speed import SteadyPoint, StraightLine, steady_point, straight_lines
 from bench.errors import RecordError
 from bench.force_loops import NOMINAL, ForceLoop, LoopMatch, identify_loops
@@ -27,6 +27,7 @@ from units import FACTORS, MILLIMETRE, MILLIOHM, split_unit
 from workbench.data.table import OPEN_CIRCUIT
 
 _MEMORY = 2.0  # readings that say as much as one, from which on the model is called not quite right
+_ROUNDING = 1e-4  # relative, of what is never better known
 _STRONG = 0.3  # part of a combination of parameters that is named
 
 
@@ -185,10 +186,14 @@ def impedance(records: Records, settings: Settings) -> Analysis:
                          "error_Ns_per_m", "distortion_percent"]], "Every record."),
         ),
     )  # fmt: skip
-    sizes = np.array([abs(p.impedance) for p in points])
-    relative = relative_size(np.array([p.error for p in points]), sizes)
-    campaign = CampaignTable("impedance", frame, dict.fromkeys(("re_Ns_per_m", "im_Ns_per_m"), f"{relative}*z"))
+    campaign = CampaignTable("impedance", frame, dict.fromkeys(("re_Ns_per_m", "im_Ns_per_m"), _uncertainty(points)))
     return Analysis("Mechanical impedance", (section,), table, {"points": table.to_dict("records")}, campaign)
+
+
+def _uncertainty(points: Sequence[ImpedancePoint]) -> str:
+    """The noise of a force over the velocity, and what a number in a file is rounded by; in the units of the frame."""
+    noise = max(p.error * p.frequency * p.amplitude / MILLIMETRE for p in points)
+    return f"{noise:.2g}/(frequency*amplitude) + {_ROUNDING:g}*z"
 
 
 def _impedance_frame(points: Sequence[ImpedancePoint]) -> pd.DataFrame:
