@@ -15,6 +15,7 @@ import numpy as np
 from bench.identification import Identification, Unknown, identify
 from bench.impedance import ImpedancePoint
 from vehicle.impedance import LumpedActuator
+from workbench.data.table import OPEN_CIRCUIT
 
 MASS, FRICTION = "equivalent_mass_kg", "viscous_friction_Ns_per_m"
 STIFFNESS, DAMPING = "mount_stiffness_kN_per_m", "mount_damping_Ns_per_m"
@@ -27,7 +28,7 @@ def fit_lumped(start: LumpedActuator, points: Sequence[ImpedancePoint]) -> tuple
     start: machine and circuit as they are, mass, friction and mount where the search begins, all above zero
     """
     frequency, amplitude, shunt = np.array([(p.frequency, p.amplitude, p.shunt) for p in points]).T
-    shunt = np.where(np.isfinite(shunt), shunt, _OPEN)
+    shunt = np.minimum(shunt, OPEN_CIRCUIT)
     nominal = dict(
         zip(_NAMES, (start.equivalent_mass, start.viscous_friction, start.mount_stiffness, start.mount_damping))
     )
@@ -42,7 +43,6 @@ def fit_lumped(start: LumpedActuator, points: Sequence[ImpedancePoint]) -> tuple
 
 
 _NAMES = (MASS, FRICTION, STIFFNESS, DAMPING)
-_OPEN = 1e6  # ohm, instead of an open circuit
 
 
 def lumped_with(device: LumpedActuator, values: Mapping[str, float]) -> LumpedActuator:

@@ -27,6 +27,7 @@ from figures.style import (
     ORANGE,
     SKY,
     VERMILION,
+    Look,
     letter,
     new_figure,
     series_style,
@@ -34,15 +35,18 @@ from figures.style import (
     styled,
 )  # fmt: skip
 from units import MILLIMETRE, MILLIOHM
+from vehicle.impedance import LumpedActuator
+from workbench.data.table import OPEN_CIRCUIT
 
 _LARGEST_SHOWN_ERROR = 75.0  # percent, of a law; beyond it a mark stands at the edge
 _MOST_LOOPS = 6  # shown
+_CURVE = 60  # points of a line
 _AROUND = 1.1  # of the outermost point, to the edge of a map
 
 
 def shunt_words(shunt: float) -> str:
     """A shunt [ohm] in words."""
-    if shunt >= 1e6:
+    if shunt >= OPEN_CIRCUIT:
         return "open circuit"
     return f"{shunt / MILLIOHM:g} mΩ" if shunt > 0 else "short circuit"
 
@@ -133,20 +137,48 @@ def _spans_an_area(x: np.ndarray, y: np.ndarray) -> bool:
 @styled
 def impedance_points(points: Sequence[ImpedancePoint]) -> Figure:
     """Size and phase of the impedance over frequency, a colour a shunt, with two standard deviations."""
+    figure, (size, phase) = _size_and_phase()
+    for shunt, look in series_style(point.shunt for point in points).items():
+        _draw_points(size, phase, points, shunt, look)
+    figure.legend(*size.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
+    return figure
+
+
+@styled
+def lumped_model(points: Sequence[ImpedancePoint], device: LumpedActuator) -> Figure:
+    """The impedance of the points (marks) beside that of a lumped model (lines), strokes in between interpolated."""
+    figure, (size, phase) = _size_and_phase()
+    for shunt, look in series_style(point.shunt for point in points).items():
+        mine = _draw_points(size, phase, points, shunt, {**look, "linestyle": "none"})
+        frequency = np.geomspace(mine[0].frequency, mine[-1].frequency, _CURVE)
+        stroke = np.interp(frequency, [p.frequency for p in mine], [p.amplitude for p in mine])
+        z = device.impedance(frequency, min(shunt, OPEN_CIRCUIT), 2 * np.pi * frequency * stroke)
+        size.plot(frequency, np.abs(z), color=look["color"])
+        phase.plot(frequency, np.angle(z, deg=True), color=look["color"])
+    figure.legend(*size.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
+    return figure
+
+
+def _size_and_phase() -> tuple[Figure, tuple[Axes, Axes]]:
     figure = new_figure(5.6)
     size, phase = figure.subplots(2, 1, sharex=True)
-    for shunt, look in series_style(point.shunt for point in points).items():
-        mine = sorted((p for p in points if p.shunt == shunt), key=lambda p: p.frequency)
-        frequency, z = np.array([p.frequency for p in mine]), np.array([p.impedance for p in mine])
-        error = 2 * np.array([p.error for p in mine])
-        size.errorbar(frequency, np.abs(z), error, label=shunt_words(shunt), **look)
-        phase.errorbar(frequency, np.angle(z, deg=True), np.degrees(error / np.abs(z)), **look)
     size.set(xscale="log", yscale="log", ylabel="force over velocity / (Ns/m)")
     phase.set(xscale="log", xlabel="frequency / Hz", ylabel="phase / °", yticks=(-90, -45, 0, 45, 90))
     letter([size, phase])
     show_grid(size, phase)
-    figure.legend(*size.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
-    return figure
+    return figure, (size, phase)
+
+
+def _draw_points(
+    size: Axes, phase: Axes, points: Sequence[ImpedancePoint], shunt: float, look: Look
+) -> list[ImpedancePoint]:
+    """Draws the points of a shunt; returns them in the order of frequency."""
+    mine = sorted((p for p in points if p.shunt == shunt), key=lambda p: p.frequency)
+    frequency, z = np.array([p.frequency for p in mine]), np.array([p.impedance for p in mine])
+    error = 2 * np.array([p.error for p in mine])
+    size.errorbar(frequency, np.abs(z), error, label=shunt_words(shunt), **look)
+    phase.errorbar(frequency, np.angle(z, deg=True), np.degrees(error / np.abs(z)), **look)
+    return mine
 
 
 @styled
@@ -184,7 +216,7 @@ def levels(found: Sequence[SoundLevels]) -> Figure:
     top = max(one.loudest for one in found)
     axes.set(
         xlabel="time / s",
-        ylabel="A-weighted level, fast / dB re 20 µPa  (dotted: equivalent)",
+        ylabel="A-weighted level / dB",
         ylim=(top - 40, top + 3),
     )
     show_grid(axes)
