@@ -3,8 +3,8 @@
     python -m benchmarks.loop_diagnosis        # a minute; writes results/reference/loop_diagnosis/
 
 Loops of the virtual bench (another integrator, a contact that is stiff from its beginning) over shunts, strokes and
-frequencies become impedances by ``bench.tools`` and a campaign; its device lacks what is to be named. The tests
-diagnose the campaigns that this command wrote.
+frequencies become impedances by ``bench.report.impedance`` and a campaign; its device lacks what is to be named. The
+tests diagnose the campaigns that this command wrote.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from bench.analysis import Settings
 from bench.record import Record
-from bench.tools import impedance
+from bench.report.impedance import impedance
 from benchmarks.virtual_benches.actuator_loops import RAMP, SAMPLING, Drive, Truth, loop_of
 
 OUT = Path("results/reference/loop_diagnosis")

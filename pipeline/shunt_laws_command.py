@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from bench.errors import RecordError
+from bench.report.shunt_laws import shunt_analysis
 from bench.shunt_damping import ShuntDevice, ShuntPoints
-from bench.shunt_report import shunt_analysis
 from pipeline.analyse_command import print_results, write_results
 from pipeline.own_effects import exit_on_wrong_campaign
 from units import MILLIOHM

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from bench.errors import RecordError
+from bench.report.shunt_laws import AGREES, shunt_analysis
 from bench.shunt_damping import ShuntDevice, ShuntPoints, each_left_out, judged_laws
-from bench.shunt_report import AGREES, shunt_analysis
 from workbench.data.campaign import read_campaign
 
 TAU = 0.115 / 87.3

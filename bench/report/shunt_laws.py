@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from bench import pictures
 from bench.analysis import Analysis
+from bench.report import pictures
 from bench.shunt_damping import JudgedLaw, LeftOut, ShuntDevice, ShuntPoints, each_left_out, judged_laws
 from figures.report import Picture, Remark, Section, Table
 from units import MILLIOHM
