@@ -65,7 +65,7 @@ def _require_steady(record: Record, velocity: np.ndarray) -> None:
     if abs(last - first) > _LARGEST_DRIFT * abs(mean):
         raise RecordError(
             f"{record.name}: expected a constant speed, found {first:.4g} m/s at the beginning and {last:.4g} m/s at "
-            f"the end; cut out the part at constant speed."
+            "the end; cut out the part at constant speed."
         )
 
 

@@ -55,8 +55,8 @@ class FrequencyResponse:
         inside = (self.frequency >= lowest) & (self.frequency <= highest)
         if not inside.any():
             raise RecordError(
-                f"frequency response: expected frequencies between {lowest:g} and {highest:g} Hz, found none in "
-                f"steps of {self.frequency[1]:.3g} Hz; use longer segments."
+                f"frequency response: expected frequencies between {lowest:g} and {highest:g} Hz, found none in steps "
+                f"of {self.frequency[1]:.3g} Hz; use longer segments."
             )
         h1, h2, coherence, radius = (one[inside] for one in (self.h1, self.h2, self.coherence, self.radius))
         return FrequencyResponse(self.frequency[inside], h1, h2, coherence, self.averages, radius)

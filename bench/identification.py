@@ -129,8 +129,8 @@ def identify(
     readings = sum(len(one) for one in measured)
     if readings <= len(unknowns):
         raise RecordError(
-            f"identification: expected more readings than the {len(unknowns)} unknowns, found {readings}; "
-            "record longer or state some of them."
+            f"identification: expected more readings than the {len(unknowns)} unknowns, found {readings}; record "
+            "longer or state some of them."
         )
     weights = np.concatenate([np.full(len(one), 1 / sigma) for one, sigma in zip(measured, noise, strict=True)])
     target = np.concatenate(list(measured))

@@ -59,7 +59,7 @@ def passes(record: Record, window: float) -> tuple[Pass, ...]:
     if not found:
         raise RecordError(
             f"{record.name}: expected passes of {_FEWEST} samples or more through the middle {window * 1e3:g} mm of "
-            f"the stroke, found none; widen the window with --value window_mm=... or sample faster."
+            "the stroke, found none; widen the window with --value window_mm=... or sample faster."
         )
     return tuple(found)
 
@@ -82,7 +82,7 @@ def _pass(record: Record, run: np.ndarray, window: float) -> Pass:
     if beside > _STRAIGHT * window:
         raise RecordError(
             f"{record.name}: expected a constant speed in the middle of the stroke, found {beside * 1e3:.2g} mm "
-            f"beside a straight line; drive a saw tooth or narrow the window."
+            "beside a straight line; drive a saw tooth or narrow the window."
         )
     electrical = record.channel("dc_voltage")[run] * record.channel("dc_current")[run]
     velocity = float(line[0])

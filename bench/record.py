@@ -120,7 +120,7 @@ def read_record(path: Path, columns: Mapping[str, str], stated: Mapping[str, flo
     if "time" not in channels:
         raise RecordError(
             f"{raw.where}: expected a column 'time' with its unit, such as time_s, found none; name it with --column "
-            f"time=HEADING."
+            "time=HEADING."
         )
     step = _step(raw.where, channels.pop("time"))
     constants = {quantity: np.full(raw.rows, value) for quantity, value in stated.items()}
@@ -162,6 +162,7 @@ def _step(where: str, time: np.ndarray) -> float:
     if step <= 0 or beside[worst] > _JITTER * step:
         raise RecordError(
             f"{where}: expected equally spaced times, found sample {worst + 1} at {time[worst]:g} s, "
-            f"{beside[worst]:.2g} s beside its place in steps of {step:.4g} s; resample the record or cut out the gap."
+            f"{beside[worst]:.2g} s beside its place in steps of {step:.4g} s; resample the record or cut out the "
+            "gap."
         )
     return step

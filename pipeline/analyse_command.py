@@ -97,9 +97,8 @@ def write_results(out: Path, tool: str, found: Analysis) -> None:
 def _feeds(entry: str, file: str) -> Section:
     words = (
         f"{file} is a table of a campaign. Beside a campaign.toml with the device these lines let airgap diagnose "
-        f"read it; --like with a campaign of the same device writes the whole. The uncertainty is that of the "
-        f"records alone: "
-        "sensors have gains and offsets of their own."
+        "read it; --like with a campaign of the same device writes the whole. The uncertainty is that of the records "
+        "alone: sensors have gains and offsets of their own."
     )
     return Section("For the workbench", (words, Code(entry)))
 

@@ -54,7 +54,7 @@ def _points(campaign: Campaign) -> ShuntPoints:
     if not tables:
         raise RecordError(
             f"{campaign.folder}: expected a table of kind {_KIND}, found none; `airgap analyse constant-speed` makes "
-            f"its values."
+            "its values."
         )
     shunt = np.concatenate([table.conditions["shunt"] for table in tables])
     damping = np.concatenate([table.responses[_RESPONSE].values for table in tables])

@@ -34,8 +34,7 @@ def identification_remarks(found: Identification) -> tuple[str, ...]:
     if found.memory > _MEMORY:
         said.append(
             f"What is left beside the model has a memory: {found.memory:.3g} readings say as much as one independent "
-            f"one. "
-            "The model is not quite right, and the intervals are widened for the memory, not for what it lacks."
+            "one. The model is not quite right, and the intervals are widened for the memory, not for what it lacks."
         )
     return tuple(said)
 

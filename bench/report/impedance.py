@@ -33,8 +33,7 @@ def impedance(records: Records, settings: Settings) -> Analysis:
         (
             "Fundamental of the force over that of the velocity (thesis eq. B.1): in phase with the velocity it is a "
             "damper, ahead of it an inertia, behind it a spring. Distortion is what the harmonics of the force are, "
-            "of its "
-            "fundamental: none in a linear device.",
+            "of its fundamental: none in a linear device.",
             Picture(pictures.impedance_points(points), "Size (a) and phase (b) with two standard deviations."),
             Table(table[["record", "frequency_Hz", "amplitude_mm", "shunt_mohm", "size_Ns_per_m", "phase_deg",
                          "error_Ns_per_m", "distortion_percent"]], "Every record."),

@@ -29,8 +29,7 @@ def loops(records: Records, settings: Settings) -> Analysis:
         (
             "Nonlinear least squares of all records together (thesis eq. 4.28). Intervals come from what is left "
             "beside the model and hold where the model is right; what is the same in all records, such as the gain "
-            "of the load "
-            "cell, is not in them.",
+            "of the load cell, is not in them.",
             weakest_words(found),
             *map(Remark, remarks),
             Table(table, "Values with their 90 % intervals; the gain is over the nominal value (thesis eq. 4.29)."),

@@ -33,9 +33,8 @@ def _lumped(records: Records, settings: Settings, circuit: Circuit) -> Analysis:
         "Lumped model",
         (
             "Mass, friction and mount of thesis eq. B.4, fitted to the sizes of all points; the machine is as "
-            "stated. Its "
-            "electrical pole acts on the electrical speed as well as on the frequency, so the stroke of every point "
-            "counts.",
+            "stated. Its electrical pole acts on the electrical speed as well as on the frequency, so the stroke of "
+            "every point counts.",
             weakest_words(found),
             *map(Remark, remarks),
             Table(table, "Values with their 90 % intervals (thesis table B.1)."),

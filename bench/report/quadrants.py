@@ -32,7 +32,7 @@ def quadrants(records: Records, settings: Settings) -> Analysis:
         "Efficiency in four quadrants",
         (
             f"Means over the middle {window / MILLIMETRE:g} mm of every pass; power is positive from the suspension "
-            f"to the battery. Where both ends lose power (crosses) there is no efficiency.",
+            "to the battery. Where both ends lose power (crosses) there is no efficiency.",
             KeyNumbers(
                 (
                     KeyNumber("passes", len(found)),

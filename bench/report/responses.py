@@ -69,8 +69,7 @@ def _response_analysis(found: FrequencyResponse, record: Record, title: str, qua
             f"{record.name}: averaged over {found.averages:.3g} independent segments. H₁ takes the noise to be on the "
             "output, H₂ on the input; the truth lies between them where both are noisy. The band holds with 95 % for "
             "stationary noise, and the phase is drawn where it is narrower than the response; where the coherence "
-            "falls with little noise, the device is not linear or the segment is "
-            "shorter than it rings.",
+            "falls with little noise, the device is not linear or the segment is shorter than it rings.",
             KeyNumbers(
                 (
                     KeyNumber("largest", float(np.abs(found.h1[peak])), words, f"at {found.frequency[peak]:.4g} Hz"),

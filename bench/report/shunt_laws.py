@@ -29,9 +29,8 @@ def shunt_analysis(device: ShuntDevice, points: ShuntPoints) -> Analysis:
         (
             "Every law beside the measured slopes of force over velocity. Where a law has free numbers it is fitted "
             "to the logarithm of the damping, to the points with a resistance unless it says otherwise: whether a "
-            "short "
-            "circuit was one of the machine or of what stands behind its rectifier changes the resistance in the "
-            "circuit.",
+            "short circuit was one of the machine or of what stands behind its rectifier changes the resistance in "
+            "the circuit.",
             *map(Remark, remarks),
             Table(_shown(laws), "Predicted damping with its error, and the rms error of the logarithm."),
             Picture(pictures.law_errors(laws), "Errors of the laws; a mark at the edge lies beyond it."),
@@ -128,10 +127,7 @@ def _unresolved(short: LeftOut) -> str:
     return (
         f"The short circuit is reported and not fitted: {short.measured / 1e3:.4g} kNs/m measured, {short.ratio:.2g} "
         f"times what the other points predict ({short.predicted / 1e3:.3g} kNs/m). A law that reaches it as well was "
-        f"made for "
-        f"it: the points cannot tell where the short circuit was, whether the resistance is of a phase or between "
-        f"two, or "
-        "whether the value is wrong. What settles it: force over velocity of the run, the place of the short "
-        "circuit, and the "
-        "wiring of the resistance measurement."
+        "made for it: the points cannot tell where the short circuit was, whether the resistance is of a phase or "
+        "between two, or whether the value is wrong. What settles it: force over velocity of the run, the place of "
+        "the short circuit, and the wiring of the resistance measurement."
     )
