@@ -7,7 +7,7 @@ of IEEE 1057); the impedance is the ratio of the fundamentals. What is left is n
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import log, pi, sqrt
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -18,6 +18,7 @@ from bench.memory import memory_of
 from bench.record import Record
 
 _HARMONICS = 9  # fitted, so that the distortion of a play or a rectifier does not count as noise
+_OF_RADIUS = sqrt(-2 * log(0.05))  # radius that 95 % of a complex normal number lie in, over its deviation in a part
 _FEWEST_PERIODS = 3
 _FEWEST_PER_PERIOD = 4 * _HARMONICS  # samples
 
@@ -64,6 +65,20 @@ def sweep_impedance(record: Record, segment: float) -> FrequencyResponse:
     segment: duration of a segment [s]. The fundamental of a device that is not linear needs a sine.
     """
     return frequency_response(record, record.velocity(), record.channel("force"), segment)
+
+
+def sweep_points(record: Record, found: FrequencyResponse) -> list[ImpedancePoint]:
+    """The frequencies of a sweep whose band is narrower than the impedance, as if each were a sine of a record.
+
+    found: ``sweep_impedance`` of the record, which also needs the channels stroke and shunt. The amplitude is that of a
+    sine with the rms of the stroke: right for a sweep of constant stroke, and without meaning for a linear device.
+    """
+    amplitude, shunt = sqrt(2) * float(np.std(record.channel("stroke"))), record.constant("shunt")
+    rows = zip(found.frequency[found.is_sure], found.h1[found.is_sure], found.radius[found.is_sure])
+    return [
+        ImpedancePoint(record.name, float(f), amplitude, shunt, complex(z), float(radius) / _OF_RADIUS, 0.0)
+        for f, z, radius in rows
+    ]
 
 
 def _frequency(record: Record, stroke: np.ndarray) -> float:

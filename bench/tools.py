@@ -59,7 +59,12 @@ TOOLS = {
         "stroke, force, shunt",
         f"{_MACHINE}, diode_drop_V, diode_mohm",
     ),
-    "sweep": Tool(sweep, "mechanical impedance from one sweep", "stroke or velocity, force", _OF_SPECTRA),
+    "sweep": Tool(
+        sweep,
+        "mechanical impedance from one sweep",
+        "stroke or velocity, force; stroke and shunt for a campaign",
+        _OF_SPECTRA,
+    ),
     "response": Tool(
         response, "force over current with the output held, with coherence", "current, force", _OF_SPECTRA
     ),

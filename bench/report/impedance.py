@@ -39,8 +39,14 @@ def impedance(records: Records, settings: Settings) -> Analysis:
                          "error_Ns_per_m", "distortion_percent"]], "Every record."),
         ),
     )  # fmt: skip
-    campaign = CampaignTable("impedance", frame, dict.fromkeys(("re_Ns_per_m", "im_Ns_per_m"), _uncertainty(points)))
-    return Analysis("Mechanical impedance", (section,), table, {"points": table.to_dict("records")}, campaign)
+    numbers = {"points": table.to_dict("records")}
+    return Analysis("Mechanical impedance", (section,), table, numbers, impedance_campaign(points))
+
+
+def impedance_campaign(points: Sequence[ImpedancePoint]) -> CampaignTable:
+    """The points as a table of a campaign."""
+    responses = ("re_Ns_per_m", "im_Ns_per_m")
+    return CampaignTable("impedance", _impedance_frame(points), dict.fromkeys(responses, _uncertainty(points)))
 
 
 def _uncertainty(points: Sequence[ImpedancePoint]) -> str:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
 from bench.analysis import Analysis, Records, Settings
 from bench.errors import RecordError
 from bench.frequency_response import FrequencyResponse, frequency_response
-from bench.impedance import sweep_impedance
+from bench.impedance import sweep_impedance, sweep_points
 from bench.record import Record
 from bench.report import pictures
+from bench.report.impedance import impedance_campaign
 from figures.report import KeyNumber, KeyNumbers, Picture, Section
 
 
 def sweep(records: Records, settings: Settings) -> Analysis:
     """Mechanical impedance from one sweep or noise record."""
     record = _only(records)
-    found = sweep_impedance(record, settings.needed("segment", "segment_s=1"))
-    found = _inside(found, settings)
-    return _response_analysis(found, record, "Mechanical impedance from a sweep", "force over velocity", "Ns_per_m")
+    found = _inside(sweep_impedance(record, settings.needed("segment", "segment_s=1")), settings)
+    analysis = _response_analysis(found, record, "Mechanical impedance from a sweep", "force over velocity", "Ns_per_m")
+    has_conditions = {"stroke", "shunt"} <= set(record.channels) and found.is_sure.any()
+    return replace(analysis, campaign=impedance_campaign(sweep_points(record, found))) if has_conditions else analysis
 
 
 def response(records: Records, settings: Settings) -> Analysis:

@@ -10,9 +10,10 @@ from scipy.signal import chirp, freqz, lfilter, sawtooth
 from bench.constant_speed import shunt_points, steady_point, straight_lines
 from bench.errors import RecordError
 from bench.frequency_response import frequency_response
-from bench.impedance import sine_impedance, sweep_impedance
+from bench.impedance import sine_impedance, sweep_impedance, sweep_points
 from bench.quadrants import best, passes
 from bench.record import Record
+from bench.report.impedance import impedance_campaign
 from electrical.shunted_machine import Bridge
 from electrical.synchronous_machine import SynchronousMachine
 from pipeline.cli import main
@@ -181,7 +182,7 @@ def test_coherence_is_the_share_of_the_power_that_the_input_makes():
     found = frequency_response(one, one.channel("cause"), one.channel("answer"), 0.25).between(20, 500)
     true = np.abs(freqz(*FILTER, found.frequency, fs=SAMPLING)[1]) ** 2
     assert found.coherence == pytest.approx(true / (true + 0.09), abs=0.06)
-    assert np.abs(found.h2 / found.h1) == pytest.approx(1 / found.coherence, rel=1e-9)
+    assert found.h2 / found.h1 == pytest.approx(1 / found.coherence + 0j, rel=1e-9)
 
 
 def test_a_sweep_gives_the_impedance_of_a_mass_with_a_damper():
@@ -190,6 +191,21 @@ def test_a_sweep_gives_the_impedance_of_a_mass_with_a_damper():
     force = 250 * velocity + 5.6 * np.gradient(velocity, time) + np.random.default_rng(5).standard_normal(len(time))
     found = sweep_impedance(record(velocity=velocity, force=force), 1.0).between(3, 50)
     assert np.mean(np.abs(found.h1 / (250 + 2j * np.pi * found.frequency * 5.6) - 1)) < 0.02
+
+
+def test_a_sweep_becomes_rows_of_a_campaign_with_errors_that_hold():
+    """Parts of the impedance lie within their stated deviations: as many beyond one and two as a normal number has."""
+    time, rng = np.arange(0, 60, 1 / SAMPLING), np.random.default_rng(7)
+    stroke = 1e-3 * chirp(time, 3, 60, 30)
+    velocity = np.gradient(stroke, 1 / SAMPLING)
+    one = record(
+        stroke=stroke, velocity=velocity, force=300 * velocity + 2 * rng.standard_normal(len(time)), shunt=0.135
+    )
+    points = sweep_points(one, sweep_impedance(one, 1.0).between(6, 26))
+    pulls = np.array([(p.impedance - 300) / p.error for p in points])
+    assert len(points) == 21 and points[0].amplitude == pytest.approx(1e-3, rel=0.02)
+    assert 0.6 < np.sqrt(np.mean(np.abs(pulls) ** 2) / 2) < 1.5
+    assert impedance_campaign(points).frame["shunt_mohm"].eq(135).all()
 
 
 def test_too_short_a_record_is_refused():
