@@ -144,12 +144,12 @@ def test_wrong_input_is_one_sentence():
 
 # ---- table B.1 -----------------------------------------------------------------------------------------------------
 
-STROKE = 4e-4  # m
+STROKE = 3e-3  # m
 MACHINE = SynchronousMachine(5, 49.3e-3 / 7.5, 348.7e-6, 348.7e-6, 68.3e-3)
 
 
 def points_of(device, rng):
-    """Sizes with 1 % of scatter, at a stroke that turns the rotor by an electrical radian and a half."""
+    """Sizes with 1 % of scatter, at a stroke that swings the rotor by two electrical turns."""
     places = [(f, shunt) for shunt in (np.inf, 0.465, 0.055) for f in np.geomspace(1, 80, 8)]
     z = [complex(device.impedance(f, min(shunt, 1e6), 2 * np.pi * f * STROKE)) for f, shunt in places]
     scatter = np.exp(0.01 * rng.standard_normal(len(z)))

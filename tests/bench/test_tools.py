@@ -18,6 +18,7 @@ from electrical.shunted_machine import Bridge
 from electrical.synchronous_machine import SynchronousMachine
 from pipeline.cli import main
 from workbench.data.campaign import read_campaign
+from workbench.data.expression import evaluate
 
 SAMPLING = 2000.0
 
@@ -99,6 +100,13 @@ def test_both_quadrants_of_a_record_have_their_efficiency():
     assert all(one.mechanical == pytest.approx(400.0 * one.velocity) for one in found)
 
 
+def test_a_pass_that_begins_with_the_record_does_not_count():
+    whole = strokes(0.2, 400.0, 0.7)
+    place = int(np.argmin(np.abs(whole.channel("stroke")[:600]))) + 5  # just behind the middle
+    cut = Record("cut", whole.step, {name: values[place:] for name, values in whole.channels.items()})
+    assert len(passes(whole, 10e-3)) == 6 and len(passes(cut, 10e-3)) == 5
+
+
 def test_where_both_ends_lose_there_is_no_efficiency():
     still = record(stroke=strokes(0.2, 1.0, 0.7).channel("stroke"), force=50.0, dc_voltage=48.0, dc_current=-1.0)
     assert all(np.isnan(one.efficiency) for one in passes(still, 10e-3) if one.is_passive)
@@ -147,6 +155,13 @@ def test_the_error_of_an_impedance_is_what_repeats_scatter_by():
     found = [sine_impedance(driven(7.3, 300 - 120j, noise=4.0, rng=rng)) for _ in range(40)]
     pulls = np.array([(one.impedance - (300 - 120j)) / one.error for one in found])
     assert 0.7 < np.std(pulls.real) < 1.3 and 0.7 < np.std(pulls.imag) < 1.3
+
+
+def test_the_campaign_states_the_error_of_the_worst_point_at_its_place():
+    (point,) = points = [sine_impedance(driven(7.3, 300 - 120j, noise=4.0, rng=np.random.default_rng(8)))]
+    at = {"frequency": np.array(point.frequency), "amplitude": np.array(1e3 * point.amplitude), "z": np.array(323.0)}
+    stated = evaluate(impedance_campaign(points).uncertainty["im_Ns_per_m"], at, "")
+    assert stated == pytest.approx(point.error + 1e-4 * 323, rel=0.05)
 
 
 def test_too_few_periods_or_samples_are_refused():
