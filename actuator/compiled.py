@@ -20,7 +20,8 @@ Record = Any  # of numpy, whose fields the compiled code reads as attributes
 SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "vehicle/motion.py")
 _PROJECT = Path(__file__).resolve().parent.parent
 _HASH = sha256(b"".join((_PROJECT / source).read_bytes() for source in SOURCES)).hexdigest()[:16]
-config.CACHE_DIR = str(_PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}")
+_FOLDER = _PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}"
+config.CACHE_DIR = str(_FOLDER)  # type: ignore[attr-defined]  # numba has no annotations
 # A division by zero gives inf, as in numpy, which makes the code smaller and faster.
 compiled = njit(cache=True, error_model="numpy")
 

@@ -31,10 +31,19 @@ def tangent_plant(actuator: Actuator, force: float) -> TransferFunction:
 
     Raises ActuatorError for a rigid mount, whose force is the motor's.
     """
+    return blocked_force(actuator, *_tangent_about(actuator, force))
+
+
+def stiffness_about(actuator: Actuator, force: float) -> float:
+    """Of the mount at a steady force [N/m]; force [N]. Raises ActuatorError for a rigid mount."""
+    return _tangent_about(actuator, force)[0]
+
+
+def _tangent_about(actuator: Actuator, force: float) -> tuple[float, float]:
     mount = actuator.mount
     if not isinstance(mount, CompliantMount):
         raise ActuatorError("the plant of a force loop needs a compliant mount, found a rigid one; leave the loop out")
-    return blocked_force(actuator, *mount.tangent(mount.deformation(force)))
+    return mount.tangent(mount.deformation(force))
 
 
 def require_stable(actuator: Actuator, loop: ForceLoop) -> None:

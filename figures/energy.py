@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -53,9 +55,10 @@ def powers_over_time(found: EnergyOutcome) -> Figure:
     return figure
 
 
-def _legends(figure: Figure, axes: np.ndarray) -> None:
-    handles, names = (sum((one.get_legend_handles_labels()[k] for one in axes), []) for k in (0, 1))
-    figure.legend(handles, names, loc="outside lower center", ncols=5, frameon=False)
+def _legends(figure: Figure, axes: Iterable[Axes]) -> None:
+    pairs = [pair for axis in axes for pair in zip(*axis.get_legend_handles_labels(), strict=True)]
+    handles, names = zip(*pairs, strict=True)
+    figure.legend(handles, names, loc="outside lower center", ncols=5, frameon=False, markerscale=6)
 
 
 @styled
@@ -77,8 +80,7 @@ def working_points(found: EnergyOutcome) -> Figure:
     left.set(xlabel="velocity of the suspension / (m/s)", ylabel="force at the suspension / N")
     right.set(xlabel="speed of the rotor / (rad/s)", ylabel="torque, positive against rebound / Nm")
     right.set_xlim(-fastest, fastest)
-    handles, names = (sum((one.get_legend_handles_labels()[k] for one in (left, right)), []) for k in (0, 1))
-    figure.legend(handles, names, loc="outside lower center", ncols=4, frameon=False, markerscale=6)
+    _legends(figure, (left, right))
     for axis in (left, right):
         axis.axhline(0, color=LIGHT_GREY, linewidth=0.8)
         axis.axvline(0, color=LIGHT_GREY, linewidth=0.8)
@@ -89,11 +91,12 @@ def working_points(found: EnergyOutcome) -> Figure:
 
 @styled
 def where_the_power_goes(found: EnergyOutcome) -> Figure:
-    """Mean powers of every case with their scatter over the roads; what comes from the suspension is their sum."""
-    figure = new_figure(0.9 + 0.36 * len(found.cases))
+    """Mean powers with their scatter over the roads; what swings by itself, by some hundred times more, is left out."""
+    cases = [case for case in found.cases if not case.swings]
+    figure = new_figure(0.9 + 0.36 * len(cases))
     axis = figure.subplots()
-    names = [f"{case.command}, {case.actuator}" for case in found.cases]
-    for place, case in enumerate(found.cases):
+    names = [f"{case.command}, {case.actuator}" for case in cases]
+    for place, case in enumerate(cases):
         _bar(axis, place, scatter(case.energies))
     for _, words, colour in _PARTS:
         axis.barh([0], [0], color=colour, label=words)
@@ -116,6 +119,21 @@ def _bar(axis: Axes, place: int, values: dict[str, Scatter]) -> None:
     axis.plot(values["shaft.active"].mean, place, color=BLACK, marker="|", markersize=14, linestyle="")
     deviation = values["battery.active"].deviation
     axis.errorbar(values["battery.active"].mean, place, xerr=deviation, color=BLACK, capsize=3, linewidth=1.0)
+
+
+@styled
+def temperatures_under_the_ride(found: EnergyOutcome) -> Figure:
+    """Copper and magnets over time under the mean losses of the first road, one colour a command."""
+    figure = new_figure(3.8)
+    axis = figure.subplots()
+    for one, colour in zip(found.temperatures, SERIES, strict=False):
+        minutes = one.time / 60.0
+        axis.plot(minutes, one.copper, color=colour, label=f"{one.command}, copper")
+        axis.plot(minutes, one.magnets, color=colour, linestyle="--", label=f"{one.command}, magnets")
+    axis.set(xlabel="time / min", ylabel="mean temperature / °C", xlim=(0.0, None))
+    show_grid(axis)
+    figure.legend(loc="outside lower center", ncols=3, frameon=False)
+    return figure
 
 
 @styled

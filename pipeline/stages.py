@@ -102,6 +102,7 @@ from vehicle.errors import VehicleError
 from vehicle.gear_loads import road_loads
 from vehicle.heat_duty import road_duty
 from vehicle.ride_again import ride_again_stage
+from vehicle.ride_heat import thermal_machine
 
 REFUSALS = (
     ActuatorError, ControlError, FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError,
@@ -130,6 +131,7 @@ _VEHICLE: tuple[Node, ...] = (
 _ENERGY: tuple[Node, ...] = (
     Source(actuator_inputs),
     View(designed_actuator),
+    View(thermal_machine),
     Stage("energy", energy_stage, "power and duty on the road", energy.files, remarks=energy.remarks),
 )
 _STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))

@@ -8,17 +8,21 @@ import numpy as np
 import pandas as pd
 
 from control.force_loop import ForceLoop
-from figures.energy import force_loop, powers_over_time, where_the_power_goes, working_points
+from figures.energy import (
+    force_loop,
+    powers_over_time,
+    temperatures_under_the_ride,
+    where_the_power_goes,
+    working_points,
+)
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Remark, Section, Table
 from units import FACTORS, GRAVITY
 from vehicle.demands import RideCase
 from vehicle.energy import Scatter, scatter
 from vehicle.energy_stage import (
-    OPEN,
     QUASI_IDEAL,
     REAL,
-    SHOWN,
     WANTED_BANDWIDTH,
     WANTED_MARGIN,
     EnergyCase,
@@ -29,6 +33,8 @@ from vehicle.printed_energy import PrintedEnergy, printed_energy
 
 TABLE = "energy.csv"
 TIME, POINTS, POWERS, LOOP = "energy_over_time", "energy_points", "energy_powers", "energy_loop"
+HEAT = "energy_temperatures"
+_HOUR = 3600.0  # s
 _GENEROUS = 0.05  # of the wanted bandwidth or margin
 _LOST = 0.01  # of the mechanical power, which the balance may leave open
 
@@ -40,23 +46,28 @@ def files(found: EnergyOutcome) -> Iterator[File]:
     yield figure_file(POINTS, working_points(found))
     yield figure_file(POWERS, where_the_power_goes(found))
     yield figure_file(LOOP, force_loop(found))
+    if found.temperatures:
+        yield figure_file(HEAT, temperatures_under_the_ride(found))
 
 
 def section(found: EnergyOutcome, case: RideCase) -> Section:
     """Where the energy of the ride goes."""
-    first, last = SHOWN
     return Section(
         "Energy on the road",
         (
             _text(found),
             *(Remark(line) for line in remarks(found)),
             Table(power_table(found), f"Mean powers over the random road; ± over the roads. All of it is in {TABLE}."),
-            Picture(picture_name(POWERS), "Where the power goes. A bar to the left: power that the battery gives."),
+            Picture(
+                picture_name(POWERS),
+                "Where the power goes, but for what swings by itself. To the left: power that the battery gives.",
+            ),
             Table(duty_table(found), "Duty, power factors and what the ride becomes, means over the roads."),
-            Picture(picture_name(TIME), f"From {first:g} to {last:g} s of the first road, real actuator."),
+            Picture(picture_name(TIME), "Some seconds of the first road, real actuator."),
             Picture(picture_name(POINTS), "Working points of the same time at suspension and rotor."),
             Table(loop_table(found), _loop_words(found.own.loop)),
             Picture(picture_name(LOOP), "The force loop with the output held, about three forces of the mount."),
+            *_temperatures(found),
             *_printed(case),
         ),
     )
@@ -68,9 +79,9 @@ def remarks(found: EnergyOutcome) -> Iterator[str]:
     if taking:
         names = ", ".join(f"{case.command} ({-_mean(case, 'battery.active'):.1f} W)" for case in taking)
         yield f"On the random road the real actuator takes power from the battery with: {names}."
-    swinging = [case.command for case in found.cases if case.actuator == OPEN and _swings(case)]
+    swinging = [f"{case.command} ({case.actuator})" for case in found.cases if case.swings]
     if swinging:
-        yield f"Without its force loop the real actuator swings by itself with: {', '.join(swinging)}."
+        yield f"The actuator swings by itself with: {', '.join(swinging)}."
     weak = [point for point in found.loop if point.phase_margin < (1 - _GENEROUS) * WANTED_MARGIN]
     if weak:
         forces = ", ".join(f"{np.degrees(point.phase_margin):.0f}° about {point.force:g} N" for point in weak)
@@ -79,11 +90,6 @@ def remarks(found: EnergyOutcome) -> Iterator[str]:
     open_ = max(abs(one.closure) for case in found.cases for one in case.energies)
     if open_ > _LOST:
         yield f"The balance of energy leaves up to {100 * open_:.2g} % open: the history is sampled too coarsely."
-
-
-def _swings(case: EnergyCase) -> bool:
-    """Whether the mount takes more than the suspension gives."""
-    return _mean(case, "mount_loss") > _mean(case, "shaft.active")
 
 
 def whole_table(found: EnergyOutcome) -> pd.DataFrame:
@@ -172,13 +178,29 @@ def _gains(loop: ForceLoop | None) -> str:
     if loop is None:
         return "no PID has them"
     ms = loop.derivative / FACTORS["ms"]
-    return f"P {loop.proportional:.2g}, I {loop.integral:.3g} 1/s, D {ms:.2g} ms, N {loop.filter:.3g} rad/s"
+    return f"P {loop.proportional:.2g}, I {loop.integral:.4g} 1/s, D {ms:.2g} ms, N {loop.filter:.4g} rad/s"
 
 
 def _loop_words(loop: ForceLoop) -> str:
     return (
         f"The force loop ({_gains(loop)}) with the output held; bandwidth: where the closed loop first falls by 3 dB."
     )
+
+
+def _temperatures(found: EnergyOutcome) -> Iterator[Table | Picture]:
+    """How warm the machine becomes, where that is known."""
+    if found.temperatures:
+        rows = [
+            {
+                "command": one.command,
+                "copper after an hour / °C": float(np.interp(_HOUR, one.time, one.copper)),
+                "magnets after an hour / °C": float(np.interp(_HOUR, one.time, one.magnets)),
+                "hottest copper in the end / °C": one.hottest_copper,
+            }
+            for one in found.temperatures
+        ]
+        yield Table(pd.DataFrame(rows), "Temperatures with the losses of the first road, real actuator.")
+        yield Picture(picture_name(HEAT), "Warming up under the mean losses of the first road.")
 
 
 def _printed(case: RideCase) -> Iterator[Table]:

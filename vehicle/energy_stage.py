@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from actuator.linear import tangent_plant
+from actuator.linear import stiffness_about, tangent_plant
 from actuator.model import Actuator
 from actuator.parts import LOSSLESS, NO_LOSS, RIGID
 from control.design import loop_for
@@ -16,6 +16,7 @@ from control.errors import ControlError
 from control.force_loop import ForceLoop
 from control.transfer import bandwidth, margins
 from tasks import Workers
+from thermal.stage import Assembled
 from vehicle.commands import Feedback
 from vehicle.damping import DamperCurve
 from vehicle.demands import RideCase
@@ -23,13 +24,14 @@ from vehicle.designed import DesignedActuator
 from vehicle.energy import RideEnergy, ride_energy
 from vehicle.models import QuarterCar, Vehicle
 from vehicle.quarter_car import LqrWeights, lqr
-from vehicle.ride import Run, simulate
+from vehicle.ride import RideHistory, Run, simulate
+from vehicle.ride_heat import RideTemperature, ride_temperature
 
 QUASI_IDEAL, REAL, OPEN = "quasi-ideal", "real", "real, no force loop"
 # Settings of Table 4.1, as the grid has them on which they were found.
 LQR_SETTINGS = {"LQR trade-off": LqrWeights(42.9, 3.556e5), "LQR handling": LqrWeights(3.39e6, 2.223e7)}
 STEP = 5e-4  # s, of the histories: means of powers are taken over their samples
-SHOWN = (4.0, 8.0)  # s, of the first road, in figures
+SHOWN = (4.0, 8.0)  # s, of the first road, in figures; of a shorter one its second half
 WORKING_FORCES = (100.0, 300.0, 1000.0)  # N, about which the force loop is looked at
 WANTED_BANDWIDTH, WANTED_MARGIN = 60.0, np.radians(50.0)  # Hz (text to Table 4.5) and rad (a usual choice)
 
@@ -48,6 +50,11 @@ class EnergyCase:
     command: str
     actuator: str
     energies: tuple[RideEnergy, ...]
+
+    @property
+    def swings(self) -> bool:
+        """Whether it swings by itself: the mount takes more than the suspension gives."""
+        return sum(one.mount_loss for one in self.energies) > sum(one.shaft.active for one in self.energies)
 
 
 @dataclass(frozen=True)
@@ -72,21 +79,14 @@ class EnergyOutcome:
     own: the actuator and its loop; cases: every command with every actuator; loop: about the working forces
     traces: of the first road with the real actuator, over (command, time): time [s], (t,), wanted, force [N], shaft,
     electrical, lost: powers [W], velocity [m/s], torque [Nm], rotor_speed [rad/s], each (command, t)
+    temperatures: under the first road with the real actuator, one a command; none where no thermal model was given
     """
 
     own: DesignedActuator
     cases: tuple[EnergyCase, ...]
     loop: tuple[LoopPoint, ...]
     traces: xr.Dataset
-
-    def case(self, command: str, actuator: str) -> EnergyCase:
-        """One of the cases by its names."""
-        return next(one for one in self.cases if (one.command, one.actuator) == (command, actuator))
-
-    @property
-    def commands(self) -> tuple[str, ...]:
-        """Their names, in the order of the cases."""
-        return tuple(dict.fromkeys(one.command for one in self.cases))
+    temperatures: tuple[RideTemperature, ...]
 
 
 def energy_of(task: EnergyTask) -> RideEnergy:
@@ -94,7 +94,7 @@ def energy_of(task: EnergyTask) -> RideEnergy:
     return ride_energy(simulate([task.run])[0])
 
 
-def energy_stage(case: RideCase, own: DesignedActuator, workers: Workers) -> EnergyOutcome:
+def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | None, workers: Workers) -> EnergyOutcome:
     """Every seed of the road with every command: quasi-ideal, real, and the damper curves without force loop.
 
     Raises ControlError where the force loop is unstable on the mount, VehicleError or ActuatorError where a motion or
@@ -107,7 +107,9 @@ def energy_stage(case: RideCase, own: DesignedActuator, workers: Workers) -> Ene
     found = iter(workers.map("rides", energy_of, tasks).values())
     cases = tuple(EnergyCase(*name, tuple(next(found) for _ in group)) for name, group in runs.items())
     first = {command: group[0] for (command, kind), group in runs.items() if kind == REAL}
-    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(first))
+    histories = dict(zip(first, simulate(list(first.values())), strict=True))
+    warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
+    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(histories), tuple(warm))
 
 
 def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:
@@ -142,21 +144,21 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
     for force in WORKING_FORCES:
         plant = tangent_plant(own.actuator, force)
         through = plant.times(own.loop.transfer)
-        stiffness = own.actuator.mount.tangent(own.actuator.mount.deformation(force))[0]
         try:
             designed = loop_for(plant, WANTED_BANDWIDTH, WANTED_MARGIN)
         except ControlError:
             designed = None
+        stiffness = stiffness_about(own.actuator, force)
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
-def _traces(runs: dict[str, Run]) -> xr.Dataset:
-    histories = simulate(list(runs.values()))
-    time = histories[0].time
-    shown = (time >= SHOWN[0]) & (time <= SHOWN[1])
+def _traces(histories: dict[str, RideHistory]) -> xr.Dataset:
+    time = next(iter(histories.values())).time
+    shown = (time >= min(SHOWN[0], time[-1] / 2)) & (time <= SHOWN[1])
     rows: dict[str, list[np.ndarray]] = {}
-    for history in histories:
-        inside, lost = history.inside, _lost(history.run.actuator, history.inside.torque, history.inside.rotor_speed)
+    for history in histories.values():
+        inside = history.inside
+        lost = history.run.actuator.drive.loss.at(inside.torque, inside.rotor_speed)
         values = {
             "wanted": inside.wanted,
             "force": history.suspension_force,
@@ -170,8 +172,4 @@ def _traces(runs: dict[str, Run]) -> xr.Dataset:
         for name, value in values.items():
             rows.setdefault(name, []).append(value[shown])
     data = {name: (("command", "time"), np.array(value)) for name, value in rows.items()}
-    return xr.Dataset(data, {"command": list(runs), "time": time[shown]})
-
-
-def _lost(actuator: Actuator, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    return actuator.drive.loss.at(torque, speed)
+    return xr.Dataset(data, {"command": list(histories), "time": time[shown]})

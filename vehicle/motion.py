@@ -203,7 +203,7 @@ def advance(e: Equations, state: np.ndarray, road: np.ndarray, rise: np.ndarray,
     """One step [s] of the classical Runge-Kutta rule, in place.
 
     state: [SI], (size,); road: heights at its start [m], (n,); rise: over the step [m], (n,)
-    work: room for slopes and a trial state [SI], (7, size) at least
+    work: room for slopes and a trial state [SI], (8, size) at least
     """
     size = state.size
     under, climb, seen, trial = work[4, : rise.size], work[5, : rise.size], work[6], work[7]

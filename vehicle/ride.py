@@ -218,9 +218,9 @@ def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.
         follow(e, state, road, step, parts, states, seen)
         return states, seen
     every = _samples_between(run.command, step)
+    follow(e, state, road[:1], step, parts, states[:1], seen[:1])
     for k in range(0, len(road) - 1, every):
         here = slice(k, k + every + 1)
-        follow(e, state, road[here][:1], step, parts, states[here][:1], seen[here][:1])
         e.held[0] = run.command.law(_felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
         follow(e, state, road[here], step, parts, states[here], seen[here])
     return states, seen

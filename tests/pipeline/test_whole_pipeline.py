@@ -103,6 +103,11 @@ def test_what_was_designed_goes_back_into_the_vehicle(results):
     assert features.transmission_ratio == pytest.approx(features.linkage_ratio / features.gear_ratio)
     assert len(ride.road_ideal) == len(ride.road_designed) == 3
     assert ride.designed.force_peak <= ride.ideal.force_peak * 1.001
+    energy = results.load("energy")
+    assert {case.actuator for case in energy.cases} >= {"quasi-ideal", "real"}
+    assert all(abs(one.closure) < 0.01 for case in energy.cases if not case.swings for one in case.energies)
+    assert all(one.copper[0] < one.copper[-1] < 155 for one in energy.temperatures) and energy.temperatures
+    assert energy.own.actuator.equivalent_mass == outcome.limits.equivalent_mass
 
 
 def test_the_length_makes_up_for_whole_turns_and_teeth(results):

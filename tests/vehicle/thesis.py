@@ -141,37 +141,6 @@ QUASI_IDEAL_PASSIVE = {  # damping [Ns/m]: comfort [m/s^2], road holding; Tables
     2.6e3: (0.042 * GRAVITY, 0.061),
 }
 
-# Tables 4.6-4.9: electrical power, mechanical power, loss of the machine [W]
-QUASI_IDEAL = {
-    "maximum": (8.6, 15.4, 6.9),
-    "minimum": (12.8, 14.9, 2.1),
-    "trade-off": (-13.7, 12.2, 25.8),
-    "handling": (12.1, 14.7, 2.6),
-}
-# Tables 4.10-4.13: electrical power, loss of the machine, mechanical loss [W], power factor at the machine, active duty
-# of actuator and machine, regenerating duty; 4.14 without force loop, where it contradicts the text as the text has it.
-REALISTIC = {
-    "maximum": (3.1, 8.6, 3.8, 0.32, 0.02, 0.26, 0.67),
-    "minimum": (9.2, 2.6, 3.1, 0.61, 0.02, 0.20, 0.77),
-    "trade-off": (-19.5, 23.7, 9.1, 0.02, 0.47, 0.49, 0.45),
-    "handling": (9.8, 2.7, 2.2, 0.66, 0.19, 0.27, 0.69),
-    "no force loop": (7.5, 2.3, 5.4, 0.53, 0.10, 0.35, 0.61),
-}
-REALISTIC_RIDE = {  # comfort [m/s^2], road holding; the last row as the text has it, Table 4.14 exchanges the two
-    "maximum": (0.076 * GRAVITY, 0.096),
-    "minimum": (0.042 * GRAVITY, 0.061),
-    "trade-off": (0.014 * GRAVITY, 0.124),
-    "handling": (0.040 * GRAVITY, 0.057),
-    "no force loop": (0.045 * GRAVITY, 0.062),
-}
-REACTIVE = {  # elastic and inertial power [W], Tables 4.10-4.14
-    "maximum": (31.0, 20.6),
-    "minimum": (11.5, 14.0),
-    "trade-off": (17.7, 29.8),
-    "handling": (10.5, 9.1),
-    "no force loop": (20.4, 13.6),
-}
-
 # ---- the automotive prototype ---------------------------------------------------------------------------------------
 
 # Table A.1. Torques and forces do not agree with the ratios to better than 3 %: 2.3 Nm * 87.3 = 200.8 Nm,
