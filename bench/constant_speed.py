@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isinf, nan
+from math import hypot, isinf, nan
 
 import numpy as np
 
@@ -44,6 +44,13 @@ class SteadyPoint:
         """Electrical over mechanical power, dimensionless (5.1)."""
         return self.power / (self.force * self.velocity)
 
+    @property
+    def efficiency_error(self) -> float:
+        """Standard error of the efficiency from those of power and force, dimensionless."""
+        return hypot(self.power_error, self.efficiency * self.velocity * self.force_error) / (
+            self.force * self.velocity
+        )
+
 
 def steady_point(record: Record) -> SteadyPoint:
     """Means of the channels velocity (or stroke), force, shunt and, over a resistance, shunt_voltage.
@@ -62,9 +69,10 @@ def steady_point(record: Record) -> SteadyPoint:
 def _require_steady(record: Record, velocity: np.ndarray) -> None:
     third = len(velocity) // 3
     first, last, mean = velocity[:third].mean(), velocity[-third:].mean(), velocity.mean()
-    if abs(last - first) > _LARGEST_DRIFT * abs(mean):
+    if mean == 0 or abs(last - first) > _LARGEST_DRIFT * abs(mean):
         raise RecordError(
-            f"{record.name}: expected a constant speed, found {first:.4g} m/s at the beginning and {last:.4g} m/s at "
+            f"{record.name}: expected a constant speed other than zero, found {first:.4g} m/s at the beginning and "
+            f"{last:.4g} m/s at "
             "the end; cut out the part at constant speed."
         )
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.errors import RecordError
-from workbench.data.column_units import to_inside
+from workbench.data.column_units import FACTORS, OFFSETS, to_inside
 from workbench.data.raw_table import RawTable, read_raw
 
 _JITTER = 0.25  # of a step, by which a time may stand beside its place: rounded clocks, no missing samples
@@ -27,13 +27,21 @@ class Record:
     """Channels over time.
 
     name: of the file; step: time between samples [s]; channels: by quantity [SI], each (n,)
+    not_read: headings of columns without a known unit
     """
 
     name: str
     step: float
     channels: Mapping[str, np.ndarray]
+    not_read: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if not self.channels:
+            found = ", ".join(self.not_read) or "none"
+            raise RecordError(
+                f"{self.name}: expected columns with a known unit beside time, such as force_N, found {found}; write "
+                "the unit at the end of the heading."
+            )
         if self.samples < _SHORTEST:
             raise RecordError(
                 f"{self.name}: expected a record of {_SHORTEST} samples or more, found {self.samples}; record longer."
@@ -42,7 +50,7 @@ class Record:
     @property
     def samples(self) -> int:
         """Number of samples."""
-        return len(next(iter(self.channels.values()))) if self.channels else 0
+        return len(next(iter(self.channels.values())))
 
     @property
     def time(self) -> np.ndarray:
@@ -58,6 +66,7 @@ class Record:
         """A channel [SI], (n,). Raises RecordError where the record has none of this name, or gaps in it."""
         if quantity not in self.channels:
             found = ", ".join(self.channels)
+            found += f" and, without a known unit, {', '.join(self.not_read)}" if self.not_read else ""
             raise RecordError(
                 f"{self.name}: expected a column {quantity!r} with its unit, such as {_example(quantity)}, found "
                 f"{found}; rename the column with --column {quantity}=HEADING or record it."
@@ -110,13 +119,15 @@ def read_record(path: Path, columns: Mapping[str, str], stated: Mapping[str, flo
     columns: heading by quantity, where the heading is another word; stated: quantities [SI] that hold for the whole
     record and stand in no column
     Raises:
-        RecordError: no time, unequal sampling, a unit that is missing or unknown, too few samples.
+        RecordError: no time, unequal sampling, a stated quantity that is a column as well, too few samples.
     """
     raw = read_raw(path)
     names = {heading: quantity for quantity, heading in columns.items()}
     _require_headings(raw, names)
     places = {names.get(h.written, names.get(h.name, h.name)): k for k, h in enumerate(raw.headings)}
-    channels = {quantity: _inside(raw, place, quantity) for quantity, place in places.items() if _is_number(raw, place)}
+    channels = {quantity: _inside(raw, place, quantity) for quantity, place in places.items() if _has_unit(raw, place)}
+    if twice := sorted(set(stated) & set(channels)):
+        raise RecordError(f"{raw.where}: {twice[0]} is stated and stands in a column as well; leave one of them out.")
     if "time" not in channels:
         raise RecordError(
             f"{raw.where}: expected a column 'time' with its unit, such as time_s, found none; name it with --column "
@@ -124,7 +135,8 @@ def read_record(path: Path, columns: Mapping[str, str], stated: Mapping[str, flo
         )
     step = _step(raw.where, channels.pop("time"))
     constants = {quantity: np.full(raw.rows, value) for quantity, value in stated.items()}
-    return Record(raw.where, step, {**constants, **channels})
+    not_read = tuple(heading.written for place, heading in enumerate(raw.headings) if not _has_unit(raw, place))
+    return Record(raw.where, step, {**constants, **channels}, not_read)
 
 
 def _require_headings(raw: RawTable, names: Mapping[str, str]) -> None:
@@ -137,17 +149,16 @@ def _require_headings(raw: RawTable, names: Mapping[str, str]) -> None:
             )
 
 
-def _is_number(raw: RawTable, place: int) -> bool:
-    cells = raw.columns[place]
-    return isinstance(cells, np.ndarray) or not raw.is_empty(place)
+def _has_unit(raw: RawTable, place: int) -> bool:
+    """Whether a column is a quantity: it has a known unit, or holds dates and times of day."""
+    unit = raw.headings[place].unit
+    return unit in FACTORS or unit in OFFSETS or raw.holds_times(place)
 
 
 def _inside(raw: RawTable, place: int, quantity: str) -> np.ndarray:
-    """A column in SI; a heading without a unit counts as SI only for times that are dates."""
-    heading = raw.headings[place]
-    if not heading.unit and quantity != "time":
-        return raw.values(place)
-    return to_inside(raw.values(place), quantity, heading.unit or "s", raw.where)
+    """A column in SI; dates and times of day are read as seconds."""
+    unit = "s" if raw.holds_times(place) else raw.headings[place].unit
+    return to_inside(raw.values(place), quantity, unit, raw.where)
 
 
 def _step(where: str, time: np.ndarray) -> float:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from bench.analysis import Analysis, Settings
 from bench.errors import RecordError
 from bench.record import Record, read_record
-from bench.tools import TOOLS
+from bench.tools import LEVER, TOOLS, Tool
 from disk import write_atomically
 from figures.report import Code, Section, write_report
 from pipeline.own_effects import exit_on_wrong_campaign
-from units import to_si
+from units import same_quantity, split_unit, to_si
 from workbench.data.draft import campaign_like
+from workbench.report.as_json import plain
 
 
 def add_analyse(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +24,7 @@ def add_analyse(parser: argparse.ArgumentParser) -> None:
     parser.description = "Analyse records of the bench; headings say quantity and unit (force_N, stroke [mm])."
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = "\n".join(
-        f"{name:15} {tool.help}\n{'':15} channels: time, {tool.channels}\n{'':15} values: {tool.values or '-'}"
+        f"{name:15} {tool.help}\n{'':15} channels: time, {tool.channels}\n{'':15} values: {_listed(tool)}"
         for name, tool in TOOLS.items()
     )  # fmt: skip
     parser.add_argument("tool", choices=TOOLS, metavar="TOOL", help=", ".join(TOOLS))
@@ -42,9 +43,12 @@ def add_analyse(parser: argparse.ArgumentParser) -> None:
 def analyse(options: argparse.Namespace) -> None:
     """See the module's text."""
     with exit_on_wrong_campaign():
-        stated, columns = _stated(options.value), _pairs(options.column, "--column")
-        records = [_seen_at_output(read_record(Path(path), columns, stated), stated) for path in options.records]
-        found = TOOLS[options.tool].run(records, Settings(stated))
+        tool, columns = TOOLS[options.tool], _pairs(options.column, "--column")
+        stated = _stated(tool, options.value)
+        constants = {name: value for name, value in stated.items() if name in map(_quantity, tool.constants)}
+        lever = stated.get(LEVER, 1.0)
+        records = [_seen_at_output(read_record(Path(path), columns, constants), lever) for path in options.records]
+        found = tool.run(records, Settings(stated))
         out = Path(options.out) if options.out else Path("results") / options.tool
         write_results(out, options.tool, found)
         if options.like:
@@ -52,10 +56,22 @@ def analyse(options: argparse.Namespace) -> None:
     print_results(found, out)
 
 
-def _stated(pairs: list[str]) -> dict[str, float]:
-    """Quantities in SI."""
+def _listed(tool: Tool) -> str:
+    return ", ".join((*tool.constants, *tool.settings, LEVER))
+
+
+def _quantity(name: str) -> str:
+    return split_unit(name)[0]
+
+
+def _stated(tool: Tool, pairs: list[str]) -> dict[str, float]:
+    """Quantities in SI, each of a name and a unit that the tool knows."""
     stated = {}
     for name, text in _pairs(pairs, "--value").items():
+        quantity, unit = split_unit(name)
+        known = tool.values.get(quantity)
+        if known is None or not (unit == known or same_quantity(unit, known)):
+            raise RecordError(f"--value {name}: expected one of {_listed(tool)}; correct the name or its unit.")
         try:
             quantity, value = to_si(name, float(text))
         except ValueError:
@@ -71,12 +87,11 @@ def _pairs(texts: list[str], option: str) -> dict[str, str]:
     return dict(text.split("=", 1) for text in texts)
 
 
-def _seen_at_output(record: Record, stated: Mapping[str, float]) -> Record:
+def _seen_at_output(record: Record, lever: float) -> Record:
     """A lever of the bench that is not that of the device turns forces up and strokes down by the same factor."""
-    factor = stated.get("lever_factor", 1.0)
-    turned = {"force": factor, "stroke": 1 / factor, "velocity": 1 / factor}
+    turned = {"force": lever, "stroke": 1 / lever, "velocity": 1 / lever}
     channels = {name: values * turned.get(name, 1.0) for name, values in record.channels.items()}
-    return Record(record.name, record.step, channels)
+    return replace(record, channels=channels)
 
 
 def write_results(out: Path, tool: str, found: Analysis) -> None:
@@ -88,7 +103,7 @@ def write_results(out: Path, tool: str, found: Analysis) -> None:
         frame = found.campaign.frame
         write_atomically(out / name, lambda part: frame.to_csv(part, index=False))
         sections = (*sections, _feeds(found.campaign.entry(name), name))
-    text = json.dumps({**found.numbers, "remarks": found.remarks}, indent=2, default=float)
+    text = json.dumps(plain({**found.numbers, "remarks": found.remarks}), indent=2, allow_nan=False)
     write_atomically(out / f"{tool}.json", lambda part: part.write_text(text + "\n", encoding="utf-8"))
     write_atomically(out / f"{tool}.csv", lambda part: found.table.to_csv(part, index=False))
     write_atomically(out / f"{tool}.html", lambda part: write_report(part, sections, title=found.title))

@@ -44,6 +44,7 @@ def _steady_table(points: Sequence[SteadyPoint]) -> pd.DataFrame:
             "force_error_N": [p.force_error for p in points],
             "shunt_power_W": [p.power for p in points],
             "efficiency_percent": [100 * p.efficiency for p in points],
+            "efficiency_error_percent": [100 * p.efficiency_error for p in points],
         }
     )
 

@@ -43,7 +43,6 @@ WRONG = {
     "time that turns back": ({"time_s": -TIME, "force_N": TIME}, {}, "equally spaced times"),
     "too short": ({"time_s": TIME[:5], "force_N": TIME[:5]}, {}, "16 samples or more, found 5"),
     "a heading that is not there": ({"time_s": TIME, "force_N": TIME}, {"force": "Kraft"}, "names no column"),
-    "an unknown unit": ({"time_s": TIME, "force [lbf]": TIME}, {}, "the unit 'lbf' is not known"),
 }  # fmt: skip
 
 
@@ -66,3 +65,25 @@ def test_what_a_tool_misses_is_said_when_it_asks(tmp_path):
         record.channel("force")
     with pytest.raises(RecordError, match="expected one shunt in the whole record"):
         record.constant("shunt")
+
+
+def test_a_column_without_a_known_unit_is_not_taken_for_si(tmp_path):
+    columns = {"time_s": TIME, "force": TIME, "load [lbf]": TIME, "who": ["A"] * 40}
+    with pytest.raises(
+        RecordError, match=r"with a known unit beside time, such as force_N, found force, load \[lbf\], who"
+    ):
+        read_record(written(tmp_path, columns), {}, {})
+    record = read_record(written(tmp_path, {**columns, "stroke_mm": TIME}), {}, {})
+    with pytest.raises(RecordError, match=r"found stroke and, without a known unit, force, load \[lbf\], who; rename"):
+        record.channel("force")
+
+
+def test_what_is_stated_and_recorded_is_refused(tmp_path):
+    with pytest.raises(RecordError, match="shunt is stated and stands in a column as well"):
+        read_record(written(tmp_path, {"time_s": TIME, "shunt_mohm": TIME}), {}, {"shunt": 0.1})
+
+
+def test_times_of_day_are_seconds(tmp_path):
+    times = [f"12:00:{k:02d}" for k in range(40)]
+    record = read_record(written(tmp_path, {"time": times, "force_N": TIME}), {}, {})
+    assert record.step == pytest.approx(1.0)

@@ -71,7 +71,7 @@ def test_the_efficiency_of_a_bridge_is_what_its_resistances_leave():
 
 def test_a_speed_that_drifts_is_refused():
     ramp = record(velocity=np.linspace(0.1, 0.2, 400), force=np.ones(400), shunt=np.inf)
-    with pytest.raises(RecordError, match="expected a constant speed, found 0.11"):
+    with pytest.raises(RecordError, match="expected a constant speed other than zero, found 0.11"):
         steady_point(ramp)
 
 
@@ -306,6 +306,8 @@ def test_a_lever_of_the_bench_turns_forces_up_and_strokes_down(sines):
     "arguments, words",
     (
         (["impedance", "2.csv"], "expected a column 'shunt' with its unit, such as shunt_mohm, found stroke, force"),
+        (["impedance", "2.csv", "--value", "shunt=135"], "--value shunt: expected one of shunt_mohm, lever_factor"),
+        (["impedance", "2.csv", "--value", "shunt_mm=135"], "correct the name or its unit"),
         (["impedance", "2.csv", "--value", "shunt_mohm=x"], "--value shunt_mohm=x: expected a number"),
         (["impedance", "2.csv", "--value", "shunt"], "expected NAME=..., found no equals sign"),
         (["quadrants", "2.csv"], "expected --value window_mm=10, found no window"),
