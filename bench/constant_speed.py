@@ -47,9 +47,8 @@ class SteadyPoint:
     @property
     def efficiency_error(self) -> float:
         """Standard error of the efficiency from those of power and force, dimensionless."""
-        return hypot(self.power_error, self.efficiency * self.velocity * self.force_error) / (
-            self.force * self.velocity
-        )
+        of_force = self.efficiency * self.velocity * self.force_error
+        return hypot(self.power_error, of_force) / abs(self.force * self.velocity)
 
 
 def steady_point(record: Record) -> SteadyPoint:

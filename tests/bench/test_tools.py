@@ -46,6 +46,8 @@ def test_slope_intercept_and_efficiency_are_those_that_made_the_records():
     assert line.damping == pytest.approx(3000.0, abs=3.5 * line.damping_error) and line.damping_error < 5
     assert line.intercept == pytest.approx(-40.0, abs=3.5 * line.intercept_error)
     assert [p.efficiency for p in points] == pytest.approx([0.6] * 4, rel=0.01)
+    pulls = [(p.efficiency - 0.6) / p.efficiency_error for p in points]
+    assert max(map(abs, pulls)) < 3.5 and points[0].efficiency_error < 0.01
     assert shunt_points([line, line]).damping == pytest.approx([line.damping] * 2)
 
 
