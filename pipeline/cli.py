@@ -41,6 +41,10 @@ COMMANDS = {
                        "what the library knows, one line each; a name shows its equation"),
     "new-effect": Command("pipeline.workbench_commands", "add_new_effect",
                           "a skeleton of one's own effect, from the residual of a campaign"),
+    "analyse": Command("pipeline.analyse_command", "add_analyse",
+                       "records of the bench: impedance, damping, efficiency, sound, identification"),
+    "shunt-laws": Command("pipeline.shunt_laws_command", "add_shunt_laws",
+                          "which static law does the damping of a shunted machine follow?"),
     "import": Command("pipeline.workbench_commands", "add_import", "write campaign.toml for plain data files"),
 }  # fmt: skip
 

@@ -29,11 +29,12 @@ ALLOWED = {
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
+    "bench": {"electrical", "actuator", "vehicle", "workbench", "figures"},
     "study": _DESIGN,
     "figures": _DESIGN - {"optimisation", "materials"},
     "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain"},
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
-    "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench"},
+    "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }
 BOTTOM = {"units", "tasks", "disk", "processes"}
 

@@ -59,6 +59,15 @@ def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
     return head + device + "".join(_table(path.name, sheet) for path, sheet in zip(paths, sheets))
 
 
+def campaign_like(folder: Path, name: str) -> str:
+    """The text of a ``campaign.toml`` without tables for measurements of the device of another campaign.
+
+    Raises:
+        WorkbenchError: the other campaign cannot be read.
+    """
+    return f"[campaign]\nid = {_text(name)}\n" + _taken_over(folder)
+
+
 def write_draft(paths: Sequence[Path], like: Path | None = None) -> tuple[Path, list[int]]:
     """Writes the draft beside the data files, which are only read; returns its path and the lines to fill in.
 

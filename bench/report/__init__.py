@@ -1,0 +1,1 @@
+"""What people read of the records: one page a tool."""
