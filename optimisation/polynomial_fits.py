@@ -61,6 +61,35 @@ class PolynomialFit:
         return np.polyval(self.coefficients, (radius - self.centre) / self.scale)
 
 
+@dataclass(frozen=True, eq=False)
+class FitScatter:
+    """How sure a fit is, as its own points show.
+
+    covariance: of the coefficients (c2, c1, c0), s^2 (X^T X)^-1 [unit of y squared], (3, 3)
+    held_out: root mean square of what each point is off a curve through all others, r/(1 - h) [unit of y]
+    """
+
+    covariance: np.ndarray
+    held_out: float
+
+
+def fit_scatter(radii: Values, values: Values) -> FitScatter:
+    """The scatter of ``fit_polynomial`` through the same points: four or more.
+
+    radii: [m], (n,); values: of the quantity [any unit], (n,)
+    h is the leverage of a point, the diagonal of X (X^T X)^-1 X^T; standard textbook formulas of least squares, which
+    take the misfit of neighbouring points as independent.
+    """
+    x, y = np.asarray(radii, dtype=float), np.asarray(values, dtype=float)
+    powers = np.vander((2 * x - x.min() - x.max()) / np.ptp(x), ORDER + 1)
+    inverse = np.linalg.inv(powers.T @ powers)
+    residual = y - powers @ (inverse @ (powers.T @ y))
+    leverage = np.einsum("ij,jk,ik->i", powers, inverse, powers)
+    variance = (residual**2).sum() / (len(x) - ORDER - 1)
+    held_out = residual / (1 - leverage)
+    return FitScatter(variance * inverse, float(np.sqrt((held_out**2).mean())))
+
+
 def fit_polynomial(quantity: str, radii: Values, values: Values) -> PolynomialFit:
     """Least-squares second-order polynomial over the stator radius [m] with its residuals and R^2.
 

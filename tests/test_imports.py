@@ -7,7 +7,8 @@ PROJECT = Path(__file__).resolve().parent.parent
 # Each room may import those named after it; everything may import units, tasks and disk. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
-_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain", "vehicle"}
+_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain", "uncertainty",
+                   "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
@@ -23,6 +24,7 @@ ALLOWED = {
     "gearbox": set(),
     "mechanics": {*_FIELD, "gearbox"},
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
+    "uncertainty": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain"},
     "vehicle": {"thermal", "drivetrain", "gearbox"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
