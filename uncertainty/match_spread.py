@@ -26,12 +26,12 @@ from optimisation.polynomial_fits import FitScatter, PolynomialFit
 from tasks import Workers
 from uncertainty.tolerance_stage import ToleranceOutcome
 
-DRAWS = 200  # of the chosen machine, by each source alone and by all together
-FREE_DRAWS = 48  # with radius and slots free too
-_TOGETHER = 12  # free draws of a task
+DRAWS = 100  # of the chosen machine, by each source alone and by all together
+FREE_DRAWS = 24  # with radius and slots free too
+_TOGETHER = 8  # free draws of a task
 _SEED = 1  # the same draws every time
 # Of a draw; the cost has one minimum over the ratio, so that the refined optimum does not feel how many are scanned.
-_RATIO_SAMPLES, _RADII = 21, 10
+_RATIO_SAMPLES, _RADII = 21, 6
 _SLACK = 1e-6  # relative; a radius this close to the end of the fits lies on it
 
 Torques = tuple[float, float]  # factors on the nominal and on the overload torque

@@ -62,7 +62,7 @@ class ToleranceOutcome:
 
     values: of the machine as drawn [SI]; sensitivities: one a deviation
     mesh: bounds of what the mesh may have put the quantities off by, relative; NaN where it was not looked at
-    rated_speed: mechanical, of the iron loss [rad/s]
+    rated_speed: mechanical, of the iron loss [rad/s]; elasticity: d ln T / d ln I at the nominal current, dimensionless
     scatter: cogging of machines whose magnets differ and whose rotor stands off centre
     """
 
@@ -71,6 +71,7 @@ class ToleranceOutcome:
     sensitivities: tuple[Sensitivity, ...]
     mesh: Quantities
     rated_speed: float
+    elasticity: float
     scatter: CoggingScatter
 
     def standard(self, quantity: str) -> float:
@@ -121,6 +122,7 @@ def tolerances_stage(
         ),
         mesh=_mesh(errors, operated, gap_stress),
         rated_speed=operated.speed,
+        elasticity=operated.elasticity,
         scatter=cogging_scatter(case, machine, tolerances.eccentricity * machine.airgap, workers),
     )
 
