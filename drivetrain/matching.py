@@ -17,6 +17,7 @@ import numpy as np
 from drivetrain.finding import Finding, Sentence
 from drivetrain.masses import DrawnParts, MassModel, PartMasses, PartMaterials, SteelCylinder
 from drivetrain.match import (
+    RATIO_SAMPLES,
     Constraints,
     CopperLoading,
     CostModel,
@@ -28,7 +29,6 @@ from drivetrain.match import (
     MatchCurves,
     MatchError,
     MatchLimits,
-    RATIO_SAMPLES,
     RadiusMatches,
     SizedSection,
     linear_overload,

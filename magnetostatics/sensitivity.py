@@ -63,8 +63,9 @@ def neighbours(solution: FieldSolution, variations: dict[str, Variation]) -> dic
     """
     ends = {name: _both_ways(solution, variation) for name, variation in variations.items()}
     tangent = solution.model.tangent(solution)
-    slopes = {name: tangent.response(_residual_slope(solution, two, variations[name].step)) for name, two in ends.items()}
-    return {name: _along(solution, variations[name].step, two, slopes[name]) for name, two in ends.items()}
+    steps = {name: variation.step for name, variation in variations.items()}
+    slopes = {name: tangent.response(_residual_slope(solution, two, steps[name])) for name, two in ends.items()}
+    return {name: _along(solution, steps[name], two, slopes[name]) for name, two in ends.items()}
 
 
 # (model, point) on both sides of the solution

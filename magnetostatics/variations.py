@@ -177,7 +177,11 @@ class SameAmpereTurns:
         """That of what changes [its unit]."""
         return self.varied.step
 
-    def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        if not isinstance(point, OperatingPoint):
+            raise TypeError(
+                f"ampere-turns are kept of a balanced supply, an OperatingPoint; found {type(point).__name__}"
+            )
         changed, _ = self.varied.at(model, point, change)
         more_room = changed.section.half_slot_area / model.section.half_slot_area
         return changed, replace(point, current_density=point.current_density / more_room)

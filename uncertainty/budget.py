@@ -59,7 +59,7 @@ class Budget:
     transmission_ratio [m/rad or 1]; matched_length: active length [m]; matched_mass: motor and gears [kg]
     Of the wound machine: peak_torque, continuous_torque: at the current densities [Nm]; torque_constant: no load
     [Nm/A]; resistance: of a phase [ohm]; inductance_d, inductance_q: incremental, no load [H]; base_speed [rad/s];
-    cogging: from peak to peak, of alike magnets [Nm]; copper_loss: at the continuous torque [W]; mass: active parts [kg]
+    cogging: from peak to peak, magnets alike [Nm]; copper_loss: at the continuous torque [W]; mass: active parts [kg]
     needed_length: active length that the peak torque is given with [m]
     Of the actuator: peak_effort: at rest [N or Nm]; continuous_effort: of the temperatures, turning slowly [N or Nm]
     """

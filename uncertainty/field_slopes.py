@@ -17,6 +17,7 @@ from geometry.machine import Machine
 from geometry.morph import Morpher
 from losses.iron import iron_loss
 from losses.loci import PartOfPeriod, finest_repetition, rotor_loci, solve_part, stator_loci
+from magnetostatics.arc import solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import flux_and_torque, flux_torque_and_inductances, map_angles, operating_point
 from magnetostatics.mesh_error import SAFETY, refined_model
@@ -109,12 +110,11 @@ class Cogging(FieldState):
         return ("cogging",)
 
     def solutions(self, model: FieldModel) -> list[FieldSolution]:
-        machine, solved = model.section.machine, list[FieldSolution]()
+        machine = model.section.machine
         step = 2 * pi / lcm(machine.slots, machine.poles) / _COGGING_STEPS
-        for k in range(1, _COGGING_STEPS // 2):
-            angle = null_angle(machine, model.section.layout) + k * step
-            solved.append(model.solve(OperatingPoint(angle), start=solved[-1] if solved else None))
-        return solved
+        inside = np.arange(1, _COGGING_STEPS // 2)
+        angles = null_angle(machine, model.section.layout) + step * inside
+        return solved_over(model, angles.tolist(), 0.0, OperatingPoint.packing_factor)
 
     def read(self, solutions: Solutions) -> np.ndarray:
         """From peak to peak [Nm/m], (1,)."""

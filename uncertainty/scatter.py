@@ -20,12 +20,13 @@ import numpy as np
 from scipy.signal import resample
 
 from geometry.cross_section import CrossSection, mesh_cross_section
-from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentricity
+from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentricity, deformed
 from geometry.machine import Machine
 from geometry.morph import Defect, Morpher
+from magnetostatics.arc import Arc, solved_over
 from magnetostatics.case import FieldCase
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
-from magnetostatics.sensitivity import sensitivities
+from magnetostatics.model import FieldModel, FieldSolution
+from magnetostatics.sensitivity import Variation, sensitivities
 from magnetostatics.torque import arkkio_torque
 from magnetostatics.variations import OneMagnet, Shape
 from tasks import Workers
@@ -60,7 +61,7 @@ class CoggingScatter:
     eccentricity: float
 
     def machines(self, scatter: MagnetScatter) -> np.ndarray:
-        """Cogging from peak to peak [Nm/m] of machines drawn by lot, (machines,); magnets uniform within the scatter."""
+        """Cogging from peak to peak [Nm/m] of machines drawn by lot, (machines,); magnets uniform in the scatter."""
         lots = np.random.default_rng(_SEED).uniform(-1.0, 1.0, (2, _MACHINES, self.machine.poles))
         added = lots[0] * scatter.remanence @ self._of_magnets(self.remanence)
         added += lots[1] * scatter.position @ self._of_magnets(self.position)
@@ -97,13 +98,20 @@ class CoggingScatter:
 
 
 @dataclass(frozen=True)
-class ScatterArc:
-    """Some neighbouring rotor angles [rad] of a machine, and how its parts stand beside the axis."""
+class ScatterArc(Arc):
+    """Rotor angles of the whole machine, and how its parts stand beside the axis."""
 
-    case: FieldCase
-    machine: Machine
-    angles: tuple[float, ...]
     defects: tuple[Defect, ...] = ()
+
+    def model(self) -> FieldModel:
+        """Of the whole machine with its defects, on the mesh of the sweep."""
+        whole = mesh_cross_section(self.machine, self.case.layout(self.machine), self.case.density, whole=True)
+        section = deformed(whole, *self.defects) if self.defects else whole
+        return FieldModel(section, self.case.materials)
+
+    def solved(self) -> list[FieldSolution]:
+        """Without current."""
+        return solved_over(self.model(), self.angles, 0.0, self.case.packing)
 
 
 def cogging_scatter(case: FieldCase, machine: Machine, eccentricity: float, workers: Workers) -> CoggingScatter:
@@ -146,14 +154,17 @@ def mirrored(half: np.ndarray, sign: int) -> np.ndarray:
 
 
 def solve_magnet_waveforms(arc: ScatterArc) -> np.ndarray:
-    """Cogging as drawn [Nm/m] and its derivatives by remanence [Nm/m per T] and place [Nm/m per rad] of magnet 0, (3, n)."""
-    solutions = _solved(arc)
+    """Cogging as drawn [Nm/m], its derivatives by remanence [Nm/m per T] and place [Nm/m per rad] of magnet 0.
+
+    All over the angles of the arc, (3, n).
+    """
+    solutions = arc.solved()
     morpher = Morpher(solutions[0].model.section)
 
     def displaced(change: float) -> CrossSection:
         return morpher.to(arc.machine, [MagnetPosition(0, change)])
 
-    variations = {"remanence": OneMagnet(0), "position": Shape(displaced, _ANGLE_STEP)}
+    variations: dict[str, Variation] = {"remanence": OneMagnet(0), "position": Shape(displaced, _ANGLE_STEP)}
     rows = []
     for solution in solutions:
         found = sensitivities(solution, variations, lambda one: np.array([arkkio_torque(one)]))
@@ -163,17 +174,7 @@ def solve_magnet_waveforms(arc: ScatterArc) -> np.ndarray:
 
 def solve_cogging(arc: ScatterArc) -> np.ndarray:
     """Torque without current [Nm/m], (n,)."""
-    return np.array([arkkio_torque(solution) for solution in _solved(arc)])
-
-
-def _solved(arc: ScatterArc) -> list[FieldSolution]:
-    case, machine = arc.case, arc.machine
-    whole = mesh_cross_section(machine, case.layout(machine), case.density, whole=True)
-    section = Morpher(whole).to(machine, arc.defects) if arc.defects else whole
-    model, solved = FieldModel(section, case.materials), list[FieldSolution]()
-    for angle in arc.angles:
-        solved.append(model.solve(OperatingPoint(angle), start=solved[-1] if solved else None))
-    return solved
+    return np.array([arkkio_torque(solution) for solution in arc.solved()])
 
 
 def _between(waveforms: np.ndarray) -> np.ndarray:

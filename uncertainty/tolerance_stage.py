@@ -40,6 +40,7 @@ from uncertainty.wound_slopes import (
     values_of,
 )
 
+
 @dataclass(frozen=True)
 class Sensitivity:
     """What one deviation does; relative: derivative of each quantity over itself [1 per unit of the deviation]."""

@@ -93,7 +93,8 @@ class OperatedMachine:
         """Where the full current meets the voltage [rad/s]; flux_d, flux_q: linkages there [Wb]; resistance [ohm]."""
         i_d, i_q = self.full
         inductance = flux_q / i_q  # any machine with these flux linkages at this current
-        same = SynchronousMachine(self.machine.pole_pairs, flux_d - inductance * i_d, inductance, inductance, resistance)
+        psi_m = flux_d - inductance * i_d
+        same = SynchronousMachine(self.machine.pole_pairs, psi_m, inductance, inductance, resistance)
         return float(corner_speed(same, self.limits, i_d, i_q))
 
     def base_speed_slope(self, flux_d: float, flux_q: float, resistance: float) -> float:
@@ -107,12 +108,12 @@ class OperatedMachine:
         return float(np.log(more / less)) * size / (2 * _LITTLE)
 
     def base_speed_error(self, flux_d: float, flux_q: float) -> float:
-        """Bound of the base speed, relative, from those of the two flux linkages [relative], whichever sign they have."""
+        """Bound of the base speed from those of the two flux linkages, all relative, whichever sign they have."""
         return abs(self.base_speed_slope(flux_d, 0.0, 0.0)) + abs(self.base_speed_slope(0.0, flux_q, 0.0))
 
 
 def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: WindingInputs) -> OperatedMachine:
-    """At full current, and at the nominal current density and the rated speed: the base speed, or the largest allowed."""
+    """At full current, and at the nominal density; rated speed: the base speed, or the largest allowed."""
     wound, limits = winding.wound, winding.limits
     machine = wound.on_map(flux_map.data)
     nominal = mtpa_currents(machine, wound.current_peak(windings.nominal_density))
@@ -126,9 +127,7 @@ def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: Windi
     )
 
 
-def values_of(
-    operated: OperatedMachine, iron_loss: float, cogging: float, materials: PartMaterials
-) -> Quantities:
+def values_of(operated: OperatedMachine, iron_loss: float, cogging: float, materials: PartMaterials) -> Quantities:
     """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]."""
     machine, resistance = operated.machine, operated.wound.phase_resistance
     (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
