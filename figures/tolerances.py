@@ -12,11 +12,12 @@ from matplotlib.ticker import MaxNLocator
 
 from drivetrain.output import amount
 from figures.style import BLACK, BLUE, GREEN, LIGHT_GREY, ORANGE, VERMILION, letter, new_figure, show_grid, styled
+from uncertainty.scatter import peak_to_peak
 from uncertainty.tolerance_stage import Sensitivity, ToleranceOutcome
 
 SHOWN = {
     "peak_torque": "peak torque",
-    "copper_loss": "copper loss at the torque",
+    "copper_loss": "copper loss",
     "iron_loss": "iron loss",
     "cogging": "cogging",
 }
@@ -48,7 +49,7 @@ def cogging_of_many(found: ToleranceOutcome) -> Figure:
     """Cogging of machines drawn by lot, and the new orders that magnets and eccentricity add."""
     scatter, figure = found.scatter, new_figure(3.6)
     histogram, orders = figure.subplots(1, 2, width_ratios=(1.0, 1.4))
-    machines, drawn = scatter.machines(found.tolerances.scatter), float(np.ptp(scatter.drawn))
+    machines, drawn = scatter.machines(found.tolerances.scatter), float(peak_to_peak(scatter.drawn))
     histogram.hist(machines, bins=40, color=BLUE)
     histogram.axvline(drawn, color=BLACK, linestyle="--", label="as drawn")
     histogram.axvline(np.percentile(machines, 95), color=VERMILION, label="19 of 20 below")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass, replace
-from math import isfinite, sqrt
+from math import isfinite, isnan, sqrt
 
 import pandas as pd
 
@@ -21,7 +21,7 @@ from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
 from export.stage import Package
 from figures.files import picture_name
-from figures.report import Picture, Section, Table
+from figures.report import Picture, Section, Table, number_text
 from geometry.machine import Machine
 from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
@@ -294,10 +294,20 @@ def mass_rows(masses: PartMasses, budget: Budget) -> Iterator[Row]:
     yield row("rotor inertia", masses.rotor_inertia, "kg_mm2", "laminations, magnets and shaft over the active length")
 
 
+def plus_minus(expanded: float) -> str:
+    """An expanded uncertainty to two digits, as the GUM (7.2.6) asks for; nothing where it is not known (NaN).
+
+    expanded: in the unit of its value
+    """
+    return "" if isnan(expanded) else number_text(expanded, 2)
+
+
 def _shown(group: Group) -> pd.DataFrame:
     """The table of a group, without the column of the uncertainties where none is known."""
     table = group.table
-    return table if table[PLUS_MINUS].notna().any() else table.drop(columns=PLUS_MINUS)
+    if table[PLUS_MINUS].isna().all():
+        return table.drop(columns=PLUS_MINUS)
+    return table.assign(**{PLUS_MINUS: [plus_minus(one) for one in table[PLUS_MINUS]]})
 
 
 def _pattern(machine: Machine) -> str:

@@ -12,7 +12,8 @@ from drivetrain.output import amount, in_unit
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Remark, Section, Table
 from figures.tolerances import SHOWN, cogging_of_many, tolerance_bars
-from uncertainty.deviations import MagnetScatter
+from uncertainty.deviations import Deviation, MagnetScatter
+from uncertainty.scatter import peak_to_peak
 from uncertainty.tolerance_stage import Sensitivity, ToleranceOutcome
 from uncertainty.wound_slopes import QUANTITIES
 from units import DEGREE, MILLIMETRE, RPM, written
@@ -79,12 +80,11 @@ def remarks(found: ToleranceOutcome) -> Iterator[str]:
         for one in _spoken_of(found)
     )
     yield (
-        f"The tolerance to buy first is that of the {first.deviation.name}: ± "
-        f"{amount(first.deviation.half_width, first.deviation.unit)} make "
+        f"The tolerance to buy first is that of the {first.deviation.name}: {half_width(first.deviation)} make "
         f"{_PERCENT * found.variance_share(first, name):.0f} % of the variance of the {SHOWN[name]}. Standard "
         f"uncertainties: {rest}."
     )
-    machines, drawn = found.scatter.machines(found.tolerances.scatter), float(np.ptp(found.scatter.drawn))
+    machines, drawn = found.scatter.machines(found.tolerances.scatter), float(peak_to_peak(found.scatter.drawn))
     alone = {words: found.scatter.machines(one).mean() / drawn - 1 for words, one in _scatters(found).items()}
     worse = max(alone, key=lambda words: alone[words])
     yield (
@@ -117,15 +117,20 @@ def whole_table(found: ToleranceOutcome) -> pd.DataFrame:
 def scatter_table(found: ToleranceOutcome) -> pd.DataFrame:
     """One way of not being as drawn a row."""
     scatter = found.scatter
-    rows: list[tuple[str, np.ndarray, dict[int, float]]] = [("as drawn", np.ptp(scatter.drawn)[None], {})]
+    rows: list[tuple[str, np.ndarray, dict[int, float]]] = [("as drawn", peak_to_peak(scatter.drawn[None]), {})]
     both = {**_scatters(found), "both": found.tolerances.scatter}
     rows += [(words, scatter.machines(one), scatter.orders_of_magnets(one)) for words, one in both.items()]
     shift = f"off centre by {amount(scatter.eccentricity, 'mm')}"
     rows += [
-        (f"stator {shift}", np.ptp(scatter.static)[None], scatter.orders_of_static),
-        (f"rotor {shift}", np.ptp(scatter.dynamic)[None], scatter.orders_of_dynamic),
+        (f"stator {shift}", peak_to_peak(scatter.static[None]), scatter.orders_of_static),
+        (f"rotor {shift}", peak_to_peak(scatter.dynamic[None]), scatter.orders_of_dynamic),
     ]
     return pd.DataFrame([_scatter_row(*one) for one in rows])
+
+
+def half_width(deviation: Deviation) -> str:
+    """``± 0.05 mm``, unbroken."""
+    return f"± {amount(deviation.half_width, deviation.unit)}".replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _scatter_row(words: str, cogging: np.ndarray, orders: dict[int, float]) -> dict[str, object]:
@@ -141,7 +146,7 @@ def _scatter_row(words: str, cogging: np.ndarray, orders: dict[int, float]) -> d
 def _row(found: ToleranceOutcome, one: Sensitivity) -> dict[str, object]:
     row: dict[str, object] = {
         "tolerance": one.deviation.name,
-        "half width": f"± {amount(one.deviation.half_width, one.deviation.unit)}",
+        "half width": half_width(one.deviation),
         "largest_share_percent": _PERCENT * _largest_share(found, one),
     }
     for name in _spoken_of(found):

@@ -14,6 +14,7 @@ from drivetrain.output import Output, in_unit
 from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Section, Table
 from figures.uncertainty import match_moves
+from report.datasheet import plus_minus
 from uncertainty.budget import Budget, Uncertain
 from uncertainty.match_spread import DrawnMatch
 from uncertainty.stage import Uncertainty
@@ -64,7 +65,7 @@ def section(found: Uncertainty, output: Output) -> Section:
         (
             _METHOD,
             Table(
-                budget_table(found.budget, output),
+                _shown(budget_table(found.budget, output)),
                 "Headline numbers with their relative standard uncertainties, combined, and ± U in the unit of the "
                 "value.",
                 {"plus_minus": "±"},
@@ -101,6 +102,10 @@ def spread_table(found: Uncertainty, output: Output) -> pd.DataFrame:
             for words, unit, read in numbers
         ]
     )
+
+
+def _shown(table: pd.DataFrame) -> pd.DataFrame:
+    return table.assign(plus_minus=[plus_minus(one) for one in table.plus_minus])
 
 
 def _spread_row(choice: str, words: str, unit: str, values: Sequence[float]) -> dict[str, object]:

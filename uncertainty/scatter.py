@@ -65,7 +65,7 @@ class CoggingScatter:
         lots = np.random.default_rng(_SEED).uniform(-1.0, 1.0, (2, _MACHINES, self.machine.poles))
         added = lots[0] * scatter.remanence @ self._of_magnets(self.remanence)
         added += lots[1] * scatter.position @ self._of_magnets(self.position)
-        return np.ptp(_between(self.drawn + added), axis=1)
+        return peak_to_peak(self.drawn + added)
 
     def orders_of_magnets(self, scatter: MagnetScatter) -> dict[int, float]:
         """Root mean square over all machines of the amplitude of each mechanical order that is new [Nm/m].
@@ -177,9 +177,12 @@ def solve_cogging(arc: ScatterArc) -> np.ndarray:
     return np.array([arkkio_torque(solution) for solution in arc.solved()])
 
 
-def _between(waveforms: np.ndarray) -> np.ndarray:
-    """Periods (..., n) with points between, by their harmonics: the highest point lies between two steps."""
-    return resample(waveforms, _FINER * waveforms.shape[-1], axis=-1)
+def peak_to_peak(waveforms: np.ndarray) -> np.ndarray:
+    """Of each period (..., n), with points between its steps by its harmonics: the highest point lies between two.
+
+    waveforms, peak_to_peak: in any unit
+    """
+    return np.ptp(resample(waveforms, _FINER * waveforms.shape[-1], axis=-1), axis=-1)
 
 
 def _orders(waveform: np.ndarray) -> np.ndarray:
