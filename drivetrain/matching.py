@@ -357,7 +357,7 @@ def match_stage(
     Source: thesis eqs 3.62-3.102, Figs 3.25 and 3.26.
     """
     drawn = DrawnParts(inputs.masses, case.packing)
-    matcher = Matcher(case, fits, requirements, linkage, inputs, drawn)
+    matcher = Matcher(case, fits, requirements, linkage, inputs, drawn, radii=RADII)
     results = tuple(matcher.over_radius(slots, law) for slots in inputs.slots for law in OVERLOAD_LAWS)
     best = _least(tuple(one for one in results if one.overload == inputs.overload), output)
     chosen, reason = _choose(matcher, best, output)
