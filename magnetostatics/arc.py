@@ -46,7 +46,7 @@ def angles_from_null(case: FieldCase, machine: Machine, span: float, steps: int)
 def solved_over(
     model: FieldModel, angles: Sequence[float], density: float, packing: float, start: FieldSolution | None = None
 ) -> list[FieldSolution]:
-    """The current on the q axis at each angle [rad]; density: its amplitude in the copper [A/m^2].
+    """The current on the q axis at each of the angles [rad]; density: its amplitude in the copper [A/m^2].
 
     packing: copper share of the slot; start: of the first angle, None where nothing is at hand
     """

@@ -167,7 +167,7 @@ class Shape:
 class SameAmpereTurns:
     """A variation of a wound machine: the current stays that of its wires, however much room the slot leaves them.
 
-    varied: what changes, under a balanced supply; step, change: as of that
+    varied: what changes, under a balanced supply; step, change: [unit of that]
     """
 
     varied: Variation

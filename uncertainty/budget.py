@@ -47,7 +47,7 @@ class Uncertain:
 
     @property
     def expanded(self) -> float:
-        """U = 2 u, relative: the value lies within it with about 95 %."""
+        """U = 2 u, relative; the value lies within it with about 95 %."""
         return COVERAGE * self.combined
 
 
@@ -127,12 +127,12 @@ def of_wound(found: ToleranceOutcome, quantity: str, value: float | None = None)
 
 
 def of_match(spread: MatchSpread, value: float, read: Callable[[DrawnMatch], float]) -> Uncertain:
-    """A number of the match [SI], by what each source alone makes of it."""
+    """A number of the match, by what each source alone makes of it; value, read: [SI]."""
     return Uncertain(value, *(scatter_of(some, read) for some in (spread.mesh, spread.fit, spread.tolerance)))
 
 
 def scatter_of(draws: Sequence[DrawnMatch | None], read: Callable[[DrawnMatch], float]) -> float:
-    """Standard deviation over the mean of a number of the draws that have a match, dimensionless."""
+    """Standard deviation over the mean of the draws that have a match, dimensionless; read: a number, [any unit]."""
     values = np.array([read(one) for one in draws if one is not None])
     return float(values.std(ddof=1) / values.mean())
 

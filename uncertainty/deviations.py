@@ -67,6 +67,7 @@ class SectionDimension(Deviation):
         return Dimension(morpher, lambda change: self.moved(machine, change), self.step)
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
+        """With it; change: [m]."""
         return replace(wound, machine=self.moved(wound.machine, change))
 
 
@@ -76,6 +77,7 @@ class BoreRadius(SectionDimension):
     name = "bore radius"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, airgap=machine.airgap + change, shoe_d1=machine.shoe_d1 - change)
 
 
@@ -85,6 +87,7 @@ class RotorRadius(SectionDimension):
     name = "rotor radius"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         outer = machine.rotor_outer_radius + change
         return replace(machine, rotor_outer_radius=outer, airgap=machine.airgap - change)
 
@@ -95,6 +98,7 @@ class MagnetLength(SectionDimension):
     name = "magnet length"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         outer, length = machine.rotor_outer_radius + change, machine.magnet_length + change
         return replace(machine, rotor_outer_radius=outer, magnet_length=length, airgap=machine.airgap - change)
 
@@ -112,6 +116,7 @@ class MagnetArc(SectionDimension):
         return self.moved(machine, -self.half_width) if machine.magnet_arc_fraction >= 1 else machine
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         pitch = machine.pole_pitch * machine.rotor_outer_radius
         return replace(machine, magnet_arc_fraction=machine.magnet_arc_fraction + change / pitch)
 
@@ -122,6 +127,7 @@ class SlotOpening(SectionDimension):
     name = "slot opening"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, slot_opening=machine.opening_width + change)
 
 
@@ -131,6 +137,7 @@ class ToothWidth(SectionDimension):
     name = "tooth width"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, tooth_width=machine.tooth_width + change)
 
 
@@ -140,6 +147,7 @@ class BackIron(SectionDimension):
     name = "back iron width"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, back_iron_width=machine.back_iron_width + change)
 
 
@@ -149,6 +157,7 @@ class OpeningDepth(SectionDimension):
     name = "shoe depth d1"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, shoe_d1=machine.shoe_d1 + change, shoe_d2=machine.shoe_d2 - change)
 
 
@@ -158,6 +167,7 @@ class TaperDepth(SectionDimension):
     name = "shoe depth d2"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         return replace(machine, shoe_d2=machine.shoe_d2 + change)
 
 
@@ -167,6 +177,7 @@ class StatorRadius(SectionDimension):
     name = "stator outer radius"
 
     def moved(self, machine: Machine, change: float) -> Machine:
+        """With it; change: [m]."""
         outer, iron = machine.stator_outer_radius + change, machine.back_iron_width + change
         return replace(machine, stator_outer_radius=outer, back_iron_width=iron)
 
@@ -198,6 +209,7 @@ class Stacking(Deviation):
         return StackingFactor(self.step)
 
     def parts(self, materials: PartMaterials, change: float) -> PartMaterials:
+        """With it; change: relative."""
         return replace(materials, stacking=materials.stacking * (1 + change))
 
 
@@ -207,6 +219,7 @@ class StackLength(Deviation):
     name = "active length"
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
+        """With it; change: [m]."""
         return replace(wound, active_length=wound.active_length + change)
 
 
@@ -216,6 +229,7 @@ class WireDiameter(Deviation):
     name, unit, step = "wire diameter", "percent", 1e-4
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
+        """With it; change: relative."""
         return replace(wound, wire_area=wound.wire_area * (1 + change) ** 2)
 
 

@@ -75,7 +75,7 @@ class LoadedIron(FieldState):
         return (*super().quantities, "iron_loss")
 
     def read(self, solutions: Solutions) -> np.ndarray:
-        """See ``FieldState``; the loss is that of stator and rotor [W/m]."""
+        """See ``FieldState``; read: [Nm/m, Wb/m, Wb/m], and the loss of stator and rotor [W/m], (4,)."""
         part = PartOfPeriod(tuple(solutions), finest_repetition(solutions[0].model.section))
         loss = sum(iron_loss(loci(part), self.law).total.at(self.frequency) for loci in (stator_loci, rotor_loci))
         return np.append(super().read(solutions), loss)
@@ -83,7 +83,7 @@ class LoadedIron(FieldState):
 
 @dataclass(frozen=True)
 class NoLoad(FieldState):
-    """Without current: flux linkage of the magnets and incremental inductances."""
+    """Without current: flux linkage of the magnets and incremental inductances; direct, quadrature: 0 [A]."""
 
     direct: float = 0.0
     quadrature: float = 0.0
@@ -100,7 +100,10 @@ class NoLoad(FieldState):
 
 @dataclass(frozen=True)
 class Cogging(FieldState):
-    """Without current over half a period of the cogging, which is odd about a magnet on a tooth."""
+    """Without current over half a period of the cogging, which is odd about a magnet on a tooth.
+
+    direct, quadrature: 0 [A]
+    """
 
     direct: float = 0.0
     quadrature: float = 0.0

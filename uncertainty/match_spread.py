@@ -40,8 +40,9 @@ _NO_CHANGE: Torques = (1.0, 1.0)
 
 @dataclass(frozen=True)
 class DrawnMatch:
-    """The match of one draw: ratio [m/rad], active_length [m], stator_outer_radius [m], torques per length [Nm/m].
+    """The match of one draw: transmission_ratio [m/rad], active_length [m], stator_outer_radius [m].
 
+    torque_nominal, torque_overload: per length [Nm/m]
     binding: the constraint that sets the length; ratio_bound: whether the ratio lies on an end of the allowed ones
     radius_bound: whether the radius lies on an end of the fits; total_mass: of motor and gearbox [kg]
     """

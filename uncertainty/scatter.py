@@ -146,17 +146,17 @@ def _arcs(case: FieldCase, machine: Machine, count: int, step: float, *defects: 
 
 
 def mirrored(half: np.ndarray, sign: int) -> np.ndarray:
-    """The whole period (n,) of what is even (sign 1) or odd (-1) about its start; half: both ends included, (n/2 + 1,)
+    """The whole period of what is even (sign 1) or odd (-1) about its start: tooth 0 and magnet 0 on the axis.
 
-    Tooth 0 and magnet 0 stand on the axis of the mirror at the start. half, mirrored: in any unit
+    half: [any unit], (n/2 + 1,), both ends included; mirrored: [the same], (n,)
     """
     return np.concatenate([half, sign * half[-2:0:-1]])
 
 
 def solve_magnet_waveforms(arc: ScatterArc) -> np.ndarray:
-    """Cogging as drawn [Nm/m], its derivatives by remanence [Nm/m per T] and place [Nm/m per rad] of magnet 0.
+    """Cogging as drawn and its derivatives by remanence and place of magnet 0 over the angles of the arc.
 
-    All over the angles of the arc, (3, n).
+    solve_magnet_waveforms: [Nm/m, Nm/m per T, Nm/m per rad], (3, n)
     """
     solutions = arc.solved()
     morpher = Morpher(solutions[0].model.section)
@@ -178,9 +178,9 @@ def solve_cogging(arc: ScatterArc) -> np.ndarray:
 
 
 def peak_to_peak(waveforms: np.ndarray) -> np.ndarray:
-    """Of each period (..., n), with points between its steps by its harmonics: the highest point lies between two.
+    """Of periods, with points between their steps by their harmonics: the highest point lies between two.
 
-    waveforms, peak_to_peak: in any unit
+    waveforms: [any unit], (..., n); peak_to_peak: [the same], (...,)
     """
     return np.ptp(resample(waveforms, _FINER * waveforms.shape[-1], axis=-1), axis=-1)
 

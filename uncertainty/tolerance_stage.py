@@ -76,7 +76,7 @@ class ToleranceOutcome:
     scatter: CoggingScatter
 
     def standard(self, quantity: str) -> float:
-        """Standard uncertainty of a quantity by all deviations, relative: they are independent."""
+        """Standard uncertainty of a quantity by all deviations, which are independent; standard: relative."""
         return sqrt(sum(one.standard(quantity) ** 2 for one in self.sensitivities))
 
     def worst(self, quantity: str) -> float:

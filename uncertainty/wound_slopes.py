@@ -98,7 +98,7 @@ class OperatedMachine:
         return float(corner_speed(same, self.limits, i_d, i_q))
 
     def base_speed_slope(self, flux_d: float, flux_q: float, resistance: float) -> float:
-        """d ln(base speed) for those of the logarithms of what it rests on, all per unit of the same, dimensionless."""
+        """d ln(base speed) for d ln of what it rests on; flux_d, flux_q, resistance: those, per unit of the same."""
         values = *self.machine.flux_linkage(*self.full), self.wound.phase_resistance
         slopes = np.array([flux_d, flux_q, resistance])
         size = float(np.abs(slopes).max()) or 1.0
@@ -108,7 +108,7 @@ class OperatedMachine:
         return float(np.log(more / less)) * size / (2 * _LITTLE)
 
     def base_speed_error(self, flux_d: float, flux_q: float) -> float:
-        """Bound of the base speed from those of the two flux linkages, all relative, whichever sign they have."""
+        """Bound of the base speed, relative, from those of both linkages; flux_d, flux_q: relative, of any sign."""
         return abs(self.base_speed_slope(flux_d, 0.0, 0.0)) + abs(self.base_speed_slope(0.0, flux_q, 0.0))
 
 
