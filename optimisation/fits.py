@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from optimisation.optima import Optima
-from optimisation.polynomial_fits import FitRefused, FitScatter, PolynomialFit, fit_polynomial, fit_scatter
+from optimisation.polynomial_fits import FitRefused, PolynomialFit, fit_polynomial
 
 
 @dataclass(frozen=True)
@@ -73,24 +73,15 @@ class SectionFits:
         return FittedSection(*(float(fit(radius)) for fit in self.of(slots).fits))
 
 
-def scatter_of(optima: Optima, slots: int) -> tuple[FitScatter, ...]:
-    """How sure the polynomials of one slot count are, one for each of ``QUANTITIES``."""
-    radii, rows = _points(optima, slots)
-    return tuple(fit_scatter(radii, rows[name]) for name in QUANTITIES)
-
-
 def fits_stage(optima: Optima) -> SectionFits:
     """Fit every quantity of every slot count; a bad fit is kept with the reason why it is refused."""
     return SectionFits(tuple(SlotFits(slots, _fits(optima, slots)) for slots in optima.slots))
 
 
 def _fits(optima: Optima, slots: int) -> tuple[PolynomialFit, ...]:
-    radii, rows = _points(optima, slots)
-    return tuple(fit_polynomial(f"{name} ({slots} slots)", radii, rows[name]) for name in QUANTITIES)
-
-
-def _points(optima: Optima, slots: int) -> tuple[np.ndarray, dict[str, list[float]]]:
-    """Stator radii [m] of the optima of one slot count, and the quantities there."""
     own = optima.of(slots)
     radii = np.array([optimum.stator_outer_radius for optimum in own])
-    return radii, {name: [getattr(optimum, name) for optimum in own] for name in QUANTITIES}
+    return tuple(
+        fit_polynomial(f"{name} ({slots} slots)", radii, [getattr(optimum, name) for optimum in own])
+        for name in QUANTITIES
+    )

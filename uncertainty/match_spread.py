@@ -20,14 +20,13 @@ import numpy as np
 from drivetrain.constraints import Constraint
 from drivetrain.match import Infeasible, Match
 from drivetrain.matching import Matcher, OverloadLaw
-from optimisation.fits import QUANTITIES, SectionFits, SlotFits, scatter_of
-from optimisation.optima import Optima
-from optimisation.polynomial_fits import FitScatter, PolynomialFit
+from optimisation.fits import QUANTITIES, SectionFits
+from optimisation.polynomial_fits import PolynomialFit
 from tasks import Workers
 from uncertainty.tolerance_stage import ToleranceOutcome
 
-DRAWS = 100  # of the chosen machine, by each source alone and by all together
-FREE_DRAWS = 24  # with radius and slots free too
+DRAWS = 80  # of the chosen machine, by each source alone and by all together
+FREE_DRAWS = 16  # with radius and slots free too
 _TOGETHER = 8  # free draws of a task
 _SEED = 1  # the same draws every time
 # Of a draw; the cost has one minimum over the ratio, so that the refined optimum does not feel how many are scanned.
@@ -75,22 +74,6 @@ class MatchSpread:
 
 
 @dataclass(frozen=True, eq=False)
-class FitLots:
-    """Draws other fits by lot; scatter: of the quantities of every slot count that has fits."""
-
-    fits: SectionFits
-    scatter: dict[int, tuple[FitScatter, ...]]
-
-    def drawn(self, rng: np.random.Generator) -> SectionFits:
-        """Every coefficient and every misfit anew."""
-        return SectionFits(tuple(self._slot_fits(one, rng) for one in self.fits.by_slots))
-
-    def _slot_fits(self, one: SlotFits, rng: np.random.Generator) -> SlotFits:
-        pairs = zip(one.fits, self.scatter[one.slots])
-        return replace(one, fits=tuple(_drawn_fit(fit, scatter, rng) for fit, scatter in pairs))
-
-
-@dataclass(frozen=True, eq=False)
 class DrawTask:
     """Fits to be matched one after the other; chosen: slots and stator radius [m], None where both are free."""
 
@@ -99,22 +82,19 @@ class DrawTask:
     chosen: tuple[int, float] | None
 
 
-def match_spread(
-    matcher: Matcher, optima: Optima, chosen: Match, found: ToleranceOutcome, workers: Workers
-) -> MatchSpread:
+def match_spread(matcher: Matcher, chosen: Match, found: ToleranceOutcome, workers: Workers) -> MatchSpread:
     """Match the draws; chosen: by the fits as they are; found: what mesh and tolerances do to its torques."""
     coarse = replace(matcher, radii=_RADII, ratio_samples=_RATIO_SAMPLES)
     slots = [one for one in matcher.fits.usable if one in matcher.inputs.slots]
     usable = SectionFits(tuple(matcher.fits.of(one) for one in slots))
-    lots = FitLots(usable, {one: scatter_of(optima, one) for one in slots})
     machine = chosen.section.machine
     own = machine.slots, machine.stator_outer_radius
     mesh, tolerance = _mesh_factors(found), _tolerance_factors(found)
     sources = {
-        "fit": _draws(DRAWS, lots.drawn),
+        "fit": _draws(DRAWS, lambda rng: drawn_fits(usable, rng)),
         "mesh": _draws(DRAWS, lambda rng: _scaled(usable, mesh(rng))),
         "tolerance": _draws(DRAWS, lambda rng: _scaled(usable, tolerance(rng))),
-        "together": _draws(DRAWS, lambda rng: _scaled(_scaled(lots.drawn(rng), mesh(rng)), tolerance(rng))),
+        "together": _draws(DRAWS, lambda rng: _scaled(_scaled(drawn_fits(usable, rng), mesh(rng)), tolerance(rng))),
     }
     tasks = {name: DrawTask(coarse, fits, own) for name, fits in sources.items()}
     tasks |= _free_tasks(coarse, sources["together"][:FREE_DRAWS])
@@ -177,9 +157,16 @@ def _draws(count: int, draw: Callable[[np.random.Generator], SectionFits]) -> tu
     return tuple(draw(rng) for _ in range(count))
 
 
-def _drawn_fit(fit: PolynomialFit, scatter: FitScatter, rng: np.random.Generator) -> PolynomialFit:
-    moved = rng.multivariate_normal(fit.coefficients, scatter.covariance)
-    moved[-1] += rng.normal(0.0, scatter.held_out)
+def drawn_fits(fits: SectionFits, rng: np.random.Generator) -> SectionFits:
+    """Every coefficient by its covariance, and every misfit by the held-out residual, anew."""
+    return SectionFits(
+        tuple(replace(one, fits=tuple(_drawn_fit(fit, rng) for fit in one.fits)) for one in fits.by_slots)
+    )
+
+
+def _drawn_fit(fit: PolynomialFit, rng: np.random.Generator) -> PolynomialFit:
+    moved = rng.multivariate_normal(fit.coefficients, fit.scatter.covariance)
+    moved[-1] += rng.normal(0.0, fit.scatter.held_out)
     return _with(fit, moved)
 
 

@@ -11,7 +11,6 @@ from drivetrain.requirements import Linkage, Requirements
 from electrical.winding_stage import WindingOutcome
 from magnetostatics.case import FieldCase
 from optimisation.fits import SectionFits
-from optimisation.optima import Optima
 from tasks import Workers
 from thermal.stage import HeatOutcome
 from uncertainty.budget import Budget, budget_of
@@ -30,7 +29,6 @@ class Uncertainty:
 def uncertainty_stage(
     found: ToleranceOutcome,
     case: FieldCase,
-    optima: Optima,
     fits: SectionFits,
     matched: MatchOutcome,
     requirements: Requirements,
@@ -46,5 +44,5 @@ def uncertainty_stage(
     found: what the tolerances do; the others as in ``drivetrain.matching.match_stage``
     """
     matcher = Matcher(case, fits, requirements, linkage, inputs, DrawnParts(inputs.masses, case.packing))
-    spread = match_spread(matcher, optima, matched.chosen, found, workers)
+    spread = match_spread(matcher, matched.chosen, found, workers)
     return Uncertainty(spread, budget_of(found, spread, matched.chosen, winding, outcome, heat))

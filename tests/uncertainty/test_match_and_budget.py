@@ -10,12 +10,12 @@ from drivetrain.masses import DrawnParts
 from drivetrain.match import DampingReported
 from drivetrain.matching import Matcher
 from optimisation.fits import QUANTITIES, SectionFits, SlotFits
-from optimisation.polynomial_fits import FitScatter, fit_polynomial, fit_scatter
+from optimisation.polynomial_fits import fit_polynomial
 from tests.drivetrain.fitted_machines import CASE, POLYNOMIALS
 from tests.drivetrain.test_matching import INPUTS, LINKAGE, REQUIRED
 from uncertainty import match_spread as module
 from uncertainty.budget import Uncertain, of_match, of_wound, scatter_of
-from uncertainty.match_spread import DrawTask, FitLots, match_draws
+from uncertainty.match_spread import DrawTask, drawn_fits, match_draws
 from units import MILLIMETRE
 
 RADII = np.linspace(35.0, 57.5, 8) * MILLIMETRE
@@ -52,7 +52,7 @@ def test_held_out_is_every_point_off_a_curve_through_the_others():
     for k in range(len(RADII)):
         others = np.arange(len(RADII)) != k
         off.append(values[k] - np.polyval(np.polyfit(RADII[others] * 1e3, values[others], 2), RADII[k] * 1e3))
-    found = fit_scatter(RADII, values)
+    found = fit_polynomial("", RADII, values).scatter
     assert found.held_out == pytest.approx(np.sqrt(np.mean(np.square(off))), rel=1e-6)
 
 
@@ -60,15 +60,14 @@ def test_the_covariance_is_the_scatter_of_fits_of_noisy_points():
     rng = np.random.default_rng(2)
     many = np.array([fit_polynomial("", RADII, 50 + rng.normal(0, 0.3, len(RADII))).coefficients for _ in range(2000)])
     covariances = np.mean(
-        [fit_scatter(RADII, 50 + rng.normal(0, 0.3, len(RADII))).covariance for _ in range(200)], axis=0
+        [fit_polynomial("", RADII, 50 + rng.normal(0, 0.3, len(RADII))).scatter.covariance for _ in range(200)], axis=0
     )
     assert np.diag(covariances) == pytest.approx(np.diag(np.cov(many.T)), rel=0.15)
 
 
 def test_the_match_of_fits_without_scatter_is_the_match():
     own = matcher()
-    none = {slots: (FitScatter(np.zeros((3, 3)), 0.0),) * len(QUANTITIES) for slots in own.fits.slots}
-    drawn = FitLots(own.fits, none).drawn(np.random.default_rng(1))
+    drawn = drawn_fits(own.fits, np.random.default_rng(1))  # polynomials through themselves
     (found,) = match_draws(DrawTask(own, (drawn,), CHOSEN))
     expected = own.match(own.section(CHOSEN[0], INPUTS.overload, CHOSEN[1]))
     assert found.active_length == pytest.approx(expected.active_length)
