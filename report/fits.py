@@ -33,8 +33,8 @@ def section(fits: SectionFits) -> Section:
     table = fits_table(fits)
     shown = table[columns].assign(quantity=table.quantity.map(heading))
     caption = (
-        "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name. Held out: root mean square "
-        "of what each point is off a curve through all others."
+        "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name. Held out: root mean "
+        "square of what each point is off a curve through all others."
     )
     refused = (Remark(f"{said[:1].upper()}{said[1:]}.") for said in remarks(fits))
     words = "Optima (points) and second-order polynomials (lines) over the stator radius."
