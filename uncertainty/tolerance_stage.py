@@ -121,7 +121,7 @@ def tolerances_stage(
             Sensitivity(one, relative_slopes(one, _slopes_of(one, found, states, machine), operated, materials))
             for one in tolerances.deviations
         ),
-        mesh=_mesh(errors, operated, gap_stress),
+        mesh=_mesh(errors, operated, flux_map, gap_stress),
         rated_speed=operated.speed,
         elasticity=operated.elasticity,
         scatter=cogging_scatter(case, machine, tolerances.eccentricity * machine.airgap, workers),
@@ -167,10 +167,13 @@ def _iron_loss(found: Mapping[str, StateSlopes]) -> float:
     return float(values[3]) if len(values) > 3 else nan
 
 
-def _mesh(errors: Mapping[str, np.ndarray], operated: OperatedMachine, gap_stress: GapStress) -> Quantities:
-    """Bounds, relative; that of the base speed by the flux linkages that it rests on."""
+def _mesh(
+    errors: Mapping[str, np.ndarray], operated: OperatedMachine, flux_map: FluxMap, gap_stress: GapStress
+) -> Quantities:
+    """Bounds, relative; torque and cogging have theirs already, the base speed by the flux linkages that it rests on."""
     magnets, inductance_d, inductance_q = errors[NO_LOAD].tolist()
-    torque, flux_d, flux_q = errors[FULL].tolist()
+    _, flux_d, flux_q = errors[FULL].tolist()
+    torque = flux_map.torque_error
     return Quantities(
         peak_torque=torque,
         continuous_torque=torque,
