@@ -4,9 +4,9 @@ Method of the GUM (JCGM 100:2008): first order, independent contributions, relat
 
     u = sqrt(u_mesh^2 + u_fit^2 + u_tolerance^2),    U = k u with k = 2, about 95 %
 
-mesh: the bound of ``magnetostatics.mesh_error``, by triangles of half the size, uniform, over sqrt(3). fit: from matches of fits drawn by lot within
-their held-out residuals; the wound machine is drawn and solved again, so that no fit is left in its numbers.
-tolerance: each +-a uniform, over sqrt(3), times the derivative. Not in it: what the model itself leaves out (ends,
+mesh: the bound of ``magnetostatics.mesh_error``, by triangles of half the size, uniform, over sqrt(3). fit: from
+matches of fits drawn by lot within their held-out residuals; the wound machine is drawn and solved again, so that no
+fit is left in its numbers. tolerance: each +-a uniform, over sqrt(3), times the derivative. Not in it: what the model itself leaves out (ends,
 friction, material data, films of air), which "How far to trust the numbers" in the README speaks of.
 """
 

@@ -170,7 +170,7 @@ def _iron_loss(found: Mapping[str, StateSlopes]) -> float:
 def _mesh(
     errors: Mapping[str, np.ndarray], operated: OperatedMachine, flux_map: FluxMap, gap_stress: GapStress
 ) -> Quantities:
-    """Bounds, relative; torque and cogging have theirs already, the base speed by the flux linkages that it rests on."""
+    """Bounds, relative; torque and cogging have theirs already, the base speed that of its flux linkages."""
     magnets, inductance_d, inductance_q = errors[NO_LOAD].tolist()
     _, flux_d, flux_q = errors[FULL].tolist()
     torque = flux_map.torque_error
