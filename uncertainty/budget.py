@@ -6,8 +6,9 @@ Method of the GUM (JCGM 100:2008): first order, independent contributions, relat
 
 mesh: the bound of ``magnetostatics.mesh_error``, by triangles of half the size, uniform, over sqrt(3). fit: from
 matches of fits drawn by lot within their held-out residuals; the wound machine is drawn and solved again, so that no
-fit is left in its numbers. tolerance: each +-a uniform, over sqrt(3), times the derivative. Not in it: what the model itself leaves out (ends,
-friction, material data, films of air), which "How far to trust the numbers" in the README speaks of.
+fit is left in its numbers. tolerance: each +-a uniform, over sqrt(3), times the derivative. Not in it: what the model
+itself leaves out (ends, friction, material data, films of air), which "How far to trust the numbers" in the README
+speaks of.
 """
 
 from __future__ import annotations
