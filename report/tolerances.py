@@ -76,7 +76,7 @@ def remarks(found: ToleranceOutcome) -> Iterator[str]:
     name = max(_spoken_of(found), key=lambda one: found.variance_share(first, one))
     rest = ", ".join(
         f"{SHOWN[one]} {_PERCENT * found.standard(one):.2g} % by all, most of it by the "
-        f"{found.by_share(one)[0].deviation.name}"
+        f"{found.worst_first(one)[0].deviation.name}"
         for one in _spoken_of(found)
     )
     yield (

@@ -87,8 +87,8 @@ class ToleranceOutcome:
         """Share of one deviation in the variance of a quantity, dimensionless."""
         return (one.standard(quantity) / self.standard(quantity)) ** 2
 
-    def by_share(self, quantity: str) -> tuple[Sensitivity, ...]:
-        """Those that matter most for a quantity first."""
+    def worst_first(self, quantity: str) -> tuple[Sensitivity, ...]:
+        """Those that do most to a quantity at their ends first."""
         return tuple(sorted(self.sensitivities, key=lambda one: -one.worst(quantity)))
 
 
