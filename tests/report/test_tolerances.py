@@ -49,6 +49,7 @@ def test_sums_are_those_of_independent_and_of_all_at_once():
     found = outcome()
     assert found.standard("peak_torque") == pytest.approx(np.hypot(0.02, 0.015) / 3**0.5, rel=1e-4)
     assert found.worst("peak_torque") == pytest.approx(0.0351)
+    assert found.worst("cogging") == pytest.approx(0.3), "however the derivative points"
     last = report.tolerance_table(found).iloc[-1]
     assert last.tolerance == "all" and last.peak_torque_worst_percent == pytest.approx(3.51)
     assert last.peak_torque_standard_percent == pytest.approx(100 * found.standard("peak_torque"))
