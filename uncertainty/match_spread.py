@@ -34,7 +34,6 @@ _RATIO_SAMPLES, _RADII = 21, 6
 _SLACK = 1e-6  # relative; a radius this close to the end of the fits lies on it
 
 Torques = tuple[float, float]  # factors on the nominal and on the overload torque
-_NO_CHANGE: Torques = (1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -159,29 +158,30 @@ def _draws(count: int, draw: Callable[[np.random.Generator], SectionFits]) -> tu
 
 def drawn_fits(fits: SectionFits, rng: np.random.Generator) -> SectionFits:
     """Every coefficient by its covariance, and every misfit by the held-out residual, anew."""
-    return SectionFits(
-        tuple(replace(one, fits=tuple(_drawn_fit(fit, rng) for fit in one.fits)) for one in fits.by_slots)
-    )
 
+    def draw(_: str, fit: PolynomialFit) -> PolynomialFit:
+        moved = rng.multivariate_normal(fit.coefficients, fit.scatter.covariance)
+        moved[-1] += rng.normal(0.0, fit.scatter.held_out)
+        return _with(fit, moved)
 
-def _drawn_fit(fit: PolynomialFit, rng: np.random.Generator) -> PolynomialFit:
-    moved = rng.multivariate_normal(fit.coefficients, fit.scatter.covariance)
-    moved[-1] += rng.normal(0.0, fit.scatter.held_out)
-    return _with(fit, moved)
+    return _changed(fits, draw)
 
 
 def _scaled(fits: SectionFits, factors: Torques) -> SectionFits:
     """Both torques times factors of their own; the one scaled linearly goes with the nominal one."""
     nominal, overload = factors
     by_name = {"torque_nominal": nominal, "torque_overload": overload, "torque_overload_linear": nominal}
-    of_quantities = [by_name.get(name, 1.0) for name in QUANTITIES]
+    return _changed(fits, lambda name, fit: _with(fit, by_name.get(name, 1.0) * np.array(fit.coefficients)))
+
+
+def _changed(fits: SectionFits, change: Callable[[str, PolynomialFit], PolynomialFit]) -> SectionFits:
+    """Every polynomial changed; change: (name of its quantity, polynomial) -> polynomial."""
     return SectionFits(
         tuple(
-            replace(one, fits=tuple(_with(fit, factor * np.array(fit.coefficients)) for fit, factor in
-                                    zip(one.fits, of_quantities)))
+            replace(one, fits=tuple(change(name, fit) for name, fit in zip(QUANTITIES, one.fits)))
             for one in fits.by_slots
         )
-    )  # fmt: skip
+    )
 
 
 def _with(fit: PolynomialFit, coefficients: np.ndarray) -> PolynomialFit:
