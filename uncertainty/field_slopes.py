@@ -31,6 +31,9 @@ from uncertainty.deviations import Deviation
 
 _STEPS = 36  # of an electrical period: six in the sixth after which three equal phases see the same
 _COGGING_STEPS = 12  # of a period of the cogging
+TORQUE, FLUX_D, FLUX_Q, IRON_LOSS = range(
+    4
+)  # places of the quantities of a loaded state; the last with loss data alone
 _OF_THE_FINER_MESH = 2  # every so manieth angle is solved on the finer mesh
 
 Solutions = Sequence[FieldSolution]

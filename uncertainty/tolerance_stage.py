@@ -18,6 +18,9 @@ from magnetostatics.gap_stress_stage import GapStress
 from tasks import Workers
 from uncertainty.deviations import Deviation, Tolerances
 from uncertainty.field_slopes import (
+    FLUX_D,
+    FLUX_Q,
+    IRON_LOSS,
     Cogging,
     FieldState,
     LoadedIron,
@@ -164,7 +167,7 @@ def _slopes_of(
 def _iron_loss(found: Mapping[str, StateSlopes]) -> float:
     """[W/m], NaN where it was not read."""
     values = found[NOMINAL].values
-    return float(values[3]) if len(values) > 3 else nan
+    return float(values[IRON_LOSS]) if len(values) > IRON_LOSS else nan
 
 
 def _mesh(
@@ -172,7 +175,7 @@ def _mesh(
 ) -> Quantities:
     """Bounds, relative; torque and cogging have theirs already, the base speed that of its flux linkages."""
     magnets, inductance_d, inductance_q = errors[NO_LOAD].tolist()
-    _, flux_d, flux_q = errors[FULL].tolist()
+    flux_d, flux_q = errors[FULL][[FLUX_D, FLUX_Q]].tolist()
     torque = flux_map.torque_error
     return Quantities(
         peak_torque=torque,

@@ -24,6 +24,7 @@ from electrical.wound_machine import WoundMachine
 from losses.copper import copper_loss
 from magnetostatics.flux_map_stage import FluxMap
 from uncertainty.deviations import Deviation
+from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, TORQUE
 
 _LITTLE = 0.01  # relative, of a current over which the torque is differentiated
 NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
@@ -155,15 +156,15 @@ def relative_slopes(
     magnets, inductance_d, inductance_q = field[NO_LOAD] + length
     nominal, full = field[NOMINAL] + length, field[FULL] + length
     return Quantities(
-        peak_torque=float(full[0]),
-        continuous_torque=float(nominal[0]),
+        peak_torque=float(full[TORQUE]),
+        continuous_torque=float(nominal[TORQUE]),
         magnet_flux=float(magnets),
         inductance_d=float(inductance_d),
         inductance_q=float(inductance_q),
         resistance=resistance,
-        base_speed=operated.base_speed_slope(float(full[1]), float(full[2]), resistance),
-        copper_loss=resistance - 2 / operated.elasticity * float(nominal[0]),
-        iron_loss=float(nominal[3]) if len(nominal) > 3 else nan,
+        base_speed=operated.base_speed_slope(float(full[FLUX_D]), float(full[FLUX_Q]), resistance),
+        copper_loss=resistance - 2 / operated.elasticity * float(nominal[TORQUE]),
+        iron_loss=float(nominal[IRON_LOSS]) if len(nominal) > IRON_LOSS else nan,
         cogging=float(field[COGGING][0]) + length,
         mass=_mass_slope(deviation, operated.wound, materials),
     )
