@@ -390,12 +390,13 @@ def match(
     reported: tuple[Constraint, ...] = (),
     gearbox: GearboxDesign,
     model: CostModel,
+    samples: int = RATIO_SAMPLES,
 ) -> Match:
     """Transmission ratio and active length of least cost for one cross-section.
 
     enforced: constraints that shape the length curve and the bounds; at least one must ask for a length
     reported: constraints that are only checked at the optimum; a violated one is among the ``notes``
-    gearbox: at the linkage that drives it; model: what is made small
+    gearbox: at the linkage that drives it; model: what is made small; samples: ratios that are scanned first
 
     Scans the allowed ratios, then refines round the best sample; the ends of the range take part.
     Raises Infeasible when the enforced constraints leave no ratio.
@@ -403,7 +404,7 @@ def match(
     """
     bounds = ratio_bounds(enforced, gearbox)
     design = _Design(section, enforced, gearbox, model)
-    ratio = _minimum(design.cost_at, *bounds, RATIO_SAMPLES)
+    ratio = _minimum(design.cost_at, *bounds, samples)
     length = float(active_length(enforced, ratio))
     box = design.gearbox_at(ratio)
     return Match(
@@ -458,12 +459,13 @@ def match_over_radius(
     constraints_of: Callable[[SizedSection], Constraints],
     gearbox: GearboxDesign,
     model: CostModel,
+    samples: int = RATIO_SAMPLES,
 ) -> RadiusMatches:
     """Matches over stator outer radii [m], and the best over the continuous radius between them.
 
     section_at: stator outer radius [m] -> cross-section, for example from the polynomial fits
     radii: [m], (n,), two or more, rising
-    constraints_of: cross-section -> constraints, for example of a ``DampingReading``
+    constraints_of: cross-section -> constraints, for example of a ``DampingReading``; samples: see ``match``
     Raises Infeasible when no radius has a match.
     Source: thesis, "Optimization output" of the match, Fig. 3.26.
     """
@@ -472,7 +474,9 @@ def match_over_radius(
     def at(radius: float) -> Match:
         section = section_at(radius)
         chosen = constraints_of(section)
-        return match(section, enforced=chosen.enforced, reported=chosen.reported, gearbox=gearbox, model=model)
+        return match(
+            section, enforced=chosen.enforced, reported=chosen.reported, gearbox=gearbox, model=model, samples=samples
+        )
 
     results = [_attempt(at, radius) for radius in radii]
     refusals = tuple(result if isinstance(result, Finding) else None for result in results)

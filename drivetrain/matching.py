@@ -17,6 +17,7 @@ import numpy as np
 from drivetrain.finding import Finding, Sentence
 from drivetrain.masses import DrawnParts, MassModel, PartMasses, PartMaterials, SteelCylinder
 from drivetrain.match import (
+    RATIO_SAMPLES,
     Constraints,
     CopperLoading,
     CostModel,
@@ -222,7 +223,10 @@ class MatchOutcome:
 
 @dataclass(frozen=True)
 class Matcher:
-    """The match of one pair of requirements and linkage; masses: what a motor weighs."""
+    """The match of one pair of requirements and linkage; masses: what a motor weighs.
+
+    radii, ratio_samples: how many stator radii and transmission ratios are looked at before the best is refined
+    """
 
     case: FieldCase
     fits: SectionFits
@@ -230,6 +234,8 @@ class Matcher:
     linkage: Linkage
     inputs: MatchInputs
     masses: MassModel
+    radii: int = RADII
+    ratio_samples: int = RATIO_SAMPLES
 
     @property
     def gearbox(self) -> GearboxDesign:
@@ -266,7 +272,10 @@ class Matcher:
     def match(self, section: SizedSection) -> Match:
         """Of one cross-section. Raises Infeasible."""
         found = self.constraints(section)
-        return match(section, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox, model=self.model)
+        return match(
+            section, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox, model=self.model,
+            samples=self.ratio_samples,
+        )  # fmt: skip
 
     def over_radius(self, slots: int, overload: OverloadLaw) -> SlotMatches:
         """Over the range of the fits."""
@@ -275,10 +284,11 @@ class Matcher:
             self.section(slots, overload, low)  # a refused fit may have one radius only, or none
             found = match_over_radius(
                 partial(self.section, slots, overload),
-                np.linspace(low, high, RADII),
+                np.linspace(low, high, self.radii),
                 constraints_of=self.constraints,
                 gearbox=self.gearbox,
                 model=self.model,
+                samples=self.ratio_samples,
             )
         except Infeasible as refusal:
             return SlotMatches(slots, overload, None, refusal.finding)
@@ -347,7 +357,7 @@ def match_stage(
     Source: thesis eqs 3.62-3.102, Figs 3.25 and 3.26.
     """
     drawn = DrawnParts(inputs.masses, case.packing)
-    matcher = Matcher(case, fits, requirements, linkage, inputs, drawn)
+    matcher = Matcher(case, fits, requirements, linkage, inputs, drawn, radii=RADII)
     results = tuple(matcher.over_radius(slots, law) for slots in inputs.slots for law in OVERLOAD_LAWS)
     best = _least(tuple(one for one in results if one.overload == inputs.overload), output)
     chosen, reason = _choose(matcher, best, output)

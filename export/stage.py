@@ -22,7 +22,7 @@ from losses.map import PowerLosses
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap
-from magnetostatics.rotation_stage import Rotations
+from magnetostatics.gap_stress_stage import GapStress
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Package:
     layout, connections: of the winding; costs: of the parts, the sum last; currency: of the costs
     continuous: at the nominal current density and the rated speed; overload: at full current and the rated speed
     losses: at the continuous point, None where the study has no loss data
-    short_circuit: of the phases; cogging: largest torque without current [Nm], None where no field was solved for it
+    short_circuit: of the phases; cogging: torque without current from peak to peak [Nm]
     unsaturated: constant parameters without current, slopes of the flux map there
     """
 
@@ -80,7 +80,7 @@ class Package:
     overload: OperatingState
     losses: PowerLosses | None
     short_circuit: ShortCircuit
-    cogging: float | None
+    cogging: float
     unsaturated: SynchronousMachine
 
 
@@ -92,7 +92,7 @@ def package_stage(
     braking: BrakingOutcome,
     outcome: Outcome,
     losses: LossMap | None,
-    rotations: Rotations | None,
+    gap_stress: GapStress,
     prices: PartPrices,
 ) -> Package:
     """Read the artefacts at the rated speed: the base speed, or the largest allowed one where that is lower."""
@@ -109,7 +109,7 @@ def package_stage(
         overload=least_current_state(machine, winding.limits.current_peak, speed),
         losses=None if losses is None else losses.losses.at(continuous.torque, continuous.speed),
         short_circuit=short_circuit_of(braking),
-        cogging=cogging_of(rotations, wound.active_length),
+        cogging=gap_stress.cogging * wound.active_length,
         unsaturated=unsaturated_machine(machine),
     )
 
@@ -138,10 +138,3 @@ def short_circuit_of(braking: BrakingOutcome) -> ShortCircuit:
     both = braking.cold, braking.hot
     current = max(float(np.nanmax(one.current_peak)) for one in both)
     return ShortCircuit(current, float(np.nanmax(braking.cold.torque)), cold, hot)
-
-
-def cogging_of(rotations: Rotations | None, active_length: float) -> float | None:
-    """Largest torque without current [Nm] at an active length [m], None where the machine was not turned."""
-    if rotations is None or rotations.matched is None:
-        return None
-    return rotations.matched.cogging * active_length

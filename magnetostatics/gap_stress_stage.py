@@ -17,11 +17,11 @@ from geometry.cross_section import mesh_cross_section
 from geometry.defects import StaticEccentricity, deformed
 from geometry.family import MatchedMachine
 from geometry.machine import Machine
+from magnetostatics.arc import Arc, angles_from_null, arcs, solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import StressWave, radial_stress_orders, stress_over_angle, stress_waves, torque_orders
 from magnetostatics.mesh_error import refined_model
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
-from magnetostatics.positions import null_angle
+from magnetostatics.model import FieldModel
 from magnetostatics.rotation_stage import STATES
 from magnetostatics.torque import arkkio_torque, magnetic_pull
 from tasks import Workers
@@ -29,7 +29,6 @@ from tasks import Workers
 PULL_STATES = ("no_current", "overload")
 STEPS = 48  # over half an electrical period: eight in a period of the cogging of 12 slots and 10 poles
 _COGGING_STEPS = 12  # over one period of the cogging
-_ANGLES_TOGETHER = 12  # of a task; each starts from the field of the one before
 _ORDERS_PER_SLOT = 4  # spatial orders up to so many times the slots
 _PULL_STEPS = 6  # over half an electrical period; the pull varies with even multiples of the electrical frequency
 _SHIFT = 0.1  # of the air gap; up to there the pull grows in proportion
@@ -111,15 +110,6 @@ class GapStress:
         return float(self.stress_orders("no_current")[:, 0].real.mean())
 
 
-@dataclass(frozen=True)
-class StressArc:
-    """Some neighbouring rotor angles [rad] of a machine."""
-
-    case: FieldCase
-    machine: Machine
-    angles: tuple[float, ...]
-
-
 @dataclass(frozen=True, eq=False)
 class SolvedStressArc:
     """torque_per_length [Nm/m], (state, angle), and stress [Pa], complex (state, angle, order), of an arc."""
@@ -142,11 +132,11 @@ class PullTask:
 def gap_stress_stage(case: FieldCase, matched: MatchedMachine, workers: Workers) -> GapStress:
     """Solve the machine over half an electrical period, and its pull off centre. Raises FieldSolutionError."""
     machine = matched.machine
-    angles = _angles(case, machine, machine.pole_pitch, STEPS)
-    cogging = _angles(case, machine, 2 * pi / lcm(machine.slots, machine.poles), _COGGING_STEPS)
+    angles = angles_from_null(case, machine, machine.pole_pitch, STEPS)
+    cogging = angles_from_null(case, machine, 2 * pi / lcm(machine.slots, machine.poles), _COGGING_STEPS)
     shift = _SHIFT * machine.airgap
-    solved = workers.map("gap stress", solve_stress_arc, _arcs(case, machine, angles))
-    both = workers.map("cogging", solve_cogging, {"one period": StressArc(case, machine, cogging)})
+    solved = workers.map("gap stress", solve_stress_arc, arcs(case, machine, angles))
+    both = workers.map("cogging", solve_cogging, {"one period": Arc(case, machine, tuple(cogging))})
     pulls = workers.map("pull", solve_pull, _pull_tasks(case, machine, shift))
     centred, shifted = np.stack(list(pulls.values())).reshape(2, len(PULL_STATES), _PULL_STEPS, 2)
     return GapStress(
@@ -159,19 +149,9 @@ def gap_stress_stage(case: FieldCase, matched: MatchedMachine, workers: Workers)
     )
 
 
-def _angles(case: FieldCase, machine: Machine, span: float, steps: int) -> tuple[float, ...]:
-    """Evenly over a span [rad] from the null position on, its end left out."""
-    return tuple((null_angle(machine, case.layout(machine)) + span * np.arange(steps) / steps).tolist())
-
-
-def _arcs(case: FieldCase, machine: Machine, angles: tuple[float, ...]) -> dict[str, StressArc]:
-    firsts = range(0, len(angles), _ANGLES_TOGETHER)
-    return {f"arc {k}": StressArc(case, machine, angles[k : k + _ANGLES_TOGETHER]) for k in firsts}
-
-
 def _pull_tasks(case: FieldCase, machine: Machine, shift: float) -> dict[str, PullTask]:
     """In the middle, then off centre, each in ``PULL_STATES``."""
-    angles = _angles(case, machine, machine.pole_pitch, _PULL_STEPS)
+    angles = tuple(angles_from_null(case, machine, machine.pole_pitch, _PULL_STEPS))
     densities = dict(zip(PULL_STATES, (0.0, case.overload_density)))
     return {
         f"{state}, {'off centre' if amount else 'in the middle'}": PullTask(case, machine, angles, density, amount)
@@ -180,11 +160,11 @@ def _pull_tasks(case: FieldCase, machine: Machine, shift: float) -> dict[str, Pu
     }
 
 
-def solve_stress_arc(arc: StressArc) -> SolvedStressArc:
+def solve_stress_arc(arc: Arc) -> SolvedStressArc:
     """Torque and stress at the angles of an arc, in every one of ``STATES``."""
-    model, case = arc.case.model(arc.machine), arc.case
+    model, case = arc.model(), arc.case
     amplitudes = (0.0, case.nominal_density, case.overload_density)
-    solved = [_solved(model, arc.angles, amplitude, case.packing) for amplitude in amplitudes]
+    solved = [solved_over(model, arc.angles, amplitude, case.packing) for amplitude in amplitudes]
     highest = _ORDERS_PER_SLOT * arc.machine.slots
     return SolvedStressArc(
         np.array([[arkkio_torque(one) for one in some] for some in solved]),
@@ -192,10 +172,10 @@ def solve_stress_arc(arc: StressArc) -> SolvedStressArc:
     )
 
 
-def solve_cogging(arc: StressArc) -> np.ndarray:
+def solve_cogging(arc: Arc) -> np.ndarray:
     """Torque without current [Nm/m], (2, n): on the mesh of the sweep, and on triangles of half the size."""
-    model = arc.case.model(arc.machine)
-    both = (_solved(one, arc.angles, 0.0, arc.case.packing) for one in (model, refined_model(model)))
+    model = arc.model()
+    both = (solved_over(one, arc.angles, 0.0, arc.case.packing) for one in (model, refined_model(model)))
     return np.array([[arkkio_torque(solution) for solution in some] for some in both])
 
 
@@ -204,20 +184,11 @@ def solve_pull(task: PullTask) -> np.ndarray:
     case, machine = task.case, task.machine
     whole = mesh_cross_section(machine, case.layout(machine), case.density, whole=True)
     section = deformed(whole, StaticEccentricity(task.shift)) if task.shift else whole
-    solved = _solved(FieldModel(section, case.materials), task.angles, task.density, case.packing)
+    solved = solved_over(FieldModel(section, case.materials), task.angles, task.density, case.packing)
     return np.array([magnetic_pull(solution) for solution in solved])
 
 
-def _solved(model: FieldModel, angles: tuple[float, ...], amplitude: float, packing: float) -> list[FieldSolution]:
-    """The current of this amplitude [A/m^2] on the q axis, each angle [rad] from the field of the one before."""
-    solved: list[FieldSolution] = []
-    for angle in angles:
-        point = OperatingPoint(angle, amplitude, 0.0, packing)
-        solved.append(model.solve(point, start=solved[-1] if solved else None))
-    return solved
-
-
-def _dataset(angles: tuple[float, ...], arcs: list[SolvedStressArc]) -> xr.Dataset:
+def _dataset(angles: list[float], arcs: list[SolvedStressArc]) -> xr.Dataset:
     stress = np.concatenate([arc.stress for arc in arcs], axis=1)
     parts = np.stack([stress.real, stress.imag], axis=2)
     return xr.Dataset(
@@ -225,5 +196,5 @@ def _dataset(angles: tuple[float, ...], arcs: list[SolvedStressArc]) -> xr.Datas
             "torque": (("state", "angle"), np.concatenate([arc.torque_per_length for arc in arcs], axis=1)),
             "stress": (("state", "angle", "part", "order"), parts),
         },
-        {"state": list(STATES), "angle": list(angles), "part": ["real", "imaginary"]},
+        {"state": list(STATES), "angle": angles, "part": ["real", "imaginary"]},
     )

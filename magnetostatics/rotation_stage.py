@@ -16,6 +16,7 @@ from skfem import MeshTri
 from geometry.cross_section import CrossSection
 from geometry.family import MatchedMachine
 from geometry.machine import Machine
+from magnetostatics.arc import Arc, angles_from_null, arcs, solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
 from magnetostatics.model import OperatingPoint
@@ -26,7 +27,6 @@ from tasks import Workers
 
 STATES = ("no_current", "nominal", "overload")  # that fields are kept of
 _STEPS = 144  # over one electrical period: twelve in a period of the cogging of 12 slots and 10 poles
-_ANGLES_TOGETHER = 24  # of a task; each starts from the field of the one before
 _TORQUES = ("torque_ring", "torque_circle", "torque_no_current")
 
 
@@ -95,8 +95,8 @@ class Rotation:
 
     @property
     def cogging(self) -> float:
-        """Largest torque without current [Nm/m]."""
-        return float(np.abs(self.one_period.torque_no_current).max())
+        """Torque without current from peak to peak [Nm/m], see ``GapStress.cogging`` for that of the finer mesh."""
+        return float(np.ptp(self.one_period.torque_no_current.values))
 
     @property
     def routes_apart(self) -> float:
@@ -110,15 +110,6 @@ class Rotations:
 
     reference: Rotation
     matched: Rotation | None
-
-
-@dataclass(frozen=True)
-class RotationArc:
-    """Some neighbouring rotor angles [rad] of a machine."""
-
-    case: FieldCase
-    machine: Machine
-    angles: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,16 +153,16 @@ def rotations_stage(case: FieldCase, matched: MatchedMachine | None, workers: Wo
     """Turn both machines over one electrical period, and solve their fields in the null position."""
     machines = {"reference": case.family.reference} | ({"matched": matched.machine} if matched is not None else {})
     states = {f"{name}, null position": NullStates(case, machine) for name, machine in machines.items()}
-    arcs = {name: _arcs(case, machine) for name, machine in machines.items()}
-    named = {f"{name}, arc {k}": arc for name, some in arcs.items() for k, arc in enumerate(some)}
+    turns = {name: arcs(case, machine, _angles(case, machine)) for name, machine in machines.items()}
+    named = {f"{name}, {which}": arc for name, turn in turns.items() for which, arc in turn.items()}
     solved = workers.map("rotation", solve_arc, named)
     null = workers.map("fields", solve_null_states, states)
     found = {
         name: _rotation(
             case,
             machine,
-            np.concatenate([arc.angles for arc in arcs[name]]),
-            [solved[f"{name}, arc {k}"] for k in range(len(arcs[name]))],
+            np.concatenate([arc.angles for arc in turns[name].values()]),
+            [solved[f"{name}, {which}"] for which in turns[name]],
             null[f"{name}, null position"],
         )
         for name, machine in machines.items()
@@ -179,24 +170,21 @@ def rotations_stage(case: FieldCase, matched: MatchedMachine | None, workers: Wo
     return Rotations(found["reference"], found.get("matched"))
 
 
-def _arcs(case: FieldCase, machine: Machine) -> list[RotationArc]:
-    """One electrical period from the null position on, both ends included."""
-    angles = null_angle(machine, case.layout(machine)) + 2 * pi / machine.pole_pairs * np.arange(_STEPS + 1) / _STEPS
-    firsts = range(0, _STEPS, _ANGLES_TOGETHER)
-    ends = [*firsts[1:], _STEPS + 1]
-    return [RotationArc(case, machine, tuple(angles[k:end].tolist())) for k, end in zip(firsts, ends)]
+def _angles(case: FieldCase, machine: Machine) -> list[float]:
+    """One electrical period from the null position on, both ends included [rad]."""
+    period = 2 * pi / machine.pole_pairs
+    angles = angles_from_null(case, machine, period, _STEPS)
+    return [*angles, angles[0] + period]
 
 
-def solve_arc(arc: RotationArc) -> SolvedArc:
+def solve_arc(arc: Arc) -> SolvedArc:
     """Solve the angles of an arc without current and with the nominal current density on the q axis."""
-    model, case = arc.case.model(arc.machine), arc.case
-    reader, idle, loaded, torques, flux = probe_reader(model), None, None, [], []
-    for angle in arc.angles:
-        idle = model.solve(OperatingPoint(angle, 0.0, 0.0, case.packing), start=idle)
-        loaded = model.solve(OperatingPoint(angle, case.nominal_density, 0.0, case.packing), start=loaded or idle)
-        torques.append([arkkio_torque(loaded), maxwell_torque(loaded), arkkio_torque(idle)])
-        flux.append(list(reader.read(loaded).values()))
-    return SolvedArc(np.array(torques), np.array(flux), reader.names)
+    model, case = arc.model(), arc.case
+    reader = probe_reader(model)
+    idle = solved_over(model, arc.angles, 0.0, case.packing)
+    loaded = solved_over(model, arc.angles, case.nominal_density, case.packing, start=idle[0])
+    torques = [[arkkio_torque(one), maxwell_torque(one), arkkio_torque(free)] for one, free in zip(loaded, idle)]
+    return SolvedArc(np.array(torques), np.array([list(reader.read(one).values()) for one in loaded]), reader.names)
 
 
 def null_points(case: FieldCase, machine: Machine) -> tuple[OperatingPoint, ...]:

@@ -11,6 +11,7 @@ from geometry.morph import Morpher
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.local_steel import with_law
 from magnetostatics.model import FieldModel, MachineMaterials, OperatingPoint, OperatingState
+from magnetostatics.sensitivity import Variation
 from materials.altered_steel import ScaledReluctivity, ScaledSaturation, stacked
 from materials.reluctivity import Reluctivity
 
@@ -160,6 +161,30 @@ class Shape:
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         return model.like(self.section(change)), point
+
+
+@dataclass(frozen=True, eq=False)
+class SameAmpereTurns:
+    """A variation of a wound machine: the current stays that of its wires, however much room the slot leaves them.
+
+    varied: what changes, under a balanced supply; step, change: [unit of that]
+    """
+
+    varied: Variation
+
+    @property
+    def step(self) -> float:
+        """That of what changes [its unit]."""
+        return self.varied.step
+
+    def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        if not isinstance(point, OperatingPoint):
+            raise TypeError(
+                f"ampere-turns are kept of a balanced supply, an OperatingPoint; found {type(point).__name__}"
+            )
+        changed, _ = self.varied.at(model, point, change)
+        more_room = changed.section.half_slot_area / model.section.half_slot_area
+        return changed, replace(point, current_density=point.current_density / more_room)
 
 
 @dataclass(frozen=True)

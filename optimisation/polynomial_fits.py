@@ -21,12 +21,24 @@ class FitRefused(ValueError):
 
 
 @dataclass(frozen=True)
+class FitScatter:
+    """How sure a fit is, as its own points show.
+
+    covariance: of the coefficients (c2, c1, c0), s^2 (X^T X)^-1 [unit of y squared], three rows
+    held_out: root mean square of what each point is off a curve through all others, r/(1 - h) [unit of y]
+    """
+
+    covariance: tuple[tuple[float, ...], ...]
+    held_out: float
+
+
+@dataclass(frozen=True)
 class PolynomialFit:
     """y = c2 t^2 + c1 t + c0 with t = (R - centre)/scale, over the fitted range of the stator radius R [m].
 
     The radius is centred and scaled, so that the coefficients are of one size and well determined.
     coefficients: (c2, c1, c0) [unit of y]; rms_residual, largest_residual: [unit of y]; centre, scale, x_range [m]
-    r_squared: dimensionless
+    r_squared: dimensionless; scatter: how sure the curve is
     refused: the reason why the fit must not be used, empty when it may
     """
 
@@ -38,6 +50,7 @@ class PolynomialFit:
     r_squared: float
     rms_residual: float
     largest_residual: float
+    scatter: FitScatter
     refused: str = ""
 
     @property
@@ -81,7 +94,23 @@ def fit_polynomial(quantity: str, radii: Values, values: Values) -> PolynomialFi
     reason = _reason_to_refuse(x[worst], abs(residual[worst]) / np.mean(np.abs(y)), r_squared)
     rms, largest = float(np.sqrt((residual**2).mean())), float(abs(residual[worst]))
     c2, c1, c0 = coefficients.tolist()
-    return PolynomialFit(quantity, (c2, c1, c0), centre, scale, _range(x), r_squared, rms, largest, reason)
+    scatter = fit_scatter((x - centre) / scale, residual)
+    return PolynomialFit(quantity, (c2, c1, c0), centre, scale, _range(x), r_squared, rms, largest, scatter, reason)
+
+
+def fit_scatter(places: np.ndarray, residual: np.ndarray) -> FitScatter:
+    """The scatter of a least-squares fit by its residuals.
+
+    places: t of the points, dimensionless, (n,), four or more; residual: of each point [any unit], (n,)
+    h is the leverage of a point, the diagonal of X (X^T X)^-1 X^T; standard textbook formulas of least squares, which
+    take the misfits of neighbouring points as independent.
+    """
+    powers = np.vander(places, ORDER + 1)
+    inverse = np.linalg.inv(powers.T @ powers)
+    leverage = np.einsum("ij,jk,ik->i", powers, inverse, powers)
+    variance = (residual**2).sum() / (len(places) - ORDER - 1)
+    covariance = tuple(tuple(row) for row in (variance * inverse).tolist())
+    return FitScatter(covariance, float(np.sqrt(((residual / (1 - leverage)) ** 2).mean())))
 
 
 def _too_few(quantity: str, x: np.ndarray) -> PolynomialFit:
@@ -90,7 +119,9 @@ def _too_few(quantity: str, x: np.ndarray) -> PolynomialFit:
         "add to sweep.stator_diameters_mm"
     )
     unknown = float("nan")
-    return PolynomialFit(quantity, (unknown,) * 3, unknown, unknown, _range(x), unknown, unknown, unknown, reason)
+    three = (unknown,) * 3
+    scatter = FitScatter((three,) * 3, unknown)
+    return PolynomialFit(quantity, three, unknown, unknown, _range(x), unknown, unknown, unknown, scatter, reason)
 
 
 def _range(x: np.ndarray) -> tuple[float, float]:

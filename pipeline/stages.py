@@ -69,6 +69,8 @@ from report import (
     requirements,
     ride,
     sweep,
+    tolerances,
+    uncertainty,
     winding,
 )
 from report import learned as learned_report
@@ -91,10 +93,13 @@ from study.inputs_linkage import installation_space, linkage_search, stated_link
 from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
 from study.inputs_mechanics import mechanics_inputs
 from study.inputs_package import part_prices
+from study.inputs_tolerances import tolerances as stated_tolerances
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from thermal.errors import ThermalError
 from thermal.stage import heat_stage
+from uncertainty.stage import uncertainty_stage
+from uncertainty.tolerance_stage import tolerances_stage
 from vehicle.demands import required, requirements_stage
 from vehicle.designed import designed_actuator
 from vehicle.energy_stage import energy_stage
@@ -177,6 +182,9 @@ _MACHINE: tuple[Node, ...] = (
     Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
+    View(stated_tolerances),
+    Stage("tolerances", tolerances_stage, "which one to buy", tolerances.files, remarks=tolerances.remarks),
+    Stage("uncertainty", uncertainty_stage, "of the headline numbers", uncertainty.files),
     Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
 )
 
@@ -256,6 +264,8 @@ def _sections(study: Study) -> tuple[Function, ...]:
         mechanics.section,
         losses.section,
         heat.section,
+        tolerances.section,
+        uncertainty.section,
         package.section,
         *((ride.section,) if driven else ()),
         *((energy.section,) if driven and _has_loss_data(study) else ()),

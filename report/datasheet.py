@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass, replace
-from math import isfinite, sqrt
+from math import isfinite, isnan, sqrt
 
 import pandas as pd
 
@@ -21,33 +21,41 @@ from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
 from export.stage import Package
 from figures.files import picture_name
-from figures.report import Picture, Section, Table
+from figures.report import Picture, Section, Table, number_text
 from geometry.machine import Machine
 from losses.stage import LossInputs
 from magnetostatics.case import FieldCase
 from report.heat import binding
 from thermal.machine import MAGNETS
 from thermal.stage import HeatOutcome
+from uncertainty.budget import Budget, Uncertain
+from uncertainty.stage import Uncertainty
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
 
 DRAWING_PICTURE = "lamination"
 TABLE = "datasheet.csv"
+PLUS_MINUS = "plus_minus"  # column of the expanded uncertainty
 _TEXT = (
     "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star; peak "
     "means amplitude. The rated point is the torque at the nominal current density, at the speed up to which the full "
-    f"current gives its torque. {TABLE} holds the same rows."
+    "current gives its torque. Behind ± stands the expanded uncertainty by mesh, fit and tolerances, which holds the "
+    f"number with about 95 % (see Uncertainty). {TABLE} holds the same rows."
 )
 _THOUSAND_RPM = 1000 * RPM  # rad/s, at which data sheets state a back-EMF
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the data sheet; value: in the unit that is written behind it."""
+    """One line of the data sheet; value: in the unit that is written behind it.
+
+    expanded: U of ``uncertainty.budget`` in that unit, None where it is not known
+    """
 
     quantity: str
     value: object
     unit: str
     condition: str = ""
+    expanded: float | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +67,7 @@ class Group:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Columns quantity, value, unit, condition."""
+        """See ``table_of``."""
         return table_of(self.rows)
 
 
@@ -71,18 +79,23 @@ class DataSheet:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Columns quantity, value, unit, condition."""
+        """See ``table_of``."""
         return table_of(tuple(one for group in self.groups for one in group.rows))
 
 
-def row(quantity: str, value: float, unit: str, condition: str = "") -> Row:
-    """A row of a value in SI, shown in a unit of ``units.FACTORS``; empty for a pure number."""
-    return Row(quantity, in_unit(value, unit) if unit else value, written(unit), condition)
+def row(quantity: str, value: float, unit: str, condition: str = "", known: Uncertain | None = None) -> Row:
+    """A row of a value in SI, shown in a unit of ``units.FACTORS``; empty for a pure number.
+
+    known: how well a number is known that the value is proportional to
+    """
+    shown = in_unit(value, unit) if unit else value
+    return Row(quantity, shown, written(unit), condition, None if known is None else shown * known.expanded)
 
 
 def table_of(rows: tuple[Row, ...]) -> pd.DataFrame:
-    """Columns quantity, value, unit, condition."""
-    return pd.DataFrame([astuple(one) for one in rows], columns=["quantity", "value", "unit", "condition"])
+    """Columns quantity, value, plus_minus (U, 95 %), unit, condition."""
+    table = pd.DataFrame([astuple(one) for one in rows], columns=["quantity", "value", "unit", "condition", PLUS_MINUS])
+    return table.astype({PLUS_MINUS: float})[["quantity", "value", PLUS_MINUS, "unit", "condition"]]
 
 
 def data_sheet(
@@ -96,19 +109,21 @@ def data_sheet(
     warm: HeatOutcome,
     magnets: MagnetsOutcome | None,
     outcome: Outcome,
+    uncertainty: Uncertainty,
     output: Output,
 ) -> DataSheet:
     """Every group of rows; a group without rows is left out. magnets: None where the study names no grade"""
+    budget = uncertainty.budget
     groups = (
         Group("Dimensions and materials", tuple(dimensions(winding.wound, case, steel))),
-        Group("Winding", tuple(winding_rows(package, winding, inputs, heat))),
-        Group("Torque, speed and supply", tuple(performance(package, winding, inputs))),
-        Group("What the temperatures allow", tuple(warm_rows(warm))),
+        Group("Winding", tuple(winding_rows(package, winding, inputs, heat, budget))),
+        Group("Torque, speed and supply", tuple(performance(package, winding, inputs, budget))),
+        Group("What the temperatures allow", tuple(warm_rows(warm, budget))),
         Group("Magnets", tuple(magnet_rows(magnets))),
-        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat))),
-        Group("Constants", tuple(constants(package, winding))),
+        Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat, budget))),
+        Group("Constants", tuple(constants(package, winding, budget))),
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
-        Group("Masses and inertia", tuple(mass_rows(outcome.masses))),
+        Group("Masses and inertia", tuple(mass_rows(outcome.masses, budget))),
     )
     return DataSheet(tuple(group for group in groups if group.rows))
 
@@ -124,7 +139,7 @@ def section(sheet: DataSheet) -> Section:
                 "Cross-section with its dimensions in mm; coil sides in the colours of phases A, B and C, light where "
                 "a positive phase current flows away from the viewer.",
             ),
-            *(Table(group.table, f"{group.title}.") for group in sheet.groups),
+            *(Table(_shown(group), f"{group.title}.", {PLUS_MINUS: "±"}) for group in sheet.groups),
         ),
     )
 
@@ -152,7 +167,9 @@ def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Itera
     yield row("remanence", magnet.remanence, "T", "at the working temperature of the magnets")
 
 
-def winding_rows(package: Package, winding: WindingOutcome, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:
+def winding_rows(
+    package: Package, winding: WindingOutcome, inputs: WindingInputs, heat: CopperHeat, budget: Budget
+) -> Iterator[Row]:
     """What is wound, and its resistance."""
     wound, layout = winding.wound, package.layout
     yield Row("connection", "star", "", f"{layout.coils_in_series} coils of a phase in series")
@@ -164,36 +181,38 @@ def winding_rows(package: Package, winding: WindingOutcome, inputs: WindingInput
     yield row("wire diameter", inputs.wire.copper_diameter, "mm", "bare copper")
     yield row("packing factor", winding.chosen.packing, "", "copper over the area of a coil side")
     for temperature, factor in ((heat.cold, heat.cold_resistance), (heat.hot, heat.hot_resistance)):
-        yield row("phase resistance", wound.phase_resistance * factor, "mOhm", f"{temperature:g} °C, direct current")
+        at = f"{temperature:g} °C, direct current"
+        yield row("phase resistance", wound.phase_resistance * factor, "mOhm", at, budget.resistance)
 
 
-def constants(package: Package, winding: WindingOutcome) -> Iterator[Row]:
+def constants(package: Package, winding: WindingOutcome, budget: Budget) -> Iterator[Row]:
     """What a drive is set up with."""
     chosen, idle = winding.chosen, package.unsaturated
     full = f"at {chosen.current_peak:.4g} A"
-    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load")
-    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load")
-    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load")
+    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load", budget.torque_constant)
+    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load", budget.inductance_d)
+    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load", budget.inductance_q)
     yield row("L_d", chosen.inductance_d, "uH", f"phase, apparent, {full} on the q axis and a quarter of it against d")
     yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis")
-    yield row("torque constant", chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load")
+    no_load = chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load"
+    yield row("torque constant", *no_load, budget.torque_constant)
     yield row("torque constant", chosen.torque_constant, "mNm_per_A", f"per peak ampere, {full} on the q axis")
     emf = sqrt(3) * idle.pole_pairs * idle.psi_m * _THOUSAND_RPM
-    yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm")
-    yield row("back-EMF", emf / sqrt(2), "V", "line to line, RMS of the fundamental, at 1000 rpm")
+    yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm", budget.torque_constant)
+    rms = "line to line, RMS of the fundamental, at 1000 rpm"
+    yield row("back-EMF", emf / sqrt(2), "V", rms, budget.torque_constant)
 
 
-def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs) -> Iterator[Row]:
+def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs, budget: Budget) -> Iterator[Row]:
     """Torques, speeds, currents and the supply."""
     chosen, bus = winding.chosen, inputs.limits.dc_voltage
     rated, full = package.continuous, package.overload
     nominal, overload = (_density(one) for one in (inputs.nominal_density, inputs.limits.overload_current_density))
-    yield row("peak torque", winding.peak_torque, "Nm", f"{overload}, ± {winding.peak_torque_error:.3f} Nm by the mesh")
+    yield row("peak torque", winding.peak_torque, "Nm", overload, budget.peak_torque)
     yield row("torque ripple", winding.peak_torque_ripple, "Nm", "peak to peak, at the peak torque")
-    if package.cogging is not None:
-        yield row("cogging torque", package.cogging, "Nm", "largest, without current")
-    yield row("continuous torque", rated.torque, "Nm", nominal)
-    yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given")
+    yield row("cogging torque", package.cogging, "Nm", "peak to peak, without current, magnets alike", budget.cogging)
+    yield row("continuous torque", rated.torque, "Nm", nominal, budget.continuous_torque)
+    yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given", budget.base_speed)
     yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque")
     if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
         fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
@@ -207,11 +226,11 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
 
 
-def warm_rows(warm: HeatOutcome) -> Iterator[Row]:
+def warm_rows(warm: HeatOutcome, budget: Budget) -> Iterator[Row]:
     """Torque and current without end, by the thermal network."""
     slow, limits = warm.slow, warm.inputs.limits
     at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
-    yield row("continuous torque", slow.torque, "Nm", at)
+    yield row("continuous torque", slow.torque, "Nm", at, budget.continuous_effort)
     yield row("continuous phase current", slow.current / sqrt(2), "A", f"RMS, {at}")
     yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
     yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
@@ -230,7 +249,9 @@ def magnet_rows(magnets: MagnetsOutcome | None) -> Iterator[Row]:
         yield row("demagnetising current", magnets.demagnetising_current, "A", f"peak, against the magnets, {allowed}")
 
 
-def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat) -> Iterator[Row]:
+def loss_rows(
+    package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat, budget: Budget
+) -> Iterator[Row]:
     """Losses and efficiency, efficiency with hot copper too; none where the study has no loss data."""
     losses, rated = package.losses, package.continuous
     if losses is None:
@@ -238,7 +259,8 @@ def loss_rows(package: Package, steel: LossInputs, inputs: WindingInputs, heat: 
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     hot = replace(losses, copper=losses.copper * heat.hot_resistance)
     yield row("power", losses.mechanical, "W", f"mechanical, {at}")
-    yield row("copper loss", losses.copper, "W", f"{steel.winding_temperature:g} °C, direct current")
+    cold = f"{steel.winding_temperature:g} °C, direct current"
+    yield row("copper loss", losses.copper, "W", cold, budget.copper_loss)
     yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
@@ -263,11 +285,29 @@ def braking_rows(package: Package, braking: BrakingOutcome, output: Output) -> I
     yield row("back-EMF at the largest speed", braking.back_emf, "V", f"line to line, peak, at {asked} {output.place}")
 
 
-def mass_rows(masses: PartMasses) -> Iterator[Row]:
+def mass_rows(masses: PartMasses, budget: Budget) -> Iterator[Row]:
     """By part, and what turns."""
-    for part, mass, _ in masses.rows:
+    *parts, (whole, total, _) = masses.rows
+    for part, mass, _ in parts:
         yield row(part, mass, "kg")
+    yield row(whole, total, "kg", known=budget.mass)
     yield row("rotor inertia", masses.rotor_inertia, "kg_mm2", "laminations, magnets and shaft over the active length")
+
+
+def plus_minus(expanded: float) -> str:
+    """An expanded uncertainty to two digits, as the GUM (7.2.6) asks for; nothing where it is not known (NaN).
+
+    expanded: in the unit of its value
+    """
+    return "" if isnan(expanded) else number_text(expanded, 2)
+
+
+def _shown(group: Group) -> pd.DataFrame:
+    """The table of a group, without the column of the uncertainties where none is known."""
+    table = group.table
+    if table[PLUS_MINUS].isna().all():
+        return table.drop(columns=PLUS_MINUS)
+    return table.assign(**{PLUS_MINUS: [plus_minus(one) for one in table[PLUS_MINUS]]})
 
 
 def _pattern(machine: Machine) -> str:

@@ -34,7 +34,7 @@ def machine(found: Rotations) -> Section:
     text = (
         f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one "
         "electrical period (± bounds the error of the mesh) with the current on the q axis, ripple "
-        f"{seen.ripple:.2f} Nm/m peak to peak, cogging up to {seen.cogging:.2f} Nm/m. "
+        f"{seen.ripple:.2f} Nm/m peak to peak, cogging {seen.cogging:.2f} Nm/m peak to peak. "
         f"The two torque routes differ by at most {seen.routes_apart:.2%}."
     )
     return Section(
@@ -55,8 +55,8 @@ def matched(found: Rotations) -> Section | None:
         return None
     text = (
         f"The machine that the polynomials lead to, meshed and solved again: mean torque {_torque(seen)} over one "
-        f"electrical period with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging up to "
-        f"{seen.cogging:.2f} Nm/m."
+        f"electrical period with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging "
+        f"{seen.cogging:.2f} Nm/m peak to peak."
     )
     return Section(
         "The matched machine",

@@ -29,10 +29,13 @@ def files(fits: SectionFits, optima: Optima) -> Iterator[File]:
 
 def section(fits: SectionFits) -> Section:
     """Fits over the stator radius, and which are refused."""
-    columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual"]
+    columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual", "held_out"]
     table = fits_table(fits)
     shown = table[columns].assign(quantity=table.quantity.map(heading))
-    caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
+    caption = (
+        "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name. Held out: root mean "
+        "square of what each point is off a curve through all others."
+    )
     refused = (Remark(f"{said[:1].upper()}{said[1:]}.") for said in remarks(fits))
     words = "Optima (points) and second-order polynomials (lines) over the stator radius."
     picture = Picture(picture_name("fits"), words)
@@ -64,6 +67,7 @@ def _row(slots: int, quantity: str, fit: PolynomialFit) -> dict[str, object]:
         "r_squared": fit.r_squared,
         "rms_residual": fit.rms_residual / FACTORS[unit],
         "largest_residual": fit.largest_residual / FACTORS[unit],
+        "held_out": fit.scatter.held_out / FACTORS[unit],
         "from_mm": fit.x_range[0] / MILLIMETRE,
         "to_mm": fit.x_range[1] / MILLIMETRE,
         "refused": fit.refused or None,

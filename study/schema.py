@@ -568,6 +568,28 @@ class PricesSection(Section):
     shaft: Annotated[float | None, Quantity("price of the shaft's steel per kilogram", 0, 1e6)] = None
 
 
+class TolerancesSection(Section):
+    """How far the workshop may miss the drawing, each the half width a of +-a; what is not stated has the default of
+    ``study.inputs_tolerances``."""
+
+    bore_diameter_mm: Annotated[float | None, Quantity("tolerance of the stator's bore", 1e-4, 2)] = None
+    rotor_diameter_mm: Annotated[float | None, Quantity("tolerance of the rotor core's diameter", 1e-4, 2)] = None
+    stator_diameter_mm: Annotated[float | None, Quantity("tolerance of the stator's outer diameter", 1e-4, 2)] = None
+    magnet_length_mm: Annotated[float | None, Quantity("tolerance of the magnets' thickness", 1e-4, 2)] = None
+    magnet_width_mm: Annotated[float | None, Quantity("tolerance of the magnets' width along the arc", 1e-4, 2)] = None
+    slot_opening_mm: Annotated[float | None, Quantity("tolerance of the slot openings", 1e-4, 2)] = None
+    tooth_width_mm: Annotated[float | None, Quantity("tolerance of the teeth's width", 1e-4, 2)] = None
+    back_iron_width_mm: Annotated[float | None, Quantity("tolerance of the back iron's width", 1e-4, 2)] = None
+    shoe_depth_mm: Annotated[float | None, Quantity("tolerance of either depth of the shoes", 1e-4, 2)] = None
+    active_length_mm: Annotated[float | None, Quantity("tolerance of the stack's length", 1e-4, 20)] = None
+    remanence_percent: Annotated[float | None, Quantity("tolerance of the remanence of a batch", 1e-3, 20)] = None
+    recoil_permeability: Annotated[float | None, Quantity("tolerance of the recoil permeability", 1e-4, 0.5)] = None
+    stacking_percent: Annotated[float | None, Quantity("tolerance of the stacking factor", 1e-3, 10)] = None
+    wire_diameter_percent: Annotated[float | None, Quantity("tolerance of the wires' copper diameter", 1e-3, 20)] = None
+    magnet_scatter_percent: Annotated[float | None, Quantity("remanence from magnet to magnet", 1e-3, 20)] = None
+    magnet_position_mm: Annotated[float | None, Quantity("place of each magnet along the arc", 1e-4, 2)] = None
+
+
 class PrintedActuatorSection(Section):
     """The actuator of somebody else, for the comparison at the end (thesis Tables 3.12 and A.1)."""
 
@@ -685,6 +707,7 @@ class Study(Section):
     actuator: ActuatorSection = ActuatorSection()
     prices: PricesSection | None = None
     mechanics: MechanicsSection = MechanicsSection()
+    tolerances: TolerancesSection = TolerancesSection()
     printed_actuator: PrintedActuatorSection | None = None
 
     _path: Path = PrivateAttr(default=Path("study.toml"))

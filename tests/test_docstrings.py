@@ -19,7 +19,7 @@ from units import usual_unit
 
 PROJECT = Path(__file__).resolve().parent.parent
 ROOMS = ("materials", "geometry", "magnetostatics", "optimisation", "electrical", "losses", "thermal", "gearbox",
-         "mechanics", "drivetrain", "control", "actuator", "vehicle", "bench", "export")  # fmt: skip
+         "mechanics", "drivetrain", "uncertainty", "control", "actuator", "vehicle", "bench", "export")  # fmt: skip
 # In percent; raise them when more is stated.
 UNITS_STATED = 99.0
 SHAPES_STATED = 99.0

@@ -7,8 +7,8 @@ PROJECT = Path(__file__).resolve().parent.parent
 # Each room may import those named after it; everything may import units, tasks and disk. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
-_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain", "control",
-                    "actuator", "vehicle"}
+_DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain",
+                    "uncertainty", "control", "actuator", "vehicle"}
 ALLOWED = {
     "units": set(),
     "tasks": set(),
@@ -24,6 +24,7 @@ ALLOWED = {
     "gearbox": set(),
     "mechanics": {*_FIELD, "gearbox"},
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
+    "uncertainty": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain"},
     "control": set(),
     "actuator": {"control"},
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},

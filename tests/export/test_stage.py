@@ -1,6 +1,6 @@
 """What the package reads at the rated point, against other routes to the same numbers; and its data sheet."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from math import inf, sqrt
 from types import SimpleNamespace
 
@@ -26,6 +26,7 @@ from tests.magnetostatics.test_flux_map_stage import CASE
 from thermal.cooling import HeatLimits
 from thermal.machine import MAGNETS
 from thermal.rating import MAGNET_LIMIT, Rating
+from uncertainty.budget import Budget, Uncertain
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM
 
 MAP = flux_map(Saturating())
@@ -33,7 +34,9 @@ HEAT = CopperHeat(20.0, 120.0, 1.0, 1.393)
 NO_PRICES = PartPrices("", None, None, None, None)
 PRICES = PartPrices("EUR", 3.0, 80.0, 12.0, 2.0)
 COGGING = 0.7  # Nm/m
-TURNED = SimpleNamespace(matched=SimpleNamespace(cogging=COGGING))
+GAP_STRESS = SimpleNamespace(cogging=COGGING)
+KNOWN = Uncertain(1.0, 0.003, 0.0, 0.004)  # u = 0.5 %
+UNCERTAINTY = SimpleNamespace(budget=Budget(*[KNOWN] * len(fields(Budget))))
 
 
 @pytest.fixture(scope="module")
@@ -58,13 +61,13 @@ def losses(winding):
 
 @pytest.fixture(scope="module")
 def found(winding, brake, outcome, losses):
-    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, losses, TURNED, PRICES)
+    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, losses, GAP_STRESS, PRICES)
 
 
 @pytest.fixture(scope="module")
 def bare(winding, brake, outcome):
-    """Without losses, fields and prices."""
-    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, None, None, NO_PRICES)
+    """Without losses and prices."""
+    return package_stage(CASE, MAP, winding, INPUTS, brake, outcome, None, GAP_STRESS, NO_PRICES)
 
 
 def test_the_overload_is_the_peak_torque_of_the_winding(found, winding):
@@ -99,7 +102,7 @@ def test_losses_are_those_of_the_map_around_the_point(found, winding, losses):
 
 def test_the_rated_speed_is_no_faster_than_what_is_allowed(winding, brake, outcome):
     slow = replace(INPUTS, limits=replace(INPUTS.limits, maximum_speed=1000 * RPM))
-    found = package_stage(CASE, MAP, winding, slow, brake, outcome, None, None, NO_PRICES)
+    found = package_stage(CASE, MAP, winding, slow, brake, outcome, None, GAP_STRESS, NO_PRICES)
     assert found.continuous.speed == pytest.approx(1000 * RPM)
 
 
@@ -121,7 +124,9 @@ STATES = (SimpleNamespace(name="no load", lost=0.0), SimpleNamespace(name="overl
 
 
 def sheet(package, winding, brake, outcome, output=Wheel(), magnets=None):
-    return datasheet.data_sheet(package, CASE, LOSSES, winding, INPUTS, HEAT, brake, WARM, magnets, outcome, output)
+    return datasheet.data_sheet(
+        package, CASE, LOSSES, winding, INPUTS, HEAT, brake, WARM, magnets, outcome, UNCERTAINTY, output
+    )
 
 
 def value(table, quantity, condition=""):
@@ -161,6 +166,20 @@ def test_the_temperatures_are_those_of_the_thermal_network(found, winding, brake
     assert value(table, "hottest copper", "limit 155 °C") == 151.0 and value(table, "magnets", "limit 120 °C") == 120.0
 
 
+def test_headline_numbers_carry_their_expanded_uncertainty(found, winding, brake, outcome):
+    """U = 2 u in the unit of the value; rows without one carry none, groups without any no column."""
+    sheet_of_it = sheet(found, winding, brake, outcome)
+    table = sheet_of_it.table
+    known = table[table.plus_minus.notna()]
+    assert {"peak torque", "phase resistance", "torque constant", "base speed", "active parts"} <= set(known.quantity)
+    assert known.plus_minus.tolist() == pytest.approx((0.01 * known.value).astype(float).tolist())
+    tables = {part.caption: part.frame for part in datasheet.section(sheet_of_it).content if hasattr(part, "frame")}
+    assert "plus_minus" not in tables["Dimensions and materials."]
+    torques = tables["Torque, speed and supply."].set_index("quantity").plus_minus
+    assert torques["peak torque"] == datasheet.plus_minus(0.01 * winding.peak_torque) and torques["bus voltage"] == ""
+    assert [datasheet.plus_minus(one) for one in (0.2928, 51.91, 0.02256)] == ["0.29", "52", "0.023"]
+
+
 @pytest.mark.parametrize("current, rows", [(80.0, 4), (inf, 3)])
 def test_magnets_stand_on_the_sheet_where_their_grade_is_known(found, winding, brake, outcome, current, rows):
     inputs = SimpleNamespace(grade=load_grade("N42SH"), lost_max=0.01)
@@ -184,7 +203,7 @@ def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outco
 def test_what_was_not_computed_is_not_on_the_sheet(bare, winding, brake, outcome):
     found = sheet(bare, winding, brake, outcome)
     quantities = set(found.table.quantity)
-    assert not quantities & {"efficiency", "cogging torque"} and "continuous torque" in quantities
+    assert "efficiency" not in quantities and "continuous torque" in quantities
     captions = [getattr(part, "caption", "") for part in datasheet.section(found).content]
     assert "Constants." in captions and not [caption for caption in captions if caption.startswith("Losses")]
 
@@ -209,7 +228,7 @@ def test_files(found, winding, brake, outcome, tmp_path):
     for one in files:
         one.write(tmp_path / one.name)
     table = pd.read_csv(tmp_path / "datasheet.csv")
-    assert list(table) == ["quantity", "value", "unit", "condition"] and len(table) > 50
+    assert list(table) == ["quantity", "value", "plus_minus", "unit", "condition"] and len(table) > 50
     coils = pd.read_csv(tmp_path / "winding_connections.csv")
     assert len(coils) == 12 and set(coils.phase) == set("ABC")
     assert (coils["connected to"] == "star point").sum() == 3

@@ -21,7 +21,7 @@ CASE = field_case(read_study("motorcycle"))
 def found():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "_STEPS", 12)
-        patch.setattr(module, "_ANGLES_TOGETHER", 5)
+        patch.setattr("magnetostatics.arc._TOGETHER", 5)
         machine = CASE.family.machine(9, 42.5e-3, 2.6e-3, 17e-3)
         return rotations_stage(CASE, MatchedMachine(machine), InThisProcess())
 

@@ -36,6 +36,10 @@ def run(tmp_path_factory):
         patch.setattr("losses.map.STEPS", 6)
         patch.setattr("magnetostatics.gap_stress_stage.STEPS", 12)
         patch.setattr("losses.map.DIRECT", (-1.0, -0.5, 0.0, 0.75))
+        patch.setattr("uncertainty.match_spread.DRAWS", 4)
+        patch.setattr("uncertainty.match_spread.FREE_DRAWS", 2)
+        patch.setattr("uncertainty.scatter.STEPS", 2)
+        patch.setattr("uncertainty.field_slopes._STEPS", 6)
         patch.setattr("losses.map.QUADRATURE", (0.0, 0.25, 0.5, 1.0))
         return here(study, folder / "results", fitted(study, without=("fields",)))
 

@@ -18,7 +18,7 @@ from study.sentences import section_class
 
 HEAVY = (
     "flux_map", "gap_stress", "fields", "winding", "drive", "braking", "magnets", "mechanics", "losses", "heat",
-    "outcome", "package", "optimise",
+    "outcome", "tolerances", "uncertainty", "package", "optimise",
 )  # fmt: skip
 STATED = {"chain__requirements": '"stated"', "chain__linkage": '"stated"'}
 

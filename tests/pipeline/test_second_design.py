@@ -42,7 +42,8 @@ LEARNED = Learned(
     ("torque_gain is an error of an instrument.",),
     "model.toml",
 )
-LEFT_OUT = ("drive", "braking", "gap_stress", "magnets", "mechanics", "losses", "fields", "package")
+LEFT_OUT = ("drive", "braking", "gap_stress", "magnets", "mechanics", "losses", "fields", "tolerances", "uncertainty",
+            "package")  # fmt: skip
 
 
 @contextmanager

@@ -1,0 +1,116 @@
+"""Fits drawn by lot, what the match makes of them, and the budget: against least squares by hand and exact scalings."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from drivetrain.masses import DrawnParts
+from drivetrain.match import DampingReported
+from drivetrain.matching import Matcher
+from optimisation.fits import QUANTITIES, SectionFits, SlotFits
+from optimisation.polynomial_fits import fit_polynomial
+from tests.drivetrain.fitted_machines import CASE, POLYNOMIALS
+from tests.drivetrain.test_matching import INPUTS, LINKAGE, REQUIRED
+from uncertainty import match_spread as module
+from uncertainty.budget import Uncertain, of_match, of_wound, scatter_of
+from uncertainty.match_spread import DrawTask, drawn_fits, match_draws
+from units import MILLIMETRE
+
+RADII = np.linspace(35.0, 57.5, 8) * MILLIMETRE
+SCALES = {"back_iron_width": 1e-3, "rotor_outer_radius": 1e-3, "half_slot_area": 1e-6}
+CHOSEN = (12, 42.5 * MILLIMETRE)
+
+
+def fits():
+    """The polynomials of the motorcycle as fits, without residual."""
+    return SectionFits(
+        tuple(
+            SlotFits(
+                slots,
+                tuple(
+                    fit_polynomial(name, RADII, SCALES.get(name, 1.0) * np.polyval(powers[name], RADII / MILLIMETRE))
+                    for name in QUANTITIES
+                ),
+            )
+            for slots, powers in POLYNOMIALS.items()
+        )
+    )
+
+
+def matcher():
+    inputs = replace(INPUTS, damping=DampingReported())
+    masses = DrawnParts(inputs.masses, CASE.packing)
+    return Matcher(CASE, fits(), REQUIRED, LINKAGE, inputs, masses, radii=4, ratio_samples=21)
+
+
+def test_held_out_is_every_point_off_a_curve_through_the_others():
+    rng = np.random.default_rng(1)
+    values = 50.0 + 1e3 * RADII + rng.normal(0.0, 0.3, len(RADII))
+    off = []
+    for k in range(len(RADII)):
+        others = np.arange(len(RADII)) != k
+        off.append(values[k] - np.polyval(np.polyfit(RADII[others] * 1e3, values[others], 2), RADII[k] * 1e3))
+    found = fit_polynomial("", RADII, values).scatter
+    assert found.held_out == pytest.approx(np.sqrt(np.mean(np.square(off))), rel=1e-6)
+
+
+def test_the_covariance_is_the_scatter_of_fits_of_noisy_points():
+    rng = np.random.default_rng(2)
+    many = np.array([fit_polynomial("", RADII, 50 + rng.normal(0, 0.3, len(RADII))).coefficients for _ in range(2000)])
+    covariances = np.mean(
+        [fit_polynomial("", RADII, 50 + rng.normal(0, 0.3, len(RADII))).scatter.covariance for _ in range(200)], axis=0
+    )
+    assert np.diag(covariances) == pytest.approx(np.diag(np.cov(many.T)), rel=0.15)
+
+
+def test_the_match_of_fits_without_scatter_is_the_match():
+    own = matcher()
+    drawn = drawn_fits(own.fits, np.random.default_rng(1))  # polynomials through themselves
+    (found,) = match_draws(DrawTask(own, (drawn,), CHOSEN))
+    expected = own.match(own.section(CHOSEN[0], INPUTS.overload, CHOSEN[1]))
+    assert found.active_length == pytest.approx(expected.active_length)
+    assert found.transmission_ratio == pytest.approx(expected.transmission_ratio)
+
+
+def test_a_weaker_machine_is_longer():
+    """The force sets the length: at one ratio it goes with one over the torque, and the ratio hardly moves."""
+    own = matcher()
+    tasks = DrawTask(own, (own.fits, module._scaled(own.fits, (0.98, 0.98))), CHOSEN)
+    drawn, weak = match_draws(tasks)
+    assert weak.torque_overload == pytest.approx(0.98 * drawn.torque_overload)
+    lengths, ratios = weak.active_length / drawn.active_length, weak.transmission_ratio / drawn.transmission_ratio
+    assert lengths == pytest.approx(ratios / 0.98, rel=1e-6) and lengths > 1.015
+
+
+def test_the_free_choice_takes_the_least_cost_and_says_where_it_ends():
+    own = matcher()
+    (found,) = match_draws(DrawTask(own, (own.fits,), None))
+    best = min(
+        (own.over_radius(slots, INPUTS.overload).over_radius.best for slots in (9, 12)), key=lambda m: m.total_cost
+    )
+    assert (found.slots, found.stator_outer_radius) == (
+        best.section.machine.slots,
+        pytest.approx(best.section.machine.stator_outer_radius, rel=1e-6),
+    )
+    assert found.radius_bound == bool(min(abs(found.stator_outer_radius / RADII[[0, -1]] - 1)) < 1e-6)
+
+
+def test_what_cannot_be_matched_is_a_draw_without_a_match():
+    own = matcher()
+    assert match_draws(DrawTask(own, (module._scaled(own.fits, (0.1, 0.1)),), CHOSEN)) == (None,)
+
+
+def test_uncertainties_add_as_the_gum_says():
+    known = Uncertain(200.0, 0.003, 0.004, 0.012)
+    assert known.combined == pytest.approx(0.013) and known.expanded == pytest.approx(0.026)
+    draws = tuple(SimpleNamespace(x=value) for value in (9.0, 10.0, 11.0)) + (None,)
+    assert scatter_of(draws, lambda one: one.x) == pytest.approx(0.1)
+    spread = SimpleNamespace(mesh=draws, fit=draws[1:], tolerance=draws)
+    assert of_match(spread, 5.0, lambda one: one.x).fit == pytest.approx(np.std([10, 11], ddof=1) / 10.5)
+    found = SimpleNamespace(
+        values=SimpleNamespace(mass=2.0), mesh=SimpleNamespace(mass=0.03), standard=lambda quantity: 0.01
+    )
+    assert of_wound(found, "mass") == Uncertain(2.0, pytest.approx(0.03 / 3**0.5), 0.0, 0.01)
+    assert of_wound(found, "mass", 7.0).value == 7.0

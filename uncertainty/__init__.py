@@ -1,0 +1,1 @@
+"""What tolerances do to the designed machine, and how sure its headline numbers are."""

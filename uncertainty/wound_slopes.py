@@ -1,0 +1,185 @@
+"""What a deviation does to the wound machine, from what it does to the field of its cross-section.
+
+To first order and with the phase currents as they are. Length and wire act by closed formulas. The copper loss is that
+of a given torque, so that a weaker machine takes more current for it,
+
+    d ln P = d ln R - (2/e) d ln T,    e = d ln T / d ln I at the least current of the torque
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from math import nan
+
+import numpy as np
+
+from drivetrain.masses import PartMaterials
+from drivetrain.outcome import active_masses
+from electrical.dq import DriveLimits, corner_speed, mtpa_currents
+from electrical.flux_map_machine import FluxMapMachine
+from electrical.synchronous_machine import SynchronousMachine
+from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.wound_machine import WoundMachine
+from losses.copper import copper_loss
+from magnetostatics.flux_map_stage import FluxMap
+from uncertainty.deviations import Deviation
+from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, TORQUE
+
+_LITTLE = 0.01  # relative, of a current over which the torque is differentiated
+NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
+FieldSlopes = Mapping[str, np.ndarray]  # state -> derivatives of its quantities over themselves, of one deviation
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """One number for each quantity of the wound machine: its value, or a derivative or an error relative to it.
+
+    peak_torque, continuous_torque: at the currents of overload and of the nominal current density [Nm]
+    magnet_flux: of a phase, no load, which torque constant and back-EMF go with [Wb]
+    inductance_d, inductance_q: incremental, no load [H]; resistance: of a phase [ohm]; base_speed [rad/s]
+    copper_loss: at the continuous torque [W]; iron_loss: there, at the rated speed, NaN without loss data [W]
+    cogging: from peak to peak [Nm]; mass: of the active parts [kg]
+    """
+
+    peak_torque: float
+    continuous_torque: float
+    magnet_flux: float
+    inductance_d: float
+    inductance_q: float
+    resistance: float
+    base_speed: float
+    copper_loss: float
+    iron_loss: float
+    cogging: float
+    mass: float
+
+
+QUANTITIES = tuple(one.name for one in fields(Quantities))
+
+
+@dataclass(frozen=True, eq=False)
+class OperatedMachine:
+    """The wound machine at its two currents.
+
+    machine: on its flux map; limits: peak phase current and voltage; nominal, full: (i_d, i_q) of least current at the
+        nominal current density and at the overload [A peak]
+    speed: rated, mechanical [rad/s]
+    """
+
+    wound: WoundMachine
+    machine: FluxMapMachine
+    limits: DriveLimits
+    nominal: tuple[float, float]
+    full: tuple[float, float]
+    speed: float
+
+    @property
+    def elasticity(self) -> float:
+        """e = d ln T / d ln I at the nominal current, dimensionless; 1 without saturation."""
+        current = float(np.hypot(*self.nominal)) * np.array([1 - _LITTLE, 1 + _LITTLE])
+        less, more = self.machine.torque(*mtpa_currents(self.machine, current))
+        return float(np.log(more / less) / np.log((1 + _LITTLE) / (1 - _LITTLE)))
+
+    @property
+    def frequency(self) -> float:
+        """Electrical, at the rated speed [Hz]."""
+        return self.machine.pole_pairs * self.speed / (2 * np.pi)
+
+    def ampere_turns(self, current: tuple[float, float]) -> tuple[float, float]:
+        """Of a coil [A peak]; current: (i_d, i_q) of a phase [A peak]."""
+        return self.wound.turns * current[0], self.wound.turns * current[1]
+
+    def base_speed(self, flux_d: float, flux_q: float, resistance: float) -> float:
+        """Where the full current meets the voltage [rad/s]; flux_d, flux_q: linkages there [Wb]; resistance [ohm]."""
+        i_d, i_q = self.full
+        inductance = flux_q / i_q  # any machine with these flux linkages at this current
+        psi_m = flux_d - inductance * i_d
+        same = SynchronousMachine(self.machine.pole_pairs, psi_m, inductance, inductance, resistance)
+        return float(corner_speed(same, self.limits, i_d, i_q))
+
+    def base_speed_slope(self, flux_d: float, flux_q: float, resistance: float) -> float:
+        """d ln(base speed) for d ln of what it rests on; flux_d, flux_q, resistance: those, per unit of the same."""
+        values = *self.machine.flux_linkage(*self.full), self.wound.phase_resistance
+        slopes = np.array([flux_d, flux_q, resistance])
+        size = float(np.abs(slopes).max()) or 1.0
+        more, less = (
+            self.base_speed(*(np.array(values) * (1 + way * _LITTLE * slopes / size)).tolist()) for way in (1, -1)
+        )
+        return float(np.log(more / less)) * size / (2 * _LITTLE)
+
+    def base_speed_error(self, flux_d: float, flux_q: float) -> float:
+        """Bound of the base speed, relative, from those of both linkages; flux_d, flux_q: relative, of any sign."""
+        return abs(self.base_speed_slope(flux_d, 0.0, 0.0)) + abs(self.base_speed_slope(0.0, flux_q, 0.0))
+
+
+def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: WindingInputs) -> OperatedMachine:
+    """At full current, and at the nominal density; rated speed: the base speed, or the largest allowed."""
+    wound, limits = winding.wound, winding.limits
+    machine = wound.on_map(flux_map.data)
+    nominal = mtpa_currents(machine, wound.current_peak(windings.nominal_density))
+    return OperatedMachine(
+        wound=wound,
+        machine=machine,
+        limits=limits,
+        nominal=(float(nominal[0]), float(nominal[1])),
+        full=(winding.direct_current, winding.quadrature_current),
+        speed=min(winding.chosen.base_speed, windings.limits.maximum_speed),
+    )
+
+
+def values_of(operated: OperatedMachine, iron_loss: float, cogging: float, materials: PartMaterials) -> Quantities:
+    """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]."""
+    machine, resistance = operated.machine, operated.wound.phase_resistance
+    (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
+    return Quantities(
+        peak_torque=float(machine.torque(*operated.full)),
+        continuous_torque=float(machine.torque(*operated.nominal)),
+        magnet_flux=float(machine.flux_linkage(0.0, 0.0)[0]),
+        inductance_d=float(l_dd),
+        inductance_q=float(l_qq),
+        resistance=resistance,
+        base_speed=float(corner_speed(machine, operated.limits, *operated.full)),
+        copper_loss=float(copper_loss(resistance, *operated.nominal)),
+        iron_loss=iron_loss,
+        cogging=cogging,
+        mass=active_masses(operated.wound, materials).total,
+    )
+
+
+def relative_slopes(
+    deviation: Deviation, field: FieldSlopes, operated: OperatedMachine, materials: PartMaterials
+) -> Quantities:
+    """Derivative of each quantity over itself by a deviation [1 per unit of the deviation]."""
+    length = _of_wound(deviation, operated.wound, lambda one: one.active_length)
+    resistance = _of_wound(deviation, operated.wound, lambda one: one.phase_resistance)
+    magnets, inductance_d, inductance_q = field[NO_LOAD] + length
+    nominal, full = field[NOMINAL] + length, field[FULL] + length
+    return Quantities(
+        peak_torque=float(full[TORQUE]),
+        continuous_torque=float(nominal[TORQUE]),
+        magnet_flux=float(magnets),
+        inductance_d=float(inductance_d),
+        inductance_q=float(inductance_q),
+        resistance=resistance,
+        base_speed=operated.base_speed_slope(float(full[FLUX_D]), float(full[FLUX_Q]), resistance),
+        copper_loss=resistance - 2 / operated.elasticity * float(nominal[TORQUE]),
+        iron_loss=float(nominal[IRON_LOSS]) if len(nominal) > IRON_LOSS else nan,
+        cogging=float(field[COGGING][0]) + length,
+        mass=_mass_slope(deviation, operated.wound, materials),
+    )
+
+
+def _of_wound(deviation: Deviation, wound: WoundMachine, read: Callable[[WoundMachine], float]) -> float:
+    """d ln(read)/d(deviation) of what length, wire and drawing make [1 per unit of the deviation]."""
+    middle = replace(wound, machine=deviation.centre(wound.machine))
+    more, less = (read(deviation.wound(middle, way * deviation.step)) for way in (1, -1))
+    return (more - less) / (2 * deviation.step * read(middle))
+
+
+def _mass_slope(deviation: Deviation, wound: WoundMachine, materials: PartMaterials) -> float:
+    """d ln(mass)/d(deviation) [1 per unit of the deviation]."""
+    drawn = active_masses(wound, materials).total
+    stacked = [active_masses(wound, deviation.parts(materials, way * deviation.step)).total for way in (1, -1)]
+    by_drawing = _of_wound(deviation, wound, lambda one: active_masses(one, materials).total)
+    return by_drawing + (stacked[0] - stacked[1]) / (2 * deviation.step * drawn)
