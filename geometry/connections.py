@@ -2,7 +2,7 @@
 
 The leads are taken to lie at the end of the stack that the cross-section shows (+z, towards the viewer). All coils are
 wound alike; one whose sign is -1 is connected the other way round. Coils of a path follow each other in series by
-rising index, from the terminal where the phase begins to where it ends: the star point, or the next terminal of a delta.
+rising index, from the terminal where the phase begins to where it ends: the star point, or a delta's next terminal.
 """
 
 from __future__ import annotations

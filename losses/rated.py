@@ -19,11 +19,12 @@ class PointLosses:
     stator_iron: float  # [W]
     rotor_iron: float  # [W]
     magnet: float  # [W]
+    circulating: float  # [W], in the copper, by the current round a delta
 
     @property
     def total(self) -> float:
         """All electrical losses [W]."""
-        return self.copper + self.stator_iron + self.rotor_iron + self.magnet
+        return self.copper + self.circulating + self.stator_iron + self.rotor_iron + self.magnet
 
     @property
     def power_in(self) -> float:
@@ -47,4 +48,5 @@ def losses_at(losses: PowerLosses, torque: float, speed: float) -> PointLosses:
     def at(table: np.ndarray) -> float:
         return float(RegularGridInterpolator(axes, table, bounds_error=False)([(torque, speed)])[0])
 
-    return PointLosses(torque * speed, *map(at, (losses.copper, losses.stator_iron, losses.rotor_iron, losses.magnet)))
+    parts = (losses.copper, losses.stator_iron, losses.rotor_iron, losses.magnet, losses.circulating)
+    return PointLosses(torque * speed, *map(at, parts))

@@ -30,8 +30,8 @@ def zero_sequence_inductance(solution: FieldSolution) -> float:
 def harmonics_of_half_period(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(orders, amplitudes) of a wave that is ``-samples`` after 60 electrical degrees.
 
-    samples: over the first axis, evenly over 60 degrees without the end (n, ...); orders: 3, 9, ... below n samples a
-    half wave (m,); amplitudes (m, ...), in the unit of the samples
+    samples: [any unit], over the first axis, evenly over 60 degrees without the end (n, ...); harmonics_of_half_period:
+    orders 3, 9 ... that n samples resolve, dimensionless (m,), and amplitudes [that of the samples] (m, ...)
     """
     count = len(samples)
     spectrum = np.fft.rfft(np.concatenate([samples, -samples]), axis=0)

@@ -1,4 +1,4 @@
-"""Parallel paths by the star of slots: EMFs of the paths added coil by coil, without the directions they are made of."""
+"""Parallel paths by the star of slots: EMFs added coil by coil, without the directions that the paths are made of."""
 
 from cmath import exp
 from math import pi
