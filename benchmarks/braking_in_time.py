@@ -61,12 +61,12 @@ class TurningMachine:
     def _psi(self, angle: float, i: np.ndarray, along: int | None = None) -> np.ndarray:
         """(psi_d, psi_q) [Wb], or their slope by angle (0) [Wb/rad], i_d (1) or i_q (2) [H]."""
         order = (int(along == 1), int(along == 2))
-        scale = self.wound.turns ** (1 + sum(order)) * self.wound.active_length
+        scale = self.wound.equivalent_turns ** (1 + sum(order)) * self.wound.active_length
         return scale * self._at(angle, i, order)[1:] @ self._harmonics(angle)[int(along == 0)]
 
     def _at(self, angle: float, i: np.ndarray, order: tuple[int, int]) -> np.ndarray:
         """Fourier coefficients over the angle of torque, psi_d and psi_q (3, angles), per turn and metre."""
-        found = self._spline(i * self.wound.turns, nu=order)
+        found = self._spline(i * self.wound.equivalent_turns, nu=order)
         return found.reshape(3, -1)
 
     def _harmonics(self, angle: float) -> tuple[np.ndarray, np.ndarray]:

@@ -31,7 +31,8 @@ class ActuatorDesign:
 
     per_turn: the machine with one turn a coil, one metre long and without resistance
     peak_torque_per_length: at the overload current density [Nm/m], as the winding stage states it
-    turns, strands: wires of one turn, need not be whole while a lever is moved; wire_area [m^2]; resistivity [ohm m]
+    turns, strands: of the equivalent star (``electrical.winding_connection``) and wires of one of its turns, neither a
+        whole number in general; wire_area [m^2]; resistivity [ohm m]
     coils_in_series of a phase; active_length, end_turn_length [m]
     continuous_torque: what the temperatures allow at the RMS speed [Nm], as the heat stage states it; rated_length: at
         which it does [m]

@@ -198,7 +198,7 @@ def actuator_limits(found: Outcome) -> ActuatorLimits:
 def active_masses(wound: WoundMachine, materials: PartMaterials) -> PartMasses:
     """The drawn parts with the copper of the real winding."""
     copper = CopperBars(
-        area=wound.turns * wound.strands * wound.wire_area,
+        area=wound.copper_area,
         sides=6 * wound.coils_in_series,
         end_turn_length=wound.end_turn_length,
     )
@@ -218,10 +218,10 @@ def actuator_design(
     return ActuatorDesign(
         per_turn=FluxMapMachine.from_per_turn(flux_map.data, turns=1, active_length=1.0, resistance=0.0),
         peak_torque_per_length=winding.peak_torque / wound.active_length,
-        turns=wound.turns,
-        strands=wound.strands,
-        wire_area=wound.wire_area,
-        resistivity=wound.resistivity,
+        turns=wound.equivalent_turns,
+        strands=wound.copper_area / (wound.equivalent_turns * wound.design.wire.area),
+        wire_area=wound.design.wire.area,
+        resistivity=wound.design.wire.resistivity,
         coils_in_series=wound.coils_in_series,
         active_length=wound.active_length,
         end_turn_length=wound.end_turn_length,

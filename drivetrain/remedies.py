@@ -90,7 +90,7 @@ class VoltageLever(Lever):
 
 @dataclass(frozen=True)
 class TurnsLever(Lever):
-    """Turns of a coil at constant copper: the current grows as they fall; value: dimensionless."""
+    """Turns of the equivalent star at constant copper: the current grows as they fall; value: dimensionless."""
 
     def value(self, design: ActuatorDesign) -> Values:
         return design.turns
@@ -99,7 +99,7 @@ class TurnsLever(Lever):
         return replace(design, turns=value, strands=design.turns * design.strands / value)
 
     def name(self) -> str:
-        return "turns, at the same copper"
+        return "turns in series, at the same copper"
 
     def unit(self, output: Output) -> str:
         return ""

@@ -115,7 +115,7 @@ def _ampere_turns(first: FirstDesign) -> tuple[tuple[float, float], ...]:
     machine = wound.on_map(first.flux_map.data)
     continuous = mtpa_currents(machine, wound.current_peak(first.windings.nominal_density))
     peak = winding.direct_current, winding.quadrature_current
-    return tuple((wound.turns * float(i_d), wound.turns * float(i_q)) for i_d, i_q in (peak, continuous))
+    return tuple(wound.ampere_turns(float(i_d), float(i_q)) for i_d, i_q in (peak, continuous))
 
 
 def mean_torques(task: TorqueTask) -> tuple[float, ...]:
@@ -163,9 +163,10 @@ def _efficiency(part: Learned, first: FirstDesign, continuous: float) -> float:
 
 
 def _iron_loss(losses: LossMap, torque: float, speed: float) -> float:
-    """Of stator, rotor and magnets at a torque [Nm] and a speed [rad/s] of the map [W]; NaN outside."""
+    """Of stator, rotor, magnets and what circulates in a delta, at a torque [Nm] and a speed [rad/s] of the map [W];
+    NaN outside."""
     plane = losses.losses
     axes = plane.torque[:, 0], plane.speed[0]
-    lost = plane.stator_iron + plane.rotor_iron + plane.magnet
+    lost = plane.stator_iron + plane.rotor_iron + plane.magnet + plane.circulating
     table = RegularGridInterpolator(axes, lost, bounds_error=False, fill_value=nan)
     return float(table((torque, speed)))

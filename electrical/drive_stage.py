@@ -23,6 +23,7 @@ from electrical.dq import (
 )
 from electrical.plane import plane_dataset, plane_record
 from electrical.synchronous_machine import SynchronousMachine
+from electrical.winding_design import WindingDesign
 from electrical.winding_selection import Winding, choose_among
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
@@ -91,9 +92,9 @@ class DriveOutcome:
         """Least currents by constant parameters."""
         return plane_record(OperatingMap, self.constant_plane)
 
-    def neighbour(self, turns: int) -> Neighbour:
-        """The neighbour with these turns."""
-        return next(one for one in self.neighbours if one.field.turns == turns)
+    def neighbour(self, design: WindingDesign) -> Neighbour:
+        """The neighbour of this design."""
+        return next(one for one in self.neighbours if one.field.design == design)
 
 
 def drive_stage(flux_map: FluxMap, winding: WindingOutcome, inputs: WindingInputs) -> DriveOutcome:
@@ -157,7 +158,7 @@ def by_constant_parameters(
 def _neighbour(
     flux_map: FluxMap, winding: WindingOutcome, one: Winding, speed: np.ndarray, inputs: WindingInputs
 ) -> Neighbour:
-    wound: WoundMachine = replace(winding.wound, turns=one.turns, strands=one.strands)
+    wound: WoundMachine = replace(winding.wound, design=one.design, active_length=one.active_length)
     limits = DriveLimits.from_dc_bus(one.current_peak, inputs.limits.dc_voltage)
     field = wound.on_map(flux_map.data)
     constant = one.constant_parameters(field.pole_pairs)

@@ -128,7 +128,7 @@ def magnets_stage(
     against = [(-share * largest, 0.0) for share in _AGAINST]
     temperature = grade.weaker_of(inputs.cold, inputs.hot)
     knee, case = grade.knee_at(temperature), with_grade(case, grade, temperature)
-    ampere_turns = [(wound.turns * i_d, wound.turns * i_q) for i_d, i_q in (*named.values(), *against)]
+    ampere_turns = [wound.ampere_turns(*current) for current in (*named.values(), *against)]
     seen = turning_magnets(case, wound.machine, ampere_turns, knee, inputs.angles, workers)
     under, weakened = seen[: len(named)], seen[len(named) :]
     exceeded = [one.turn.exceeded(inputs.lost_max) for one in weakened]

@@ -29,17 +29,17 @@ def phase_resistance(
     *,
     turns: Values,
     strands: Values,
-    wire_area: float,
+    wire_area: Values,
     active_length: Values,
     end_turn_length: float,
     coils_in_series: int,
-    resistivity: float,
+    resistivity: Values,
 ) -> Values:
     """Resistance of one phase with its coils in series [ohm].
 
     R_ph = 2 (l_em + l_et) rho N_c N_t / (N_h A_w)      (3.82, first form)
 
-    turns: turns of one coil N_t, int or array
+    turns: turns of one coil N_t, or of the equivalent star; number or array
     strands: wires in hand N_h, int or array of the same shape
     wire_area: copper section of one wire A_w [m^2]
     active_length, end_turn_length: l_em, l_et [m]; a turn runs through both twice

@@ -1,24 +1,33 @@
-"""Turns and wires in hand: every pair that fits the slot, what each would do, and which one to wind.
+"""Turns, wires in hand, gauge, parallel paths, star or delta: every full slot, what each would do, and which to wind.
 
 A given ampere-turn count in a given cross-section makes the same field whatever the turns; more turns only trade
 current against voltage. So one machine in dq, of one turn and one metre, values every winding: saturation is in every
-number where that machine is a flux map.
+number where that machine is a flux map. Paths and delta count through the turns of the equivalent star
+(``electrical.winding_connection``); currents are of a line, resistances and inductances of a phase of that star.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 from math import inf, isfinite, pi, sqrt
 
 import numpy as np
 
+from electrical.circulating import ZeroSequence
 from electrical.dq import DqMachine, DriveLimits, corner_speed, maximum_power, mtpa_currents
+from electrical.final_length import FinalLength
 from electrical.resistance import phase_resistance
 from electrical.synchronous_machine import SynchronousMachine
-from units import RPM
+from electrical.winding_connection import WindingConnection
+from electrical.winding_design import WindingDesign
+from electrical.wire import Wire
 
 _WEAKENING = 0.25  # negative d-axis current over the q-axis current, at which the loaded inductance L_d is read
-_SAME_CURRENT = 1e-9  # relative; a current this close above its limit meets it
+_SAME_CURRENT = 1e-9  # relative; currents this close are one, and one this close above its limit meets it
+HEXAGONAL = pi / sqrt(12.0)  # share of an area that round wires fill at most
+# Relative; lengths this close compete by their current. Estimate: what one wire of a coil with few of them makes.
+AS_SHORT = 0.05
 
 
 class WindingError(ValueError):
@@ -26,37 +35,23 @@ class WindingError(ValueError):
 
 
 @dataclass(frozen=True)
-class Wire:
-    """One round wire: copper diameter without varnish [m] and resistivity at its temperature [ohm m]."""
-
-    copper_diameter: float
-    resistivity: float
-
-    @property
-    def area(self) -> float:
-        """Copper section A_w [m^2]."""
-        return pi * self.copper_diameter**2 / 4
-
-
-@dataclass(frozen=True)
 class PerTurnMachine:
-    """A machine of known cross-section and length before its winding is chosen.
+    """A machine of known cross-section before its winding and its length are chosen.
 
     dq: of one turn and one metre: currents are peak ampere-turns of one coil [A], flux linkages of one phase with one
-        turn in every coil [Wb/m]; its resistance does not count
+        turn in every coil, all in series [Wb/m]; its resistance does not count
     coils_in_series: coils of one phase, N_c
     coil_side_area: A_s, the section one coil side may fill [m^2]
-    active_length, end_turn_length: [m]
+    end_turn_length: [m]
     """
 
     dq: DqMachine
     coils_in_series: int
     coil_side_area: float
-    active_length: float
     end_turn_length: float
 
     def __post_init__(self) -> None:
-        for name in ("coils_in_series", "coil_side_area", "active_length", "end_turn_length"):
+        for name in ("coils_in_series", "coil_side_area", "end_turn_length"):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0):
                 raise WindingError(f"{name} must be a positive number; found {value}")
@@ -73,7 +68,9 @@ class WindingLimits:
     overload_current_density: RMS [A/m^2 of copper]
     dc_voltage: [V]
     maximum_speed: mechanical [rad/s], bounds the search for the maximum power
-    phase_current_rms: largest RMS phase current of the power electronics [A]; ``math.inf`` for none. A peak value is
+    insulated_fill: largest share of a coil side that the wires fill with their enamel, dimensionless
+    circulating_share: largest loss by the current round a delta over the copper loss, dimensionless
+    phase_current_rms: largest RMS line current of the power electronics [A]; ``math.inf`` for none. A peak value is
         divided by sqrt(2) by the caller.
     """
 
@@ -82,6 +79,8 @@ class WindingLimits:
     overload_current_density: float
     dc_voltage: float
     maximum_speed: float
+    insulated_fill: float
+    circulating_share: float
     phase_current_rms: float = inf
 
     def __post_init__(self) -> None:
@@ -92,6 +91,15 @@ class WindingLimits:
             )
         if not 0 <= self.packing_tolerance < 1:
             raise WindingError(f"the packing tolerance must lie between 0 and 1; found {self.packing_tolerance}")
+        if not 0 < self.insulated_fill < HEXAGONAL:
+            raise WindingError(
+                f"the limit of the insulated fill must lie between 0 and {HEXAGONAL:.3f} (round wires in a hexagonal "
+                f"grid); found {self.insulated_fill}"
+            )
+        if not self.circulating_share >= 0:
+            raise WindingError(
+                f"the share of the circulating loss must be zero or more; found {self.circulating_share}"
+            )
         if not self.phase_current_rms > 0:
             raise WindingError(f"the phase current limit must be positive; found {self.phase_current_rms}")
 
@@ -112,14 +120,15 @@ class WindingRequirement:
 
 @dataclass(frozen=True)
 class Winding:
-    """One pair of turns and wires in hand, valued at the overload current density."""
+    """One design at its active length, valued at the overload current density; phases: of the equivalent star."""
 
-    turns: int  # N_t of one coil
-    strands: int  # N_h, wires in hand
-    fullest: bool  # N_h is the largest that fits with this N_t
+    design: WindingDesign
+    active_length: float  # m
+    needed_length: float  # m, neither rounded up nor cut to the longest that is allowed
     packing: float  # copper over the area of the coil side
-    current_rms: float  # [A], phase
-    current_peak: float  # [A], phase
+    insulated_fill: float  # wires with their enamel over the area of the coil side, dimensionless
+    current_rms: float  # [A], line
+    current_peak: float  # [A], line
     phase_resistance: float  # ohm
     inductance_d: float  # H, phase, apparent with the overload current on the q axis and a quarter of it against d
     inductance_q: float  # H, phase, apparent at the overload current on the q axis
@@ -128,8 +137,19 @@ class Winding:
     peak_torque: float  # Nm, MTPA at the overload current, mean over one electrical period
     base_speed: float  # mechanical [rad/s]; 0 where the resistance alone uses up the voltage
     power_at_base_speed: float  # [W]
+    circulating_share: float = 0.0  # loss by the current round a delta over the copper loss; none in a star
     maximum_power: float | None = None  # W, ideal field weakening up to the maximum speed; None: not asked for
     speed_at_maximum_power: float | None = None  # mechanical [rad/s]
+
+    @property
+    def turns(self) -> int:
+        """Of one coil, N_t."""
+        return self.design.turns
+
+    @property
+    def strands(self) -> int:
+        """Wires in hand, N_h."""
+        return self.design.strands
 
     @property
     def phase_to_phase_resistance(self) -> float:
@@ -157,119 +177,179 @@ class Winding:
 
 @dataclass(frozen=True)
 class WindingChoice:
-    """The winding to make, why, and everything it was chosen from."""
+    """The winding to make, and everything it was chosen from.
+
+    chosen: to be made; unrestricted: what would be without the current limit, None where nothing meets the requirement
+    table: every design with a full slot; best: of each gauge and connection the one that would be made
+    """
 
     chosen: Winding
-    reason: str
-    unrestricted: Winding | None  # meets the requirement with the lowest current when the current limit is ignored
-    fullest: tuple[Winding, ...]  # for every number of turns the most wires that fit
-    table: tuple[Winding, ...]  # every pair that fits
+    unrestricted: Winding | None
+    table: tuple[Winding, ...]
+    best: tuple[Winding, ...]
 
 
-def feasible_pairs(coil_side_area: float, wire: Wire, limits: WindingLimits) -> tuple[tuple[int, int], ...]:
-    """Every (N_t, N_h) with N_t N_h A_w / A_s <= the largest packing (3.119), by turns, then by wires.
+def full_designs(
+    coil_side_area: float,
+    wires: tuple[Wire, ...],
+    connections: tuple[WindingConnection, ...],
+    limits: WindingLimits,
+) -> tuple[WindingDesign, ...]:
+    """For each wire, connection and number of turns the most wires in hand that fit: copper left out is torque lost.
 
-    Raises WindingError when not even one wire fits.
+    coil_side_area: A_s [m^2]
+    N_t N_h A_w / A_s <= the largest packing (3.119), and the wires with their enamel stay within their share of A_s.
+    Raises WindingError when not even one wire of any gauge fits.
     """
-    wires = int(limits.largest_packing * coil_side_area / wire.area * (1 + 1e-12))
-    if wires < 1:
+    fitting = {wire: _wires_that_fit(coil_side_area, wire, limits) for wire in wires}
+    if not any(fitting.values()):
+        thinnest = min(wires, key=lambda wire: wire.area)
         raise WindingError(
-            f"one wire of {wire.area:.4g} m^2 does not fit: packing {limits.largest_packing:.4g} of "
-            f"{coil_side_area:.4g} m^2; take a thinner wire (winding_selection.wire_diameter_mm)"
+            f"one wire of {thinnest.area:.4g} m^2 does not fit: packing {limits.largest_packing:.4g}, with enamel "
+            f"{limits.insulated_fill:.4g} of {coil_side_area:.4g} m^2; take a thinner wire "
+            "(winding_selection.wire_diameters_mm)"
         )
-    return tuple((turns, strands) for turns in range(1, wires + 1) for strands in range(1, wires // turns + 1))
+    return tuple(
+        WindingDesign(turns, count // turns, wire, connection)
+        for (wire, count), connection in product(fitting.items(), connections)
+        for turns in range(1, count + 1)
+    )
+
+
+def _wires_that_fit(coil_side_area: float, wire: Wire, limits: WindingLimits) -> int:
+    bare = limits.largest_packing * coil_side_area / wire.area
+    insulated = limits.insulated_fill * coil_side_area / (wire.area + wire.enamel_area)
+    return int(min(bare, insulated) * (1 + 1e-12))
 
 
 def evaluate_windings(
-    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, pairs: tuple[tuple[int, int], ...]
+    machine: PerTurnMachine,
+    limits: WindingLimits,
+    designs: tuple[WindingDesign, ...],
+    lengths: tuple[FinalLength, ...],
 ) -> tuple[Winding, ...]:
-    """Values each (N_t, N_h) pair at the overload current density, without its maximum power.
+    """Values each design at its length and the overload current density, without its maximum power and without what
+    circulates.
 
-    I_peak = sqrt(2) J A_w N_h (3.77); the machine of one turn and one metre sees N_t I_peak, V / (N_t l) and
-    R / (N_t^2 l), with R from eq. 3.82 and V = V_DC / sqrt(3); torque times l.
-    Raises a ValueError when a pair has more ampere-turns than the machine is described for.
+    N I_peak = sqrt(2) J A_w N_h N_t (3.77); the machine of one turn and one metre sees N I_peak, V / (N l) and
+    R / (N^2 l), with R from eq. 3.82, V = V_DC / sqrt(3) and N the turns of the equivalent star; torque times l.
+    Raises a ValueError when a design has more ampere-turns than the machine is described for.
     """
-    turns, strands = np.array(pairs, dtype=float).T
-    columns = _columns(machine, _scaled(machine, wire, limits, turns, strands), wire, limits, turns, strands)
-    fullest = {pair_turns: max(n for t, n in pairs if t == pair_turns) for pair_turns in dict(pairs)}
+    columns = _columns(machine, _scaled(machine, limits, designs, np.array([one.length for one in lengths])))
     return tuple(
-        Winding(turns=t, strands=n, fullest=fullest[t] == n, **{name: float(c[k]) for name, c in columns.items()})
-        for k, (t, n) in enumerate(pairs)
+        Winding(design, needed_length=length.set_by.length, **{name: float(c[k]) for name, c in columns.items()})
+        for k, (design, length) in enumerate(zip(designs, lengths, strict=True))
     )
 
 
 def with_maximum_power(
-    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, windings: tuple[Winding, ...]
+    machine: PerTurnMachine, limits: WindingLimits, windings: tuple[Winding, ...]
 ) -> tuple[Winding, ...]:
     """The same windings with their maximum power up to the maximum speed."""
-    turns, strands = (np.array([[getattr(one, name)] for one in windings], float) for name in ("turns", "strands"))
-    scaled = _scaled(machine, wire, limits, turns, strands)
+    lengths = np.array([one.active_length for one in windings])
+    scaled = _scaled(machine, limits, tuple(one.design for one in windings), lengths, families=1)
     best = maximum_power(scaled.family, scaled.drive, limits.maximum_speed)
     return tuple(
-        replace(one, maximum_power=float(power) * machine.active_length, speed_at_maximum_power=float(speed))
+        replace(one, maximum_power=float(power) * one.active_length, speed_at_maximum_power=float(speed))
         for one, power, speed in zip(windings, best.power, best.speed, strict=True)
     )
 
 
+def with_circulation(
+    machine: PerTurnMachine, zero: ZeroSequence, windings: tuple[Winding, ...], density: float, speed: float
+) -> tuple[Winding, ...]:
+    """The same windings with the share that the current round the triangle of each adds to its copper loss: deltas.
+
+    At the best current of a density in the copper, RMS [A/m^2], and a mechanical speed [rad/s].
+    """
+    ampere_turns = np.array([sqrt(2) * density * one.design.copper_area for one in windings])
+    turns, length, resistance = np.array(
+        [(one.design.equivalent_turns, one.active_length, one.phase_resistance) for one in windings]
+    ).T
+    per_turn, electrical = resistance / (turns**2 * length), machine.dq.pole_pairs * speed
+    lost = zero.loss(*mtpa_currents(machine.dq, ampere_turns), electrical, per_turn)
+    shares = lost / (1.5 * per_turn * ampere_turns**2)
+    return tuple(replace(one, circulating_share=float(share)) for one, share in zip(windings, shares, strict=True))
+
+
 def select_winding(
-    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, requirement: WindingRequirement
+    windings: tuple[Winding, ...], limits: WindingLimits, requirement: WindingRequirement
 ) -> WindingChoice:
-    """Chooses turns and wires in hand among the fullest slots.
+    """Chooses among full slots, each valued at the length that it needs.
 
-    1. For every N_t only the largest N_h that fits competes: copper left out is torque left out.
-    2. Of those that meet base speed and power within the current limit, the one with the lowest current, which is that
-       of the fewest wires; of equals the one with the most copper.
-    3. Where none does, the one with the largest base speed within the current limit; the reason says what is relaxed.
+    1. A delta whose circulating current loses more than its share of the copper loss does not compete.
+    2. Of those that meet base speed and power within the current limit, the shortest and those up to ``AS_SHORT``
+       longer compete; the lowest line current wins, of equal currents the fullest copper, then fewest paths, star
+       before delta, fewest wires.
+    3. Where none does, the one within the current limit that has the most power at base speed for its length.
 
-    Raises WindingError when no pair fits the slot or none stays within the current limit.
+    Raises WindingError when no winding stays within the current limit.
     Source: thesis, "Electric machine windings definition", eqs 3.119-3.120, where the choice was by trial.
     """
-    table = evaluate_windings(machine, wire, limits, feasible_pairs(machine.coil_side_area, wire, limits))
-    fullest = tuple(winding for winding in table if winding.fullest)
-    unrestricted = _lowest_current(fullest, requirement)
-    chosen = choose_among(fullest, limits, requirement)
-    reason = _reason(chosen, unrestricted, limits, requirement)
-    return WindingChoice(chosen, reason, unrestricted, fullest, table)
+    groups: dict[tuple[Wire, WindingConnection], list[Winding]] = {}
+    for one in windings:
+        groups.setdefault((one.design.wire, one.design.connection), []).append(one)
+    return WindingChoice(
+        choose_among(windings, limits, requirement),
+        _best_that_meets(_without_much_circulation(windings, limits), requirement),
+        windings,
+        tuple(_best_of_a_kind(group, limits, requirement) for group in groups.values()),
+    )
 
 
 def choose_among(windings: tuple[Winding, ...], limits: WindingLimits, requirement: WindingRequirement) -> Winding:
-    """Rules 2 and 3 of ``select_winding``. Raises WindingError when no winding stays within the current limit."""
-    affordable = _affordable(windings, limits)
-    return _lowest_current(affordable, requirement) or max(affordable, key=lambda winding: winding.base_speed)
+    """The rules of ``select_winding``. Raises WindingError when no winding stays within the current limit."""
+    affordable = _affordable(_without_much_circulation(windings, limits), limits)
+    return _best_that_meets(affordable, requirement) or max(affordable, key=_power_for_length)
 
 
 @dataclass(frozen=True, eq=False)
 class _Scaled:
-    """Windings in the coordinates of one turn and one metre: a family of machines with its limits, and R [ohm]."""
+    """Windings in the coordinates of one turn and one metre: a family of machines with its limits.
 
+    designs: of the windings (n,); turns: of the equivalent star (n,); length [m] (n,); resistance [ohm] (n,)
+    """
+
+    designs: tuple[WindingDesign, ...]
+    turns: np.ndarray
+    length: np.ndarray
+    resistance: np.ndarray
     family: DqMachine
     drive: DriveLimits
-    resistance: np.ndarray
 
 
 def _scaled(
-    machine: PerTurnMachine, wire: Wire, limits: WindingLimits, turns: np.ndarray, strands: np.ndarray
+    machine: PerTurnMachine,
+    limits: WindingLimits,
+    designs: tuple[WindingDesign, ...],
+    length: np.ndarray,
+    families: int = 0,
 ) -> _Scaled:
+    """families: further axes of the family, over which a search lays its speeds."""
+    shape = (len(designs), *[1] * families)
+    turns, copper, resistivity = (
+        np.array(values, float).reshape(shape)
+        for values in zip(*((one.equivalent_turns, one.copper_area, one.wire.resistivity) for one in designs))
+    )
+    length = np.asarray(length, float).reshape(shape)
     resistance = phase_resistance(
         turns=turns,
-        strands=strands,
-        wire_area=wire.area,
-        active_length=machine.active_length,
+        strands=1,
+        wire_area=copper / turns,
+        active_length=length,
         end_turn_length=machine.end_turn_length,
         coils_in_series=machine.coils_in_series,
-        resistivity=wire.resistivity,
+        resistivity=resistivity,
     )
-    current = sqrt(2) * limits.overload_current_density * wire.area * strands
-    drive = DriveLimits.from_dc_bus(turns * current, limits.dc_voltage / (turns * machine.active_length))
-    family = machine.dq.with_resistance(resistance / (turns**2 * machine.active_length))
-    return _Scaled(family, drive, resistance)
+    ampere_turns = sqrt(2) * limits.overload_current_density * copper
+    drive = DriveLimits.from_dc_bus(ampere_turns, limits.dc_voltage / (turns * length))
+    family = machine.dq.with_resistance(resistance / (turns**2 * length))
+    return _Scaled(designs, turns, length, resistance, family, drive)
 
 
-def _columns(
-    machine: PerTurnMachine, scaled: _Scaled, wire: Wire, limits: WindingLimits, turns: np.ndarray, strands: np.ndarray
-) -> dict[str, np.ndarray]:
-    """The fields of ``Winding`` that are numbers, each an array over the pairs."""
-    family, length, ampere_turns = scaled.family, machine.active_length, scaled.drive.current_peak
+def _columns(machine: PerTurnMachine, scaled: _Scaled) -> dict[str, np.ndarray]:
+    """The fields of ``Winding`` that are numbers, each an array over the designs."""
+    family, turns, length, ampere_turns = scaled.family, scaled.turns, scaled.length, scaled.drive.current_peak
     best = mtpa_currents(family, ampere_turns)
     torque, base = length * family.torque(*best), corner_speed(family, scaled.drive, *best)
     psi_d, psi_q = family.flux_linkage(np.zeros_like(ampere_turns), ampere_turns)
@@ -277,8 +357,11 @@ def _columns(
     no_load = family.flux_linkage(0.0, 0.0)[0]
     constant, inductance = 1.5 * family.pole_pairs * turns * length, turns**2 * length / ampere_turns
     current = ampere_turns / turns
+    copper, insulated = np.array([(one.copper_area, one.insulated_area) for one in scaled.designs]).T
     return {
-        "packing": turns * strands * wire.area / machine.coil_side_area,
+        "active_length": length,
+        "packing": copper / machine.coil_side_area,
+        "insulated_fill": insulated / machine.coil_side_area,
         "current_rms": current / sqrt(2),
         "current_peak": current,
         "phase_resistance": scaled.resistance,
@@ -292,6 +375,17 @@ def _columns(
     }
 
 
+def _without_much_circulation(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[Winding, ...]:
+    quiet = tuple(one for one in windings if one.circulating_share <= limits.circulating_share)
+    if not quiet:
+        least = min(one.circulating_share for one in windings)
+        raise WindingError(
+            f"in every winding the current round the delta loses more than {limits.circulating_share:.1%} of the "
+            f"copper loss, {least:.1%} at least: allow star (winding_selection.connections)"
+        )
+    return quiet
+
+
 def _affordable(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[Winding, ...]:
     """Windings within the current limit, a hair of rounding apart."""
     affordable = tuple(w for w in windings if w.current_rms <= limits.phase_current_rms * (1 + _SAME_CURRENT))
@@ -300,91 +394,39 @@ def _affordable(windings: tuple[Winding, ...], limits: WindingLimits) -> tuple[W
         raise WindingError(
             f"every winding needs more than {limits.phase_current_rms:.4g} A RMS; the smallest is {smallest:.4g} A "
             "with the slot as full as it gets: raise the current limit (winding_selection.phase_current_max_rms_A) or "
-            "take a thinner wire (winding_selection.wire_diameter_mm)"
+            "take a thinner wire (winding_selection.wire_diameters_mm)"
         )
     return affordable
 
 
-def _lowest_current(windings: tuple[Winding, ...], requirement: WindingRequirement) -> Winding | None:
-    """Lowest current among those that meet the requirement, of equals the fullest slot: its length will be shortest."""
+def _best_that_meets(windings: tuple[Winding, ...], requirement: WindingRequirement) -> Winding | None:
+    """Rule 2 of ``select_winding``."""
     meeting = [winding for winding in windings if winding.satisfies(requirement)]
-    return min(meeting, key=lambda winding: (winding.strands, -winding.packing), default=None)
+    shortest = min((winding.needed_length for winding in meeting), default=inf)
+    competing = [winding for winding in meeting if winding.needed_length <= shortest * (1 + AS_SHORT)]
+    return min(competing, key=_merit, default=None)
 
 
-def _reason(
-    chosen: Winding, unrestricted: Winding | None, limits: WindingLimits, requirement: WindingRequirement
-) -> str:
-    if chosen.satisfies(requirement):
-        text = _reason_met(chosen, limits, requirement)
-    else:
-        text = _reason_relaxed(chosen, unrestricted, limits, requirement)
-    return " ".join(filter(None, (text, _torque_remark(chosen, requirement), _packing_remark(chosen, limits))))
+def _power_for_length(winding: Winding) -> tuple[float, ...]:
+    """The larger, the better, where nothing meets the requirement."""
+    return (_rounded(winding.power_at_base_speed / winding.needed_length), *(-value for value in _merit(winding)))
 
 
-def _reason_met(chosen: Winding, limits: WindingLimits, requirement: WindingRequirement) -> str:
-    within = "" if limits.phase_current_rms == inf else f" and within the limit of {limits.phase_current_rms:.1f} A RMS"
-    return (
-        f"{_name(chosen)}: lowest current of all full slots that meet the requirement, {chosen.current_rms:.1f} A RMS "
-        f"({chosen.current_peak:.1f} A peak){within}; base speed {chosen.base_speed / RPM:.0f} rpm against "
-        f"{requirement.base_speed / RPM:.0f} rpm required, power at base speed {chosen.power_at_base_speed:.0f} W "
-        f"against {requirement.power:.0f} W."
-    )
+def _merit(winding: Winding) -> tuple[float, ...]:
+    """The smaller, the better; currents are one where only rounding parts them."""
+    connection = winding.design.connection
+    ranks = (-winding.design.copper_area, connection.paths, connection.closing.line_over_phase_current)
+    return (_rounded(winding.current_rms), *(_rounded(rank) for rank in ranks), winding.strands)
 
 
-def _reason_relaxed(
-    chosen: Winding, unrestricted: Winding | None, limits: WindingLimits, requirement: WindingRequirement
-) -> str:
-    limit = "" if limits.phase_current_rms == inf else f" within {limits.phase_current_rms:.1f} A RMS of phase current"
-    return (
-        f"{_name(chosen)}: no full slot meets the requirement{limit}, so the largest base speed there is taken, at "
-        f"{chosen.current_rms:.1f} A RMS ({chosen.current_peak:.1f} A peak). Relaxed: {_relaxed(chosen, requirement)}. "
-        f"{_without_limit(unrestricted)}"
-    )
+def _rounded(value: float) -> float:
+    return float(f"{value:.9g}")
 
 
-def _relaxed(chosen: Winding, requirement: WindingRequirement) -> str:
-    parts = (
-        _relaxation("base speed", chosen.base_speed / RPM, requirement.base_speed / RPM, "rpm"),
-        _relaxation("power at base speed", chosen.power_at_base_speed, requirement.power, "W"),
-    )
-    return " and ".join(filter(None, parts))
-
-
-def _relaxation(what: str, reached: float, required: float, unit: str) -> str:
-    if reached >= required:
-        return ""
-    return f"{what} from {required:.0f} to {reached:.0f} {unit} ({reached / required:.0%} of the requirement)"
-
-
-def _without_limit(unrestricted: Winding | None) -> str:
-    if unrestricted is None:
-        return "No winding of this machine meets the requirement at any current: its length or voltage has to grow."
-    return (
-        f"{_name(unrestricted)} would meet it, with {unrestricted.current_rms:.1f} A RMS "
-        f"({unrestricted.current_peak:.1f} A peak)."
-    )
-
-
-def _torque_remark(chosen: Winding, requirement: WindingRequirement) -> str:
-    if chosen.peak_torque >= requirement.torque:
-        return ""
-    missing = requirement.torque - chosen.peak_torque
-    return (
-        f"Its peak torque of {chosen.peak_torque:.3f} Nm is {missing:.3f} Nm ({missing / requirement.torque:.1%}) "
-        "below the peak force requirement."
-    )
-
-
-def _packing_remark(chosen: Winding, limits: WindingLimits) -> str:
-    if chosen.packing <= limits.packing_limit:
-        return ""
-    return (
-        f"Its packing factor {chosen.packing:.4f} exceeds the limit {limits.packing_limit:g} by "
-        f"{chosen.packing / limits.packing_limit - 1:.2%}, inside the accepted {limits.packing_tolerance:.2%}."
-    )
-
-
-def _name(winding: Winding) -> str:
-    wires = "wire" if winding.strands == 1 else "wires"
-    turns = "turn" if winding.turns == 1 else "turns"
-    return f"{winding.turns} {turns} of {winding.strands} {wires} in hand"
+def _best_of_a_kind(windings: list[Winding], limits: WindingLimits, requirement: WindingRequirement) -> Winding:
+    """What would be wound of one gauge and connection: what meets the requirement within the limit of the current, else
+    the fastest within it, else the one with the lowest current."""
+    affordable = tuple(w for w in windings if w.current_rms <= limits.phase_current_rms * (1 + _SAME_CURRENT))
+    if not affordable:
+        return min(windings, key=_merit)
+    return _best_that_meets(affordable, requirement) or max(affordable, key=_power_for_length)

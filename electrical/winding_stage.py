@@ -1,54 +1,82 @@
 """The winding of the matched machine, chosen on its flux map, and the active length it needs behind the real gears.
 
 The match counts on a packing factor and a ratio that are any number; turns, wires and teeth are whole ones. So the
-length is made again for the torque that the flux map gives at the current of the real winding. Winding and length are
-chosen in turns until neither moves; no field is solved for it.
+length is made again for the torque that the flux map gives at the current of the real winding: every winding that could
+be chosen is valued at the length that it would need. No field is solved for it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
+import numpy as np
+
+from electrical.circulating import ZeroSequence
 from electrical.dq import DriveLimits, mtpa_currents
 from electrical.final_length import FinalLength, LengthNeed, final_length, length_for_damping, length_for_torque
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.resistance import phase_resistance
 from electrical.shaft_demand import ShaftDemand
 from electrical.short_circuit import shaft_damping
 from electrical.synchronous_machine import SynchronousMachine
+from electrical.winding_connection import Delta, Star, WindingConnection
+from electrical.winding_reason import choice_reason, verdict
 from electrical.winding_selection import (
     PerTurnMachine,
     Winding,
     WindingChoice,
+    WindingError,
     WindingLimits,
     WindingRequirement,
-    Wire,
+    evaluate_windings,
+    full_designs,
     select_winding,
+    with_circulation,
     with_maximum_power,
 )
+from electrical.wire import Wire
 from electrical.wound_machine import WoundMachine, machine_end_turn
 from geometry.family import MatchedMachine
+from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.flux_map_stage import FluxMap
+from materials.insulation import InsulationClass
 
 NEIGHBOURS = 3  # turns either side of the chosen winding that are shown beside it
-_ROUNDS = 6  # of choosing a winding and giving it its length; two are enough unless the choice changes with the length
-_SAME_LENGTH = 1e-6  # relative
 
 
 @dataclass(frozen=True)
 class WindingInputs:
-    """What the winding is made of and held to.
+    """What the winding may be made of and is held to.
 
-    wire: its copper at the temperature of the winding; limits: of workshop, bus and power electronics
-    nominal_density: current density of the continuous force, RMS in the copper [A/m^2]
+    wires: allowed gauges, their copper at the temperature of the winding; paths: allowed numbers of parallel paths;
+    closings: whether star, delta or both are allowed; limits: of workshop, bus and power electronics
+    insulation: thermal class; nominal_density: current density of the continuous force, RMS in the copper [A/m^2]
     longest: active length that is allowed [m]
     damping_asked: whether the length must also give the regenerative damping that is required
     """
 
-    wire: Wire
+    wires: tuple[Wire, ...]
+    paths: tuple[int, ...]
+    closings: tuple[Star | Delta, ...]
     limits: WindingLimits
+    insulation: InsulationClass
     nominal_density: float
     longest: float
     damping_asked: bool
+
+    @property
+    def resistivity(self) -> float:
+        """Of the copper of every gauge [ohm m]."""
+        return self.wires[0].resistivity
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What would be wound of one gauge and connection, and why it was chosen or not."""
+
+    winding: Winding
+    verdict: str
 
 
 @dataclass(frozen=True)
@@ -57,8 +85,10 @@ class WindingOutcome:
 
     wound: the machine with its winding and final length
     chosen: its row; reason: why it was chosen; unrestricted: what would meet the requirement without a current limit
-    table: every pair that fits; near: fullest slots with a few turns more or less and ``unrestricted``, by turns, with
-        their maximum power
+    table: every full slot of the chosen gauge and connection; near: those with a few turns more or less, and
+        ``unrestricted``, by turns, with their maximum power
+    alternatives: the best of each gauge and connection; left_out: numbers of parallel paths that the study allows and
+        the star of slots does not
     requirement: base speed and power that the choice was held to
     length: the final length and what sets it
     limits: peak phase current [A] and voltage [V]
@@ -75,6 +105,8 @@ class WindingOutcome:
     unrestricted: Winding | None
     table: tuple[Winding, ...]
     near: tuple[Winding, ...]
+    alternatives: tuple[Alternative, ...]
+    left_out: tuple[int, ...]
     requirement: WindingRequirement
     length: FinalLength
     limits: DriveLimits
@@ -92,76 +124,130 @@ def winding_stage(
     demand: ShaftDemand,
     inputs: WindingInputs,
 ) -> WindingOutcome:
-    """Choose turns, wires in hand and active length on the flux map.
+    """Choose turns, wires in hand, gauge, connection and active length on the flux map.
 
     The torque counts less the error of its mesh. It is not asked of the winding: the length is made for it.
-    Raises WindingError when no winding fits the slot or stays within the current limit.
+    Raises WindingError when no winding fits the slot or stays within the current limit, or no number of paths is
+    possible.
     """
     requirement = WindingRequirement(demand.base_speed, demand.power, torque=0.0)
-    one = per_turn_machine(flux_map, matched, inputs.longest)
-    machine, choice, length = wound_to_length(one, flux_map.torque_error, demand, inputs)
+    machine = per_turn_machine(flux_map, matched)
+    connections = possible_connections(layout_of(flux_map, matched), inputs)
+    designs = full_designs(machine.coil_side_area, inputs.wires, connections, inputs.limits)
+    copper = np.array([one.copper_area for one in designs])
+    needed = Lengths(machine, flux_map.torque_error, demand, inputs).of(copper)
+    windings = evaluate_windings(machine, inputs.limits, designs, needed)
+    windings = _with_circulation(machine, flux_map, windings, inputs, requirement)
+    choice = select_winding(windings, inputs.limits, requirement)
+    length = needed[designs.index(choice.chosen.design)]
     return _outcome(flux_map, matched, machine, choice, length, requirement, inputs)
 
 
-def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine, active_length: float) -> PerTurnMachine:
-    """The machine of a map at an active length [m], before its winding is chosen."""
+def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine) -> PerTurnMachine:
+    """The machine of a map before its winding is chosen."""
     return PerTurnMachine(
         dq=FluxMapMachine.from_per_turn(flux_map.data, turns=1, active_length=1.0, resistance=0.0),
         coils_in_series=flux_map.coils_in_series,
         coil_side_area=flux_map.coil_side_area,
-        active_length=active_length,
         end_turn_length=machine_end_turn(matched.machine, flux_map.coil_pitch),
     )
 
 
-def wound_to_length(
-    machine: PerTurnMachine,
-    torque_error: float,
-    demand: ShaftDemand,
-    inputs: WindingInputs,
-) -> tuple[PerTurnMachine, WindingChoice, FinalLength]:
-    """(machine with its final length, the winding, what set the length): the two are chosen in turns.
+def layout_of(flux_map: FluxMap, matched: MatchedMachine) -> WindingLayout:
+    """The winding that the map was solved with, by its star of slots."""
+    machine = matched.machine
+    layers = 2 * WindingLayout.phases * flux_map.coils_in_series // machine.slots
+    return star_of_slots(machine.slots, machine.pole_pairs, layers, flux_map.coil_pitch)
+
+
+def possible_connections(layout: WindingLayout, inputs: WindingInputs) -> tuple[WindingConnection, ...]:
+    """Those that the study allows and the star of slots makes possible.
+
+    Raises WindingError where none of the numbers of paths is possible.
+    """
+    numbers = [number for number in inputs.paths if number in layout.path_numbers]
+    if not numbers:
+        raise WindingError(
+            f"none of winding_selection.parallel_paths = {list(inputs.paths)} is possible: {layout.slots} slots and "
+            f"{2 * layout.pole_pairs} poles have equal paths for {list(layout.path_numbers)} only; allow one of these"
+        )
+    return tuple(WindingConnection(number, closing) for closing in inputs.closings for number in numbers)
+
+
+@dataclass(frozen=True, eq=False)
+class Lengths:
+    """What a wound machine must be long for, by the copper that it holds alone: the ampere-turns follow from it.
 
     torque_error: share of the torque that the mesh may have put on top
     """
-    requirement = WindingRequirement(demand.base_speed, demand.power, torque=0.0)
-    for _ in range(_ROUNDS):
-        choice = select_winding(machine, inputs.wire, inputs.limits, requirement)
-        needs = length_needs(machine, torque_error, choice.chosen, demand, inputs)
-        found = final_length(needs, inputs.longest)
-        if abs(found.length / machine.active_length - 1) < _SAME_LENGTH:
-            break
-        machine = replace(machine, active_length=found.length)
-    return machine, select_winding(machine, inputs.wire, inputs.limits, requirement), found
+
+    machine: PerTurnMachine
+    torque_error: float
+    demand: ShaftDemand
+    inputs: WindingInputs
+
+    def of(self, copper: np.ndarray) -> tuple[FinalLength, ...]:
+        """For copper sections of one coil side [m^2] (n,), rounded up to what can be cut."""
+        areas, places = np.unique(copper, return_inverse=True)
+        peak = self._torque_per_length(areas, self.inputs.limits.overload_current_density)
+        nominal = self._torque_per_length(areas, self.inputs.nominal_density)
+        found = [
+            final_length(self._needs(*one), self.inputs.longest)
+            for one in zip(areas.tolist(), peak.tolist(), nominal.tolist())
+        ]
+        return tuple(found[place] for place in places)
+
+    def _torque_per_length(self, copper: np.ndarray, density: float) -> np.ndarray:
+        """Surely [Nm/m], at a density in the copper, RMS [A/m^2]."""
+        dq = self.machine.dq
+        return (1 - self.torque_error) * np.asarray(dq.torque(*mtpa_currents(dq, 2**0.5 * density * copper)))
+
+    def _needs(self, copper: float, peak: float, nominal: float) -> tuple[LengthNeed, ...]:
+        """copper: [m^2]; peak, nominal: torque [Nm/m]."""
+        torques = (
+            LengthNeed("the peak torque", length_for_torque(self.demand.torque_peak, peak)),
+            LengthNeed("the RMS torque", length_for_torque(self.demand.torque_rms, nominal)),
+        )
+        if not self.inputs.damping_asked:
+            return torques
+        return (*torques, LengthNeed("the damping", self._length_for_damping(copper)))
+
+    def _length_for_damping(self, copper: float) -> float:
+        """[m]; of one turn, since turns do not change the damping; copper: [m^2]."""
+        machine, longest = self.machine, self.inputs.longest
+        resistance = phase_resistance(
+            turns=1,
+            strands=1,
+            wire_area=copper,
+            active_length=longest,
+            end_turn_length=machine.end_turn_length,
+            coils_in_series=machine.coils_in_series,
+            resistivity=self.inputs.resistivity,
+        )
+        reached = shaft_damping(torque_constant=self._constant * longest, phase_resistance=resistance)
+        known = {"length": longest, "end_turn_length": machine.end_turn_length}
+        return length_for_damping(self.demand.damping, reached=reached, **known)
+
+    @cached_property
+    def _constant(self) -> float:
+        """Of one turn and one metre, without current [Nm/A]."""
+        return 1.5 * self.machine.dq.pole_pairs * float(self.machine.dq.flux_linkage(0.0, 0.0)[0])
 
 
-def length_needs(
+def _with_circulation(
     machine: PerTurnMachine,
-    torque_error: float,
-    winding: Winding,
-    demand: ShaftDemand,
+    flux_map: FluxMap,
+    windings: tuple[Winding, ...],
     inputs: WindingInputs,
-) -> tuple[LengthNeed, ...]:
-    """What the wound machine must be long for; torque_error: share that the mesh may have put on top."""
-
-    def length(wanted: float, density: float) -> float:
-        ampere_turns = winding.turns * inputs.wire.area * winding.strands * density * 2**0.5
-        torque = float(machine.dq.torque(*mtpa_currents(machine.dq, ampere_turns)))
-        return length_for_torque(wanted, (1 - torque_error) * torque)
-
-    torques = (
-        LengthNeed("the peak torque", length(demand.torque_peak, inputs.limits.overload_current_density)),
-        LengthNeed("the RMS torque", length(demand.torque_rms, inputs.nominal_density)),
-    )
-    if not inputs.damping_asked:
-        return torques
-    return (*torques, _damping_need(machine, winding, demand.damping))
-
-
-def _damping_need(machine: PerTurnMachine, winding: Winding, damping: float) -> LengthNeed:
-    reached = shaft_damping(torque_constant=winding.no_load_torque_constant, phase_resistance=winding.phase_resistance)
-    lengths = {"length": machine.active_length, "end_turn_length": machine.end_turn_length}
-    return LengthNeed("the damping", length_for_damping(damping, reached=reached, **lengths))
+    requirement: WindingRequirement,
+) -> tuple[Winding, ...]:
+    """At the nominal current density and the base speed that is asked for."""
+    closed = tuple(one for one in windings if one.design.connection.closing.circulates)
+    if not closed:
+        return windings
+    zero, speed = ZeroSequence.from_per_turn(flux_map.data), requirement.base_speed
+    rest = tuple(one for one in windings if not one.design.connection.closing.circulates)
+    return rest + with_circulation(machine, zero, closed, inputs.nominal_density, speed)
 
 
 def _outcome(
@@ -173,19 +259,21 @@ def _outcome(
     requirement: WindingRequirement,
     inputs: WindingInputs,
 ) -> WindingOutcome:
-    near = with_maximum_power(machine, inputs.wire, inputs.limits, neighbours(choice))
-    chosen = next(one for one in near if one.turns == choice.chosen.turns)
-    wound = _wound(flux_map, matched, machine, chosen, inputs.wire)
+    near = with_maximum_power(machine, inputs.limits, neighbours(choice))
+    chosen = next(one for one in near if one.design == choice.chosen.design)
+    wound = _wound(flux_map, matched, chosen)
     field = wound.on_map(flux_map.data)
     i_d, i_q = (float(i) for i in mtpa_currents(field, chosen.current_peak))
     torque = float(field.torque(i_d, i_q))
     return WindingOutcome(
         wound=wound,
         chosen=chosen,
-        reason=choice.reason,
+        reason=choice_reason(choice, inputs.limits, requirement),
         unrestricted=choice.unrestricted,
-        table=choice.table,
+        table=of_the_same_kind(choice),
         near=near,
+        alternatives=tuple(Alternative(one, verdict(one, choice, inputs.limits, requirement)) for one in choice.best),
+        left_out=tuple(one for one in inputs.paths if one not in layout_of(flux_map, matched).path_numbers),
         requirement=requirement,
         length=length,
         limits=DriveLimits.from_dc_bus(chosen.current_peak, inputs.limits.dc_voltage),
@@ -193,28 +281,30 @@ def _outcome(
         quadrature_current=i_q,
         peak_torque=torque,
         peak_torque_error=flux_map.torque_error * torque,
-        peak_torque_ripple=wound.active_length * flux_map.torque_ripple(wound.turns * i_d, wound.turns * i_q),
+        peak_torque_ripple=wound.active_length * flux_map.torque_ripple(*wound.ampere_turns(i_d, i_q)),
         constant=chosen.constant_parameters(field.pole_pairs),
     )
 
 
+def of_the_same_kind(choice: WindingChoice) -> tuple[Winding, ...]:
+    """Full slots of the chosen gauge and connection."""
+    chosen = choice.chosen.design
+    return tuple(one for one in choice.table if one.design.is_like(chosen))
+
+
 def neighbours(choice: WindingChoice) -> tuple[Winding, ...]:
-    """Full slots within ``NEIGHBOURS`` turns of the chosen one, and the one that would meet the requirement."""
-    near = [one for one in choice.fullest if abs(one.turns - choice.chosen.turns) <= NEIGHBOURS]
+    """Full slots of the chosen gauge and connection within ``NEIGHBOURS`` turns of the chosen one, and the one that
+    would meet the requirement."""
+    near = [one for one in of_the_same_kind(choice) if abs(one.turns - choice.chosen.turns) <= NEIGHBOURS]
     further = [choice.unrestricted] if choice.unrestricted is not None and choice.unrestricted not in near else []
     return tuple(sorted(near + further, key=lambda one: one.turns))
 
 
-def _wound(
-    flux_map: FluxMap, matched: MatchedMachine, machine: PerTurnMachine, winding: Winding, wire: Wire
-) -> WoundMachine:
+def _wound(flux_map: FluxMap, matched: MatchedMachine, winding: Winding) -> WoundMachine:
     return WoundMachine(
         machine=matched.machine,
         coils_in_series=flux_map.coils_in_series,
         coil_pitch=flux_map.coil_pitch,
-        turns=winding.turns,
-        strands=winding.strands,
-        wire_area=wire.area,
-        active_length=machine.active_length,
-        resistivity=wire.resistivity,
+        design=winding.design,
+        active_length=winding.active_length,
     )

@@ -5,32 +5,38 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
+import numpy as np
 import xarray as xr
 
+from electrical.circulating import ZeroSequence
+from electrical.dq import Values
 from electrical.end_turn import end_turn_length
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
+from electrical.winding_design import WindingDesign
 from geometry.machine import Machine
 
 
 @dataclass(frozen=True)
 class WoundMachine:
-    """See the module.
+    """See the module. Currents, resistance and flux linkages are those of the equivalent star
+    (``electrical.winding_connection``); the design says what one coil and one wire carry of them.
 
-    coils_in_series: coils of one phase, N_c; coil_pitch: y [slots]
-    turns: of one coil, N_t; strands: wires in hand, N_h; wire_area: copper section of one wire, A_w [m^2]
+    coils_in_series: coils of one phase, N_c, in series in the equivalent star; coil_pitch: y [slots]
+    design: turns, wires in hand, wire and connection
     active_length: l [m]
-    resistivity: of the copper at the temperature of the winding [ohm m]
     """
 
     machine: Machine
     coils_in_series: int
     coil_pitch: int
-    turns: int
-    strands: int
-    wire_area: float
+    design: WindingDesign
     active_length: float
-    resistivity: float
+
+    @property
+    def equivalent_turns(self) -> float:
+        """Turns of a coil of the equivalent star: ampere-turns over line current."""
+        return self.design.equivalent_turns
 
     @property
     def end_turn_length(self) -> float:
@@ -39,15 +45,15 @@ class WoundMachine:
 
     @property
     def phase_resistance(self) -> float:
-        """Of one phase [ohm], direct current."""
+        """Of one phase [ohm], direct current; half of what is measured between two terminals."""
         return phase_resistance(
-            turns=self.turns,
-            strands=self.strands,
-            wire_area=self.wire_area,
+            turns=self.equivalent_turns,
+            strands=1,
+            wire_area=self.copper_area / self.equivalent_turns,
             active_length=self.active_length,
             end_turn_length=self.end_turn_length,
             coils_in_series=self.coils_in_series,
-            resistivity=self.resistivity,
+            resistivity=self.design.wire.resistivity,
         )
 
     @property
@@ -58,16 +64,34 @@ class WoundMachine:
     @property
     def copper_area(self) -> float:
         """Copper section of one coil side [m^2]."""
-        return self.turns * self.strands * self.wire_area
+        return self.design.copper_area
+
+    def ampere_turns(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
+        """Of one coil (d, q), peak [A], as maps per turn take them; i_d, i_q: peak line currents [A]."""
+        return self.equivalent_turns * i_d, self.equivalent_turns * i_q
 
     def current_peak(self, density: float) -> float:
-        """Peak phase current [A] at an RMS current density in the copper [A/m^2]."""
-        return sqrt(2) * density * self.wire_area * self.strands
+        """Peak line current [A] at an RMS current density in the copper [A/m^2]."""
+        return sqrt(2) * density * self.copper_area / self.equivalent_turns
+
+    def circulating_loss(self, data: xr.Dataset, i_d: Values, i_q: Values, speed: Values) -> np.ndarray:
+        """Loss by the current round the triangle of a delta [W], none in a star; of the shape of the arguments, which
+        broadcast.
+
+        data: map of its cross-section per turn and metre (``FluxMap.data``); i_d, i_q: peak line currents [A]; speed:
+        mechanical [rad/s]
+        """
+        if not self.design.connection.closing.circulates:
+            return np.zeros(np.broadcast_shapes(np.shape(i_d), np.shape(i_q), np.shape(speed)))
+        per_turn = self.phase_resistance / (self.equivalent_turns**2 * self.active_length)
+        electrical = self.machine.pole_pairs * np.asarray(speed)
+        zero = ZeroSequence.from_per_turn(data)
+        return self.active_length * zero.loss(*self.ampere_turns(i_d, i_q), electrical, per_turn)
 
     def on_map(self, data: xr.Dataset) -> FluxMapMachine:
         """The machine in dq from the map of its cross-section per turn and metre (``FluxMap.data``)."""
         return FluxMapMachine.from_per_turn(
-            data, turns=self.turns, active_length=self.active_length, resistance=self.phase_resistance
+            data, turns=self.equivalent_turns, active_length=self.active_length, resistance=self.phase_resistance
         )
 
 

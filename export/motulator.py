@@ -12,10 +12,10 @@ from electrical.synchronous_machine import SynchronousMachine
 
 _UNITS = {
     "n_p": "pole pairs",
-    "R_s": "ohm, one phase of the star, direct current at the temperature of the winding in the study",
-    "L_d": "H, phase",
-    "L_q": "H, phase",
-    "psi_f": "Vs, peak flux linkage of one phase by the magnets",
+    "R_s": "ohm, one phase of the equivalent star, direct current at the temperature of the winding in the study",
+    "L_d": "H, phase of the equivalent star",
+    "L_q": "H, phase of the equivalent star",
+    "psi_f": "Vs, peak flux linkage of one phase of the equivalent star by the magnets",
 }
 _KEYWORDS = "keywords of motulator's SynchronousMachinePars: SynchronousMachinePars(**parameters['full_current'])"
 
@@ -31,10 +31,14 @@ def parameters(machine: SynchronousMachine) -> dict[str, float]:
     }
 
 
-def parameter_text(full_current: SynchronousMachine, unsaturated: SynchronousMachine) -> str:
-    """JSON of the saturated machine (torque right at full current) and of the unsaturated one (back-EMF right)."""
+def parameter_text(full_current: SynchronousMachine, unsaturated: SynchronousMachine, connection: str) -> str:
+    """JSON of the saturated machine (torque right at full current) and of the unsaturated one (back-EMF right).
+
+    connection: of the winding, in words; the parameters are those of its equivalent star
+    """
     content = {
         "about": _KEYWORDS,
+        "connection": connection,
         "units": _UNITS,
         "full_current": parameters(full_current),
         "no_current": parameters(unsaturated),

@@ -102,7 +102,7 @@ def package_stage(
     continuous = least_current_state(machine, wound.current_peak(inputs.nominal_density), speed)
     return Package(
         layout=layout,
-        connections=connections(layout),
+        connections=connections(layout, wound.design.connection.paths),
         costs=part_costs(outcome.masses, prices),
         currency=prices.currency,
         continuous=continuous,

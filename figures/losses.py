@@ -81,8 +81,10 @@ def _parts(axes: Axes, losses: PowerLosses) -> None:
         "stator iron": losses.stator_iron,
         "rotor iron": losses.rotor_iron,
         "magnets": losses.magnet,
+        "round the delta": losses.circulating,
     }
-    for number, (label, values) in enumerate(parts.items()):
+    shown = {label: values for label, values in parts.items() if np.nanmax(values[row]) > 0}
+    for number, (label, values) in enumerate(shown.items()):
         look: dict[str, Any] = {"color": SERIES[number], "marker": MARKERS[number], "markevery": 8, "markersize": 5}
         axes.plot(losses.speed[row] / RPM, np.where(values[row] > 0, values[row], np.nan), label=label, **look)
     axes.set_title(f"parts of the loss at {torque[row]:.3g} Nm", loc="left")

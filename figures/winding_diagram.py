@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from electrical.winding_connection import Delta, Star
 from figures.style import BLACK, GREY, PHASE_COLOURS, PHASE_NAMES, Look, new_figure, styled
 from geometry.connections import Connection
 from geometry.winding import WindingLayout
@@ -19,10 +22,13 @@ _APEX = -0.2
 
 
 @styled
-def winding_diagram(layout: WindingLayout, connected: tuple[Connection, ...], title: str) -> Figure:
-    """Slots along x, tooth 0 at the left; arrows along a positive current of each phase.
+def winding_diagram(
+    layout: WindingLayout, connected: tuple[Connection, ...], closing: Star | Delta, title: str
+) -> Figure:
+    """Slots along x, tooth 0 at the left; arrows along a positive current of each phase. Leads that end at the same
+    letter are joined.
 
-    connected: every coil of the layout, phase by phase in series
+    connected: every coil of the layout, path by path in series; closing: how the phases end
     """
     figure = new_figure(4.4)
     axes = figure.subplots()
@@ -30,8 +36,8 @@ def winding_diagram(layout: WindingLayout, connected: tuple[Connection, ...], ti
     _draw_teeth(axes, layout, size)
     for one in connected:
         _draw_coil(axes, layout, one, size)
-    _connect_phases(axes, layout, connected)
-    _draw_star(axes, layout, connected)
+    _connect_paths(axes, layout, connected, closing)
+    _draw_star(axes, layout, [one for one in connected if _at_star_point(one, closing)])
     axes.set(xlim=(-0.55, layout.slots - 0.45), ylim=(-0.5, _TERMINAL + 0.3), yticks=[])
     slots = range(layout.slots)
     axes.set_xticks([slot + 0.5 for slot in slots], [str(slot) for slot in slots], fontsize=size)
@@ -73,26 +79,46 @@ def _sides(layout: WindingLayout, one: Connection) -> tuple[float, float]:
     return (right, left) if one.reversed else (left, right)
 
 
-def _connect_phases(axes: Axes, layout: WindingLayout, connected: tuple[Connection, ...]) -> None:
-    phases = [tuple(one for one in connected if one.phase == phase) for phase in range(layout.phases)]
-    heights = [max(_tracks(_wires(layout, coils)), default=0) + 1 for coils in phases]
+def _connect_paths(axes: Axes, layout: WindingLayout, connected: tuple[Connection, ...], closing: Star | Delta) -> None:
+    paths = [tuple(group) for _, group in groupby(connected, key=lambda one: (one.phase, one.path))]
+    heights = [max(_tracks(_wires(layout, coils)), default=0) + 1 for coils in paths]
     step = (_STAR - _FIRST_LEVEL) / sum(heights)
-    for phase, coils in enumerate(phases):
-        _connect(axes, layout, coils, _FIRST_LEVEL + step * sum(heights[:phase]), step)
+    for number, coils in enumerate(paths):
+        _connect(axes, layout, coils, _FIRST_LEVEL + step * sum(heights[:number]), step)
+        _draw_ends(axes, layout, coils, closing)
 
 
 def _connect(axes: Axes, layout: WindingLayout, coils: tuple[Connection, ...], level: float, step: float) -> None:
-    """Terminal, coil to coil, and the lead to the star point; level: of the lowest wire, step: to the next."""
+    """Coil to coil; level: of the lowest wire, step: to the next."""
     phase = coils[0].phase
     look: Look = {"color": PHASE_COLOURS[phase], "linewidth": 1.2}
     wires = _wires(layout, coils)
     for (end, begin), track in zip(wires, _tracks(wires)):
         height = level + track * step
         axes.plot([end, end, begin, begin], [_LEAD, height, height, _LEAD], **look)
-    terminal, star = _inside(layout, _sides(layout, coils[0])[0]), _inside(layout, _sides(layout, coils[-1])[1])
-    axes.plot([terminal, terminal], [_LEAD, _TERMINAL], marker="o", markevery=[1], markersize=6, **look)
-    axes.text(terminal, _TERMINAL + 0.12, PHASE_NAMES[phase], color=PHASE_COLOURS[phase], ha="center", weight="bold")
-    axes.plot([star, star], [_LEAD, _STAR], **look)
+
+
+def _draw_ends(axes: Axes, layout: WindingLayout, coils: tuple[Connection, ...], closing: Star | Delta) -> None:
+    """From the terminal of the phase, and to the star point or the terminal of the next phase."""
+    phase, following = coils[0].phase, closing.terminal_at_end(coils[0].phase)
+    begin, end = _inside(layout, _sides(layout, coils[0])[0]), _inside(layout, _sides(layout, coils[-1])[1])
+    _draw_terminal(axes, begin, phase, phase)
+    if following is None:
+        axes.plot([end, end], [_LEAD, _STAR], color=PHASE_COLOURS[phase], linewidth=1.2)
+    else:
+        _draw_terminal(axes, end, phase, following)
+
+
+def _draw_terminal(axes: Axes, x: float, phase: int, terminal: int) -> None:
+    """A lead of a phase at a terminal."""
+    look: Look = {"color": PHASE_COLOURS[phase], "linewidth": 1.2}
+    axes.plot([x, x], [_LEAD, _TERMINAL], marker="o", markevery=[1], markersize=6, **look)
+    name, colour = PHASE_NAMES[terminal], PHASE_COLOURS[terminal]
+    axes.text(x, _TERMINAL + 0.12, name, color=colour, ha="center", weight="bold")
+
+
+def _at_star_point(one: Connection, closing: Star | Delta) -> bool:
+    return one.following is None and closing.terminal_at_end(one.phase) is None
 
 
 def _wires(layout: WindingLayout, coils: tuple[Connection, ...]) -> list[tuple[float, float]]:
@@ -119,8 +145,12 @@ def _inside(layout: WindingLayout, x: float) -> float:
     return (x + 0.5) % layout.slots - 0.5
 
 
-def _draw_star(axes: Axes, layout: WindingLayout, connected: tuple[Connection, ...]) -> None:
-    ends = [_inside(layout, _sides(layout, one)[1]) for one in connected if one.following is None]
+def _draw_star(axes: Axes, layout: WindingLayout, last: list[Connection]) -> None:
+    """last: the coils that end at the star point, none in a delta."""
+    if not last:
+        return
+    ends = [_inside(layout, _sides(layout, one)[1]) for one in last]
     axes.plot([min(ends), max(ends)], [_STAR, _STAR], color=BLACK, linewidth=1.6)
     axes.plot(ends, [_STAR] * len(ends), "o", color=BLACK, markersize=4)
-    axes.text((min(ends) + max(ends)) / 2, _STAR + 0.06, "star point", ha="center", fontsize=9)
+    axes.text((min(ends) + max(ends)) / 2, _STAR + 0.06, "star point", ha="center", fontsize=9,
+              bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})  # fmt: skip

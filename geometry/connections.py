@@ -1,8 +1,8 @@
-"""Which lead of which coil goes where: the star of slots as the workshop winds it, phases in star.
+"""Which lead of which coil goes where: the star of slots as the workshop winds it.
 
 The leads are taken to lie at the end of the stack that the cross-section shows (+z, towards the viewer). All coils are
-wound alike; one whose sign is -1 is connected the other way round. Coils of a phase follow each other in series by
-rising index, from the terminal to the star point.
+wound alike; one whose sign is -1 is connected the other way round. Coils of a path follow each other in series by
+rising index, from the terminal where the phase begins to where it ends: the star point, or a delta's next terminal.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ class Connection:
 
     coil, phase: indices; reversed: whether it is connected the other way round
     from_slot: where a positive phase current goes down from the leads, in -z; to_slot: where it comes back, in +z
-    teeth: inside the coil, counter-clockwise
-    previous: index of the coil before, None where the terminal of the phase is; following: None at the star point
+    path: of its phase, from 0; teeth: inside the coil, counter-clockwise
+    previous: index of the coil before, None where the phase begins; following: None where it ends
     """
 
     coil: int
     phase: int
+    path: int
     reversed: bool
     from_slot: int
     to_slot: int
@@ -34,16 +35,24 @@ class Connection:
     following: int | None
 
 
-def connections(layout: WindingLayout) -> tuple[Connection, ...]:
-    """Every coil of the winding, phase by phase in the order of its current."""
-    return tuple(one for phase in range(layout.phases) for one in _in_series(layout, layout.coils_of(phase)))
+def connections(layout: WindingLayout, paths: int) -> tuple[Connection, ...]:
+    """Every coil of the winding with ``paths`` parallel paths a phase, path by path in the order of its current.
+
+    Raises GeometryError when the star of slots has no such division.
+    """
+    return tuple(
+        one
+        for phase in range(layout.phases)
+        for path, coils in enumerate(layout.paths_of(phase, paths))
+        for one in _in_series(layout, path, coils)
+    )
 
 
-def _in_series(layout: WindingLayout, coils: tuple[Coil, ...]) -> Iterator[Connection]:
+def _in_series(layout: WindingLayout, path: int, coils: tuple[Coil, ...]) -> Iterator[Connection]:
     indices = [None, *(coil.index for coil in coils), None]
     for coil, (previous, _), (_, following) in zip(coils, pairwise(indices), pairwise(indices[1:])):
         down, up = (coil.back, coil.go) if coil.sign > 0 else (coil.go, coil.back)
-        yield Connection(coil.index, coil.phase, coil.sign < 0, down[0], up[0], _teeth(layout, coil),
+        yield Connection(coil.index, coil.phase, path, coil.sign < 0, down[0], up[0], _teeth(layout, coil),
                          previous, following)  # fmt: skip
 
 

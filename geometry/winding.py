@@ -48,7 +48,10 @@ class Coil:
 
 @dataclass(frozen=True)
 class WindingLayout:
-    """Balanced three-phase winding, all coils of a phase in series. Build it with ``star_of_slots``."""
+    """Balanced three-phase winding. Build it with ``star_of_slots``.
+
+    Fields and flux linkages are those of all coils of a phase in series; ``paths_of`` connects them in parallel.
+    """
 
     slots: int
     pole_pairs: int
@@ -74,6 +77,40 @@ class WindingLayout:
     def coils_of(self, phase_index: int) -> tuple[Coil, ...]:
         """The coils of phase 0 (A), 1 (B) or 2 (C), by rising index."""
         return tuple(coil for coil in self.coils if coil.phase == phase_index)
+
+    @property
+    def path_numbers(self) -> tuple[int, ...]:
+        """Numbers of equal parallel paths that a phase divides into, rising: divisors of the number of coils that
+        every direction of its star has. 12 slots, 10 poles: 1 and 2, since its four coils lie in two directions."""
+        each = gcd(*(len(coils) for coils in self._directions_of(0)))
+        return tuple(number for number in range(1, each + 1) if each % number == 0)
+
+    def paths_of(self, phase_index: int, paths: int) -> tuple[tuple[Coil, ...], ...]:
+        """The coils of each of ``paths`` parallel paths of a phase, by rising index.
+
+        Each has as many coils of every direction as the others. Coils of one direction are turned into each other by
+        whole poles of the rotor, so that the EMFs of the paths are equal at every load and none circulates.
+        Raises GeometryError when the star of slots has no such division.
+        """
+        if paths not in self.path_numbers:
+            raise GeometryError(
+                f"{paths} parallel paths are not equal with {self.slots} slots and {2 * self.pole_pairs} poles: the "
+                f"{self.coils_in_series} coils of a phase lie in {len(self._directions_of(0))} directions of the star "
+                f"of slots, and every path needs as many of each; take {_one_of(self.path_numbers)}"
+            )
+        shares = [_in_parts(coils, paths) for coils in self._directions_of(phase_index)]
+        return tuple(
+            tuple(sorted((coil for part in parts for coil in part), key=lambda coil: coil.index))
+            for parts in zip(*shares, strict=True)
+        )
+
+    def _directions_of(self, phase_index: int) -> list[tuple[Coil, ...]]:
+        """The coils of a phase by the electrical angle of their signed axes."""
+        groups: dict[int, list[Coil]] = {}
+        for coil in self.coils_of(phase_index):
+            angle = _axis_steps(self.slots, self.pole_pairs, self.coil_pitch, coil.index)
+            groups.setdefault((angle + (coil.sign < 0) * self.slots) % (2 * self.slots), []).append(coil)
+        return [tuple(coils) for coils in groups.values()]
 
     def with_turns(self, turns: Mapping[int, float]) -> WindingLayout:
         """The same winding with other turns in some coils: {index of the coil: turns relative to the design}.
@@ -197,6 +234,16 @@ def _best_pitch(slots: int, pole_pairs: int, layers: int) -> WindingLayout:
     pitches = range(1, ceil(slots / (2 * pole_pairs)) + 1, 3 - layers)
     layouts = (_layout(slots, pole_pairs, layers, pitch) for pitch in pitches)
     return max(layouts, key=lambda layout: round(layout.winding_factor(), 9))
+
+
+def _in_parts(coils: tuple[Coil, ...], count: int) -> list[tuple[Coil, ...]]:
+    """Equal parts of neighbouring coils."""
+    each = len(coils) // count
+    return [coils[k : k + each] for k in range(0, len(coils), each)]
+
+
+def _one_of(numbers: tuple[int, ...]) -> str:
+    return " or ".join(str(number) for number in numbers)
 
 
 def _halves(place: tuple[int, str]) -> list[tuple[int, str]]:

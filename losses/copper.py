@@ -39,6 +39,6 @@ def proximity_ratio(wound: WoundMachine) -> float:
     machine = wound.machine
     depth = machine.slot_bottom_radius - machine.shoe_top_radius
     width = 2 * part_areas(machine).half_slot / depth
-    wires = wound.turns * wound.strands * 6 * wound.coils_in_series / machine.slots
-    diameter_squared = 4 * wound.wire_area / pi
-    return pi**2 * MU_0**2 * diameter_squared**3 * wires**2 / (768 * wound.resistivity**2 * width**2)
+    wires = wound.design.turns * wound.design.strands * 6 * wound.coils_in_series / machine.slots
+    wire = wound.design.wire
+    return pi**2 * MU_0**2 * wire.copper_diameter**6 * wires**2 / (768 * wire.resistivity**2 * width**2)

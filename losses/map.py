@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import atan2, hypot, pi
 
 import numpy as np
+import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from electrical.dq import OperatingMap, Values
@@ -130,6 +131,7 @@ class PowerLosses:
     """Losses over torque and speed, all of one shape, a point or a plane; NaN where out of reach.
 
     torque [Nm], speed [rad/s, mechanical], copper, stator_iron, rotor_iron, magnet: [W], of any shape
+    circulating: in the copper, by the current round a delta, none in a star [W], of the shape of the torque
     """
 
     torque: Values
@@ -138,11 +140,12 @@ class PowerLosses:
     stator_iron: Values
     rotor_iron: Values
     magnet: Values
+    circulating: Values
 
     @property
     def total(self) -> Values:
         """All electrical losses [W], of the shape of the torque."""
-        return self.copper + self.stator_iron + self.rotor_iron + self.magnet
+        return self.copper + self.circulating + self.stator_iron + self.rotor_iron + self.magnet
 
     @property
     def mechanical(self) -> Values:
@@ -169,20 +172,23 @@ class PowerLosses:
         of its largest value.
         """
         axes, at = (self.torque[:, 0], self.speed[0]), [(torque, speed)]
-        tables = (self.copper, self.stator_iron, self.rotor_iron, self.magnet)
+        tables = (self.copper, self.stator_iron, self.rotor_iron, self.magnet, self.circulating)
         read = (RegularGridInterpolator(axes, table, bounds_error=False)(at)[0] for table in tables)
         return PowerLosses(np.float64(torque), np.float64(speed), *read)
 
 
-def power_losses(operating: OperatingMap, wound: WoundMachine, table: FieldLossTable) -> PowerLosses:
+def power_losses(
+    operating: OperatingMap, wound: WoundMachine, table: FieldLossTable, per_turn: xr.Dataset
+) -> PowerLosses:
     """Losses at the currents of an operating map, field weakening included.
 
     operating: torque, speed and peak phase currents i_d, i_q, for example of ``electrical`` ``operating_map``
-    wound: its copper has the resistivity of its temperature
+    wound: its copper has the resistivity of its temperature; per_turn: flux map of its cross-section (``FluxMap.data``)
     The magnets keep the temperature that the table was solved at.
     """
     frequency = wound.machine.pole_pairs * operating.speed / (2 * pi)
-    fields = table.at(wound.turns * operating.i_d, wound.turns * operating.i_q)
+    fields = table.at(*wound.ampere_turns(operating.i_d, operating.i_q))
     stator, rotor, magnet = (wound.active_length * loss for loss in fields.at(frequency))
     copper = copper_loss(wound.phase_resistance, operating.i_d, operating.i_q)
-    return PowerLosses(operating.torque, operating.speed, copper, stator, rotor, magnet)
+    circulating = wound.circulating_loss(per_turn, operating.i_d, operating.i_q, operating.speed)
+    return PowerLosses(operating.torque, operating.speed, copper, stator, rotor, magnet, circulating)

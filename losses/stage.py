@@ -110,14 +110,14 @@ def losses_stage(
     Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
     """
     law, wound = loss_law(inputs), winding.wound
-    largest = _LARGEST * wound.turns * winding.limits.current_peak
+    largest = _LARGEST * wound.equivalent_turns * winding.limits.current_peak
     resistivity = inputs.magnet_resistivity
     tasks = {
         f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid(largest)
     }
     found = workers.map("losses", losses_at_current, tasks)
     operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
-    losses = power_losses(operating, wound, table_of(largest, list(found.values())))
+    losses = power_losses(operating, wound, table_of(largest, list(found.values())), flux_map.data)
     return LossMap(
         plane_dataset(losses),
         law,

@@ -30,6 +30,7 @@ _SOURCES = 3  # solved currents that a start is interpolated from; the steel's c
 _ATTRIBUTES = {
     "psi_d": {"units": "Wb/m", "long_name": "d-axis flux linkage per turn and metre"},
     "psi_q": {"units": "Wb/m", "long_name": "q-axis flux linkage per turn and metre"},
+    "psi_0": {"units": "Wb/m", "long_name": "zero-sequence flux linkage per turn and metre"},
     "torque": {"units": "N m/m", "long_name": "torque per metre, ring average"},
     "l_dd": {"units": "H/m", "long_name": "incremental inductance d psi_d / d i_d per turn^2 and metre"},
     "l_dq": {"units": "H/m", "long_name": "incremental inductance d psi_d / d i_q per turn^2 and metre"},
@@ -105,6 +106,11 @@ def flux_and_torque(solution: FieldSolution) -> dict[str, float]:
     psi_d, psi_q = park(phase_flux_linkage(solution), *_electrical(solution))
     iterations = solution.newton.iterations
     return {"psi_d": float(psi_d), "psi_q": float(psi_q), "torque": arkkio_torque(solution), "iterations": iterations}
+
+
+def flux_torque_and_zero_sequence(solution: FieldSolution) -> dict[str, float]:
+    """What ``flux_and_torque`` reads, and psi_0 = (psi_A + psi_B + psi_C) / 3 [Wb/m per turn]."""
+    return flux_and_torque(solution) | {"psi_0": float(np.mean(phase_flux_linkage(solution)))}
 
 
 def flux_torque_and_inductances(solution: FieldSolution) -> dict[str, float]:
@@ -236,6 +242,7 @@ def mirrored(data: xr.Dataset) -> xr.Dataset:
 
     The winding is symmetric about the axis of phase A, the rotor about its d axis. With e = p theta - axis of phase A:
         psi_d(e, i_d, -i_q) = psi_d(-e, i_d, i_q),  psi_q and torque the same with the opposite sign
+    What has no angle (amplitudes of harmonics) is even in i_q.
     Raises FluxMapError when i_q does not start at zero or the angles are not their own mirror image (``map_angles``).
     """
     if data.iq.values[0] != 0.0:
@@ -244,7 +251,7 @@ def mirrored(data: xr.Dataset) -> xr.Dataset:
     image = image.assign_coords(angle=data.angle, iq=("iq", -image.iq.values, data.iq.attrs))
     odd = [name for name in ("psi_q", "torque", "l_dq", "l_qd") if name in data]
     image = image.assign({name: -image[name] for name in odd})
-    return xr.concat([image, data], dim="iq", combine_attrs="override")
+    return xr.concat([image, data], dim="iq", data_vars="minimal", combine_attrs="override")
 
 
 def _mirror_images(data: xr.Dataset) -> np.ndarray:

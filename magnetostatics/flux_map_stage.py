@@ -18,9 +18,18 @@ from scipy.interpolate import RegularGridInterpolator
 from geometry.family import MatchedMachine
 from geometry.machine import Machine
 from magnetostatics.case import FieldCase
-from magnetostatics.flux_map import CurrentGrid, map_angles, mirrored, operating_point, solve_angle, to_dataset
+from magnetostatics.flux_map import (
+    CurrentGrid,
+    flux_torque_and_zero_sequence,
+    map_angles,
+    mirrored,
+    operating_point,
+    solve_angle,
+    to_dataset,
+)
 from magnetostatics.mesh_error import torque_with_error
 from magnetostatics.model import FieldModel
+from magnetostatics.zero_sequence import with_zero_sequence, zero_sequence_inductance
 from tasks import Workers
 
 MARGIN = 1.05  # reach of the map over the largest ampere-turns of a winding: keeps them off the edge of the spline
@@ -55,7 +64,8 @@ class FluxMap:
     """Flux linkages and torque of a cross-section over currents and rotor angle, per turn and metre.
 
     data: psi_d, psi_q [Wb/m], torque [Nm/m] (ring average) over angle [rad], id, iq [A peak ampere-turns of one coil],
-        angles evenly over 60 electrical degrees, negative i_q by symmetry; see ``magnetostatics.flux_map``
+        angles evenly over 60 electrical degrees, negative i_q by symmetry; see ``magnetostatics.flux_map``.
+        psi_0 [Wb/m] over order, id, iq and l_0 [H/m per turn^2]: see ``magnetostatics.zero_sequence``
     pole_pairs; coils_in_series: of one phase; coil_pitch [slots]; coil_side_area: A_s [m^2]
     overload_ampere_turns: peak of one coil at which the error of the mesh is bounded [A]
     torque_error: that bound relative to the torque there; in the first rotor position, at the best current angle
@@ -89,8 +99,8 @@ class AngleTask:
 
 
 @dataclass(frozen=True)
-class ErrorTask:
-    """Torque with the bound of its mesh error at one rotor angle [rad] and current [A of one coil, peak]."""
+class PointTask:
+    """One rotor angle [rad] and current [A of one coil, peak]."""
 
     case: FieldCase
     machine: Machine
@@ -113,8 +123,10 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
     tasks = {f"angle {k}": AngleTask(case, machine, float(angle), currents) for k, angle in enumerate(angles)}
     rows = workers.map("flux map", solve_angle_task, tasks)
     solved = to_dataset(model, currents, angles.tolist(), list(rows.values()))
-    data = mirrored(with_end_leakage(solved, case.end_leakage))
-    error = ErrorTask(case, machine, float(angles[0]), *best_current(data, overload))
+    idle = PointTask(case, machine, float(angles[0]), 0.0, 0.0)
+    inductance = workers.map("zero sequence", zero_sequence_task, {"no current": idle})["no current"]
+    data = mirrored(with_zero_sequence(with_end_leakage(solved, case.end_leakage), inductance))
+    error = PointTask(case, machine, float(angles[0]), *best_current(data, overload))
     torque, off = workers.map("torque error", torque_error_task, {"overload": error})["overload"]
     layout = model.section.layout
     return FluxMap(
@@ -135,16 +147,23 @@ def with_end_leakage(data: xr.Dataset, share: float) -> xr.Dataset:
     idle = data.sel(iq=0.0).interp(id=0.0, method="cubic")
     kept = 1.0 - share
     torque = kept * (data.torque - idle.torque) + kept**2 * idle.torque
-    changed = {name: data[name] - share * idle[name] for name in ("psi_d", "psi_q")} | {"torque": torque}
+    linkages = [name for name in ("psi_d", "psi_q", "psi_0") if name in data]
+    changed = {name: data[name] - share * idle[name] for name in linkages} | {"torque": torque}
     return data.assign({name: one.transpose(*data[name].dims) for name, one in changed.items()})
 
 
 def solve_angle_task(task: AngleTask) -> dict[str, list[list[float]]]:
-    """psi_d, psi_q [Wb/m], torque [Nm/m] and iterations by name, (i_d, i_q), at one rotor angle."""
-    return solve_angle(kept_model(task.case, task.machine), task.angle, task.grid)
+    """psi_d, psi_q, psi_0 [Wb/m], torque [Nm/m] and iterations by name, (i_d, i_q), at one rotor angle."""
+    return solve_angle(kept_model(task.case, task.machine), task.angle, task.grid, flux_torque_and_zero_sequence)
 
 
-def torque_error_task(task: ErrorTask) -> tuple[float, float]:
+def zero_sequence_task(task: PointTask) -> float:
+    """L_0 [H/m per turn^2]."""
+    model = kept_model(task.case, task.machine)
+    return zero_sequence_inductance(model.solve(operating_point(model, task.angle, task.i_d, task.i_q)))
+
+
+def torque_error_task(task: PointTask) -> tuple[float, float]:
     """Torque and its bound [Nm/m]."""
     model = kept_model(task.case, task.machine)
     return torque_with_error(model, operating_point(model, task.angle, task.i_d, task.i_q))

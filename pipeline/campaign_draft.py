@@ -16,6 +16,7 @@ import numpy as np
 
 from drivetrain.outcome import Outcome
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.winding_connection import SERIES_STAR
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
 from geometry.magnetisation import RadialMagnetisation
@@ -163,8 +164,12 @@ class MachineBench(Bench):
 
     def draft(self, designed: Designed) -> Draft:
         wound = designed.winding.wound
-        if wound.coil_pitch != 1 or 3 * wound.coils_in_series != wound.machine.slots:
-            raise StudyError("the machine bench knows a coil on every tooth, all of a phase in series: use --dq.")
+        tooth_coils = wound.coil_pitch == 1 and 3 * wound.coils_in_series == wound.machine.slots
+        if not tooth_coils or wound.design.connection != SERIES_STAR:
+            raise StudyError(
+                "the machine bench knows a coil on every tooth, all of a phase in series and in star; this is "
+                f"{wound.design}: use --dq."
+            )
         tolerances = (
             _tolerance("remanence", "sigma_rel = 0.01", "supplier's certificate, +-2 %"),
             _tolerance("airgap_mm", "sigma = 0.02", "ground rotor and bore, +-0.04 mm"),
@@ -271,7 +276,7 @@ def _machine_device(designed: Designed) -> tuple[Entry, ...]:
         Entry("steel", f'"{designed.study.materials.steel}"'),
         _number("stacking_factor", 1.0, "the field of the design counts on solid steel"),
         _number("active_length_mm", wound.active_length / MILLIMETRE),
-        Entry("turns_per_coil", str(wound.turns)),
+        Entry("turns_per_coil", str(wound.design.turns)),
         Entry("coils_in_series_per_phase", str(wound.coils_in_series)),
         _number("phase_resistance_mohm_20degC", designed.resistance / 1e-3),
     )

@@ -171,7 +171,7 @@ _MACHINE: tuple[Node, ...] = (
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
-    Stage("winding", winding_stage, "turns, wires, final length", winding.files, remarks=winding.remarks),
+    Stage("winding", winding_stage, "wires, turns, connection, length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),

@@ -17,6 +17,7 @@ from drivetrain.outcome import Outcome, machine_envelope
 from drivetrain.output import Output, in_unit
 from electrical.braking_stage import BrakingOutcome, CopperHeat
 from electrical.magnets_stage import MagnetsOutcome
+from electrical.winding_connection import WindingConnection
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
 from export.stage import Package
@@ -30,16 +31,17 @@ from thermal.machine import MAGNETS
 from thermal.stage import HeatOutcome
 from uncertainty.budget import Budget, Uncertain
 from uncertainty.stage import Uncertainty
-from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM, written
+from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE, RPM, written
 
 DRAWING_PICTURE = "lamination"
 TABLE = "datasheet.csv"
 PLUS_MINUS = "plus_minus"  # column of the expanded uncertainty
 _TEXT = (
-    "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star; peak "
-    "means amplitude. The rated point is the torque at the nominal current density, at the speed up to which the full "
-    "current gives its torque. Behind ± stands the expanded uncertainty by mesh, fit and tolerances, which holds the "
-    f"number with about 95 % (see Uncertainty). {TABLE} holds the same rows."
+    "The machine that was chosen, by the results of the stages below. Phase values are of one phase of the star, or of "
+    "the equivalent star of a delta or of parallel paths: what a drive sees at the terminals; peak means amplitude. "
+    "The rated point is the torque at the nominal current density, at the speed up to which the full current gives its "
+    "torque. Behind ± stands the expanded uncertainty by mesh, fit and tolerances, which holds the number with about "
+    f"95 % (see Uncertainty). {TABLE} holds the same rows."
 )
 _THOUSAND_RPM = 1000 * RPM  # rad/s, at which data sheets state a back-EMF
 
@@ -170,19 +172,34 @@ def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Itera
 def winding_rows(
     package: Package, winding: WindingOutcome, inputs: WindingInputs, heat: CopperHeat, budget: Budget
 ) -> Iterator[Row]:
-    """What is wound, and its resistance."""
-    wound, layout = winding.wound, package.layout
-    yield Row("connection", "star", "", f"{layout.coils_in_series} coils of a phase in series")
+    """What is wound, how warm it may become, and its resistance."""
+    wound, layout, limits = winding.wound, package.layout, inputs.limits
+    connection = wound.design.connection
+    series = layout.coils_in_series // connection.paths
+    yield Row("connection", connection.closing.name, "", _closing_note(connection))
+    yield row(
+        "parallel paths", connection.paths, "", f"of a phase, {series} of its {layout.coils_in_series} coils each"
+    )
     yield Row("coil pitch", layout.coil_pitch, "slots")
     yield row("layers", layout.layers, "")
     yield row("winding factor", layout.winding_factor(), "", "fundamental")
-    yield row("turns", wound.turns, "", "of one coil")
-    yield row("wires in hand", wound.strands, "")
-    yield row("wire diameter", inputs.wire.copper_diameter, "mm", "bare copper")
+    yield row("turns", wound.design.turns, "", "of one coil")
+    yield row("wires in hand", wound.design.strands, "")
+    yield row("wire diameter", wound.design.wire.copper_diameter, "mm", "bare copper")
+    yield row("wire diameter", wound.design.wire.outer_diameter, "mm", "largest, with enamel (IEC 60317-0-1)")
     yield row("packing factor", winding.chosen.packing, "", "copper over the area of a coil side")
+    yield row(
+        "insulated fill", winding.chosen.insulated_fill, "", f"wires with enamel; limit {limits.insulated_fill:g}"
+    )
+    if connection.closing.circulates:
+        share = winding.chosen.circulating_share
+        yield row("loss round the delta", share, "percent", "of the copper loss, nominal current, base speed asked for")
+    yield Row("insulation class", inputs.insulation.letter, "", "IEC 60085")
+    yield row("hottest place of the winding", inputs.insulation.hottest, "degC", "permitted by that class")
     for temperature, factor in ((heat.cold, heat.cold_resistance), (heat.hot, heat.hot_resistance)):
-        at = f"{temperature:g} °C, direct current"
-        yield row("phase resistance", wound.phase_resistance * factor, "mOhm", at, budget.resistance)
+        resistance, at = wound.phase_resistance * factor, f"{temperature:g} °C, direct current"
+        yield row("phase resistance", resistance, "mOhm", at, budget.resistance)
+        yield row("resistance between terminals", 2 * resistance, "mOhm", at, budget.resistance)
 
 
 def constants(package: Package, winding: WindingOutcome, budget: Budget) -> Iterator[Row]:
@@ -219,9 +236,13 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
         yield row("largest power", chosen.maximum_power, "W", fastest)
     yield row("rated speed", rated.speed, "rpm", "base speed, or the largest of the study where that is lower")
     yield row("bus voltage", bus, "V", "direct")
-    yield row("peak phase current", chosen.current_peak, "A", f"amplitude, {overload}")
-    yield row("peak phase current", chosen.current_rms, "A", f"RMS, {overload}")
-    yield row("continuous phase current", rated.current_peak / sqrt(2), "A", f"RMS, {nominal}")
+    connection = chosen.design.connection
+    yield row("peak line current", chosen.current_peak, "A", f"amplitude, {overload}")
+    yield row("peak line current", chosen.current_rms, "A", f"RMS, {overload}")
+    yield row("peak coil current", float(connection.coil_current(chosen.current_rms)), "A", f"RMS, {overload}")
+    yield row("continuous line current", rated.current_peak / sqrt(2), "A", f"RMS, {nominal}")
+    limit = float(connection.phase_voltage(winding.limits.voltage_peak))
+    yield row("largest voltage across a phase", limit, "V", "peak, of the winding, by the bus voltage")
     speed = f"{full.speed / RPM:.0f} rpm"
     yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
 
@@ -231,7 +252,7 @@ def warm_rows(warm: HeatOutcome, budget: Budget) -> Iterator[Row]:
     slow, limits = warm.slow, warm.inputs.limits
     at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
     yield row("continuous torque", slow.torque, "Nm", at, budget.continuous_effort)
-    yield row("continuous phase current", slow.current / sqrt(2), "A", f"RMS, {at}")
+    yield row("continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}")
     yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
     yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
 
@@ -261,6 +282,8 @@ def loss_rows(
     yield row("power", losses.mechanical, "W", f"mechanical, {at}")
     cold = f"{steel.winding_temperature:g} °C, direct current"
     yield row("copper loss", losses.copper, "W", cold, budget.copper_loss)
+    if losses.circulating:
+        yield row("loss round the delta", losses.circulating, "W", f"{steel.winding_temperature:g} °C, third harmonic")
     yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
@@ -308,6 +331,15 @@ def _shown(group: Group) -> pd.DataFrame:
     if table[PLUS_MINUS].isna().all():
         return table.drop(columns=PLUS_MINUS)
     return table.assign(**{PLUS_MINUS: [plus_minus(one) for one in table[PLUS_MINUS]]})
+
+
+def _closing_note(connection: WindingConnection) -> str:
+    if connection.closing.circulates:
+        degrees = connection.closing.lag / DEGREE
+        return (
+            f"A ends where B begins; its equivalent star lags the phases of the winding by {degrees:.0f} ° electrical"
+        )
+    return "the star point is not led out"
 
 
 def _pattern(machine: Machine) -> str:

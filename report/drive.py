@@ -11,6 +11,7 @@ from drivetrain.output import Output
 from drivetrain.requirements import Requirements, Transmission, shaft_demand
 from electrical.dq import Envelope
 from electrical.drive_stage import DriveOutcome, Neighbour
+from electrical.winding_design import WindingDesign
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
 from figures.flux_map import Curve, field_envelope, flux_maps
@@ -39,7 +40,7 @@ def files(
     mtpa, mtpv = Curve(found.mtpa_direct, found.mtpa_quadrature), Curve(found.mtpv_direct, found.mtpv_quadrature)
     machine, limits = winding.wound.on_map(flux_map.data), winding.limits
     yield figure_file("flux_map", flux_maps(machine, mtpa, mtpv, found.envelope, limits.current_peak))
-    title = _name(found.neighbour(winding.wound.turns))
+    title = _name(found.neighbour(winding.chosen.design))
     yield figure_file("field_envelope", field_envelope(found.envelope, found.constant_envelope, title=title))
     demand = _demand(required, transmission, output)
     yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), demand))
@@ -87,7 +88,7 @@ def envelope_table(found: DriveOutcome) -> pd.DataFrame:
 
 def windings_table(found: DriveOutcome, winding: WindingOutcome) -> pd.DataFrame:
     """Neighbouring windings, values of the flux map beside those of constant parameters."""
-    return pd.DataFrame([_row(one, winding.wound.turns) for one in found.neighbours])
+    return pd.DataFrame([_row(one, winding.chosen.design) for one in found.neighbours])
 
 
 def demands(required: Requirements, output: Output) -> tuple[WheelPoint, ...]:
@@ -100,12 +101,12 @@ def demands(required: Requirements, output: Output) -> tuple[WheelPoint, ...]:
 
 
 def _text(found: DriveOutcome, winding: WindingOutcome) -> str:
-    pair = found.neighbour(winding.wound.turns)
+    pair = found.neighbour(winding.chosen.design)
     field, constant = pair.field, pair.constant
     by_constant = found.by_constant
-    same = by_constant.turns == field.turns
+    same = by_constant.design == field.design
     comparison = "constant parameters would choose the same winding" if same else (
-        f"constant parameters would choose {by_constant.turns} turns of {by_constant.strands} wires"
+        f"constant parameters would choose {by_constant.design}"
     )  # fmt: skip
     return (
         f"At full current the flux map gives {winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm, the mean "
@@ -137,10 +138,15 @@ def _named(column: str, model: str) -> str:
 
 def _envelopes(found: DriveOutcome, winding: WindingOutcome) -> tuple[dict[str, Envelope], str]:
     """Envelopes of the chosen winding, its nearest and the one without current limit by name, and the chosen name."""
-    turns, free = winding.wound.turns, winding.unrestricted
-    near = {turns + step for step in range(-_SHOWN, _SHOWN + 1)} | ({free.turns} if free is not None else set())
-    shown = [one for one in found.neighbours if one.field.turns in near]
-    return {_name(one): one.envelope for one in shown}, _name(found.neighbour(turns))
+    chosen, free = winding.chosen.design, winding.unrestricted
+    wanted = {chosen} | ({free.design} if free is not None else set())
+    shown = [one for one in found.neighbours if one.field.design in wanted or _beside(one.field.design, chosen)]
+    return {_name(one): one.envelope for one in shown}, _name(found.neighbour(chosen))
+
+
+def _beside(design: WindingDesign, chosen: WindingDesign) -> bool:
+    """Of the same gauge and connection, with about as many turns."""
+    return design.is_like(chosen) and abs(design.turns - chosen.turns) <= _SHOWN
 
 
 def _demand(required: Requirements, transmission: Transmission, output: Output) -> tuple[RequiredPoint, ...]:
@@ -149,12 +155,12 @@ def _demand(required: Requirements, transmission: Transmission, output: Output) 
 
 
 def _name(pair: Neighbour) -> str:
-    return f"{pair.field.turns} turns, {pair.field.strands} wires"
+    return f"{pair.field.turns} turns, {pair.field.strands} wires, {pair.field.design.connection}"
 
 
-def _row(pair: Neighbour, turns: int) -> dict[str, object]:
-    row = drawn(pair.field, ("turns", "strands", "current_rms_A"))
+def _row(pair: Neighbour, chosen: WindingDesign) -> dict[str, object]:
+    row = {"connection": str(pair.field.design.connection), **drawn(pair.field, ("turns", "strands", "current_rms_A"))}
     for name in _BOTH:
         row[_named(name, "field")] = drawn(pair.field, (name,))[name]
         row[_named(name, "constant")] = drawn(pair.constant, (name,))[name]
-    return {**row, "chosen": pair.field.turns == turns}
+    return {**row, "chosen": pair.field.design == chosen}

@@ -90,8 +90,8 @@ def designs_table(first: FirstDesign, outcome: Outcome, winding: WindingOutcome,
     radii = (one.wound.machine.stator_outer_radius / MILLIMETRE for one in (first.winding, winding))
     rows.append(_both(labelled("active length", "mm"), lengths))
     rows.append(_both(labelled("stator outer radius", "mm"), radii))
-    rows.append(_both("turns of a coil", (one.wound.turns for one in (first.winding, winding))))
-    rows.append(_both("wires in hand", (one.wound.strands for one in (first.winding, winding))))
+    rows.append(_both("turns of a coil", (one.chosen.turns for one in (first.winding, winding))))
+    rows.append(_both("wires in hand", (one.chosen.strands for one in (first.winding, winding))))
     return pd.DataFrame(rows)
 
 

@@ -47,7 +47,12 @@ def dataset(found: LossMap) -> xr.Dataset:
     """The map over torque and speed as a labelled data set in drawing units."""
     losses, names = found.losses, ("torque_Nm", "speed_rpm")
     values = {"copper_W": losses.copper, "stator_iron_W": losses.stator_iron, "rotor_iron_W": losses.rotor_iron}
-    values |= {"magnet_W": losses.magnet, "total_W": losses.total, "efficiency": losses.efficiency}
+    values |= {
+        "magnet_W": losses.magnet,
+        "circulating_W": losses.circulating,
+        "total_W": losses.total,
+        "efficiency": losses.efficiency,
+    }
     axes = dict(zip(names, (losses.torque[:, 0], losses.speed[0] / RPM), strict=True))
     return xr.Dataset({name: (names, value) for name, value in values.items()}, axes)
 
@@ -62,5 +67,4 @@ def _row(sense: str, best: BestPoint) -> dict[str, object]:
 
 
 def _title(found: LossMap, winding: WindingOutcome) -> str:
-    wound = winding.wound
-    return f"{wound.turns} turns, {wound.strands} wires; iron loss data of {found.law.grade} for {found.steel}"
+    return f"{winding.chosen.design}; iron loss data of {found.law.grade} for {found.steel}"

@@ -8,6 +8,7 @@ from functools import partial
 
 import pandas as pd
 
+from electrical.winding_connection import Delta, Star
 from electrical.winding_stage import WindingOutcome
 from export.dxf import laminations, write_dxf
 from export.motulator import parameter_text
@@ -40,14 +41,17 @@ _FILES = {
 def files(package: Package, winding: WindingOutcome, sheet: DataSheet) -> Iterator[File]:
     """Data sheet, winding, costs, drawing, and what the workshop and other tools read."""
     yield table_file(TABLE, sheet.table)
-    yield table_file(CONNECTIONS, connections_table(package))
+    yield table_file(CONNECTIONS, connections_table(package, winding))
     yield table_file(COSTS, costs_table(package))
     drawing = lamination(winding.wound.machine, package.layout)
     yield figure_file(DRAWING_PICTURE, drawing)
     yield drawing_file(DRAWING, drawing)
-    yield figure_file(DIAGRAM, winding_diagram(package.layout, package.connections, _diagram_title(winding)))
+    yield figure_file(
+        DIAGRAM, winding_diagram(package.layout, package.connections, _closing(winding), _diagram_title(winding))
+    )
     yield from _for_the_workshop(winding)
-    yield text_file(PARAMETERS, parameter_text(winding.constant, package.unsaturated))
+    connection = str(winding.chosen.design.connection)
+    yield text_file(PARAMETERS, parameter_text(winding.constant, package.unsaturated, connection))
 
 
 def _for_the_workshop(winding: WindingOutcome) -> Iterator[File]:
@@ -58,7 +62,7 @@ def _for_the_workshop(winding: WindingOutcome) -> Iterator[File]:
     yield File(SOLIDS, partial(write_step, parts=active_parts(outline), length=length))
 
 
-def section(package: Package) -> Section:
+def section(package: Package, winding: WindingOutcome) -> Section:
     """How the coils are connected, and what the material costs."""
     return Section(
         "Winding and parts to order",
@@ -66,11 +70,12 @@ def section(package: Package) -> Section:
             Picture(
                 picture_name(DIAGRAM),
                 "The stator unrolled, seen from outside with the leads at the top: slots along x, numbers of the teeth "
-                "on them, of the coils below; arrows along a positive phase current.",
+                "on them, of the coils below; arrows along a positive phase current. Leads at the same "
+                "letter are joined.",
             ),
             Table(
-                connections_table(package),
-                "Connection of the coils, phase by phase from the terminal to the star point; leads at the end of the "
+                connections_table(package, winding),
+                "Connection of the coils, path by path from the terminal where a phase begins; leads at the end of the "
                 "stack that the cross-section shows. All coils are wound alike, the reversed ones are connected the "
                 f"other way round. In {CONNECTIONS} too.",
             ),
@@ -80,22 +85,28 @@ def section(package: Package) -> Section:
     )
 
 
-def connections_table(package: Package) -> pd.DataFrame:
+def connections_table(package: Package, winding: WindingOutcome) -> pd.DataFrame:
     """One coil a row, in the order of the current."""
-    return pd.DataFrame([_connection_row(one) for one in package.connections])
+    return pd.DataFrame([_connection_row(one, _closing(winding)) for one in package.connections])
 
 
-def _connection_row(one: Connection) -> dict[str, object]:
-    phase = PHASE_NAMES[one.phase]
+def _closing(winding: WindingOutcome) -> Star | Delta:
+    return winding.chosen.design.connection.closing
+
+
+def _connection_row(one: Connection, closing: Star | Delta) -> dict[str, object]:
+    phase, terminal = PHASE_NAMES[one.phase], closing.terminal_at_end(one.phase)
+    end = "star point" if terminal is None else f"terminal {PHASE_NAMES[terminal]}"
     return {
         "coil": one.coil,
         "tooth": " ".join(str(tooth) for tooth in one.teeth),
         "phase": phase,
+        "path": one.path + 1,
         "direction": "reversed" if one.reversed else "forward",
         "from slot": one.from_slot,
         "to slot": one.to_slot,
         "connected from": f"terminal {phase}" if one.previous is None else f"coil {one.previous}",
-        "connected to": "star point" if one.following is None else f"coil {one.following}",
+        "connected to": end if one.following is None else f"coil {one.following}",
     }
 
 
@@ -115,5 +126,6 @@ def _costs_caption(package: Package) -> str:
 
 
 def _diagram_title(winding: WindingOutcome) -> str:
-    wound = winding.wound
-    return f"{wound.coils_in_series} coils in series a phase, {wound.turns} turns of {wound.strands} wires each"
+    design = winding.chosen.design
+    series = winding.wound.coils_in_series // design.connection.paths
+    return f"{series} in series in each path, coils of {design}"

@@ -5,13 +5,26 @@ from __future__ import annotations
 from math import sqrt
 
 from electrical.braking_stage import CopperHeat
-from electrical.winding_selection import WindingLimits, Wire
+from electrical.winding_connection import Delta, Star
+from electrical.winding_selection import WindingLimits
 from electrical.winding_stage import WindingInputs
+from electrical.wire import Wire
 from losses.stage import LossInputs
 from magnetostatics.flux_map_stage import ANGLES, CURRENTS, FluxMapGrid
 from materials.conductor import Conductor
+from materials.enamelled_wire import gauge
+from materials.insulation import InsulationClass, insulation_class
 from study.magnet_choice import magnet_resistivity
 from study.schema import Study
+
+COLD = 20.0  # degC
+CLASS = "F"  # of the insulation, where the study names none: usual for enamelled wire in small machines (estimate)
+# Wires with enamel over the coil side: a space factor of 0.7 in squares d x d times pi/4, what winding by hand or
+# needle reaches (estimate; the liner is not taken off the coil side, so that it is in this number too).
+INSULATED_FILL = 0.55
+CIRCULATING_SHARE = 0.05  # of the copper loss; half of it is what the continuous torque falls by (estimate)
+PATHS, CONNECTIONS = (1,), ("star",)  # where the study allows no others: all coils of a phase in series, in star
+_CLOSINGS: dict[str, Star | Delta] = {"star": Star(), "delta": Delta()}
 
 
 def flux_map_grid(study: Study) -> FluxMapGrid:
@@ -25,11 +38,14 @@ def flux_map_grid(study: Study) -> FluxMapGrid:
 
 
 def winding_inputs(study: Study) -> WindingInputs:
-    """Wire, limits and length of the winding."""
-    section = study.winding_selection.si
+    """Wires, connections, limits and length of the winding."""
+    section = study.winding_selection
     return WindingInputs(
-        wire=Wire(section.wire_diameter, winding_resistivity(study)),
+        wires=wires(study),
+        paths=section.parallel_paths or PATHS,
+        closings=tuple(_CLOSINGS[name] for name in section.connections or CONNECTIONS),
         limits=winding_limits(study),
+        insulation=winding_class(study),
         nominal_density=study.sweep.si.j_nominal_rms,
         longest=study.match.si.length_max,
         damping_asked=study.match.enforce_damping,
@@ -47,13 +63,25 @@ def loss_inputs(study: Study) -> LossInputs:
     )
 
 
-COLD, HOT = 20.0, 120.0  # degC; a winding of class B (130 degC, IEC 60085) less ten for its hottest place
+def wires(study: Study) -> tuple[Wire, ...]:
+    """The allowed gauges, thinnest first, with copper at the temperature of the winding.
+
+    Raises MaterialError for a diameter that is not sold.
+    """
+    section, resistivity = study.winding_selection.si, winding_resistivity(study)
+    sizes = [gauge(diameter, section.enamel_grade) for diameter in sorted(set(section.wire_diameters))]
+    return tuple(Wire(one.copper_diameter, one.outer_diameter, resistivity) for one in sizes)
+
+
+def winding_class(study: Study) -> InsulationClass:
+    """The thermal class of the winding's insulation."""
+    return insulation_class(study.winding_selection.insulation_class or CLASS)
 
 
 def copper_heat(study: Study) -> CopperHeat:
-    """How the resistance of the copper changes between a cold and a hot machine."""
-    now, copper = winding_resistivity(study), winding_conductor(study)
-    return CopperHeat(COLD, HOT, *(float(copper.resistivity(one)) / now for one in (COLD, HOT)))
+    """How the resistance of the copper changes between a cold machine and one as warm as its insulation allows."""
+    now, copper, hot = winding_resistivity(study), winding_conductor(study), winding_class(study).mean
+    return CopperHeat(COLD, hot, *(float(copper.resistivity(one)) / now for one in (COLD, hot)))
 
 
 def winding_limits(study: Study) -> WindingLimits:
@@ -65,6 +93,10 @@ def winding_limits(study: Study) -> WindingLimits:
         overload_current_density=study.sweep.si.j_overload_rms,
         dc_voltage=section.dc_bus_voltage,
         maximum_speed=section.speed_max,
+        insulated_fill=INSULATED_FILL if section.insulated_fill_max is None else section.insulated_fill_max,
+        circulating_share=(
+            CIRCULATING_SHARE if section.delta_circulating_loss_max is None else section.delta_circulating_loss_max
+        ),
         phase_current_rms=section.phase_current_max_rms,
     )
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from materials.magnet import ROOM_TEMPERATURE, Magnet
-from study.inputs_electrical import winding_conductor
+from study.inputs_electrical import winding_class, winding_conductor
 from study.inputs_magnets import hottest
 from study.magnet_choice import design_magnet, magnet_grade
 from study.schema import Study
@@ -14,7 +14,6 @@ from thermal.air import Film, GivenFilm, StillAir
 from thermal.cooling import (
     AMBIENT,
     CASING_GAP,
-    CLASS_F,
     EMISSIVITY,
     FILLER_CONDUCTIVITY,
     LINER_CONDUCTIVITY,
@@ -33,7 +32,7 @@ def heat_inputs(study: Study) -> HeatInputs:
     return HeatInputs(
         cooling(study),
         HeatLimits(
-            _or(section.copper_temperature_max, CLASS_F),
+            winding_class(study).hottest,
             _or(section.magnet_temperature_max, hottest(study)),
         ),
         warming_magnet(study),
@@ -44,10 +43,8 @@ def heat_inputs(study: Study) -> HeatInputs:
 
 def cooling(study: Study) -> Cooling:
     """What leads the heat away beside the machine itself."""
-    section, winding = study.thermal.si, study.winding_selection.si
+    section = study.thermal.si
     return Cooling(
-        wire_diameter=winding.wire_diameter,
-        wire_insulation=winding.wire_insulation,
         ambient=_or(section.ambient_temperature, AMBIENT),
         film=_film(section.film, _or(section.emissivity, EMISSIVITY)),
         mount=_or(section.mount_conductance, 0.0),

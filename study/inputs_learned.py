@@ -28,10 +28,9 @@ def field_case_as_learned(study: Study, learned: Learned) -> FieldCase:
 
 
 def winding_inputs_as_learned(study: Study, learned: Learned) -> WindingInputs:
-    """The wire with the resistance of the winding on the bench."""
-    inputs = winding_inputs(study)
-    resistivity = inputs.wire.resistivity * learned.of(RESISTANCE)
-    return replace(inputs, wire=replace(inputs.wire, resistivity=resistivity))
+    """The wires with the resistance of the winding on the bench."""
+    inputs, factor = winding_inputs(study), learned.of(RESISTANCE)
+    return replace(inputs, wires=tuple(replace(one, resistivity=factor * one.resistivity) for one in inputs.wires))
 
 
 def loss_inputs_as_learned(study: Study, learned: Learned) -> LossInputs:

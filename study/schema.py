@@ -213,9 +213,7 @@ class SweepSection(Section):
     @field_validator("slots", "stator_diameters_mm", mode="after")
     @classmethod
     def _named_once(cls, values: tuple[float, ...]) -> tuple[float, ...]:
-        if len(set(values)) < len(values):
-            raise ValueError("names a value twice; give each one once")
-        return values
+        return _each_once(values)
 
 
 SaturationReading = Literal["aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period"]
@@ -616,15 +614,34 @@ class PrintedMachineSection(Section):
 
 
 class WindingSelectionSection(Section):
-    """Wire, supply and limits from which turns and strands are chosen (thesis eqs 3.119-3.120)."""
+    """Wires, supply and limits from which turns, strands and connection are chosen (thesis eqs 3.119-3.120)."""
 
-    wire_diameter_mm: Annotated[float, Quantity("copper diameter of one wire", 0.02, 10)]
-    wire_insulation_mm: Annotated[float, Quantity("insulation thickness of one wire", 0, 1)]
+    wire_diameters_mm: Annotated[
+        tuple[float, ...], Listed, Field(min_length=1), Quantity("copper diameters of the allowed wires", 0.1, 2)
+    ]
+    enamel_grade: Annotated[int, Quantity("grade of the enamel, IEC 60317-0-1", 1, 2)]
     packing_tolerance: Annotated[float, Quantity("accepted excess over the packing factor, relative", 0, 0.3)]
     dc_bus_voltage_V: Annotated[float, Quantity("voltage of the DC bus", 1, 2000)]
     phase_current_max_rms_A: Annotated[float, Quantity("RMS phase current that the power electronics allow", 0.1, 1e4)]
     speed_max_rpm: Annotated[float, Quantity("largest speed of the torque-speed map", 10, 2e5)]
     winding_temperature_degC: Annotated[float, Quantity("temperature of the winding", -50, 300)]
+    # optional: what else may be chosen, and what holds it back; defaults in ``study.inputs_electrical``
+    parallel_paths: Annotated[
+        tuple[int, ...] | None, Listed, Field(min_length=1), Quantity("allowed numbers of parallel paths", 1, 100)
+    ] = None
+    connections: Annotated[tuple[Literal["star", "delta"], ...] | None, Listed, Field(min_length=1)] = None
+    insulated_fill_max: Annotated[
+        float | None, Quantity("share of a coil side that the wires fill with their enamel", 0.01, 0.9)
+    ] = None
+    delta_circulating_loss_max: Annotated[
+        float | None, Quantity("loss by the current round a delta over the copper loss", 0, 1)
+    ] = None
+    insulation_class: Literal["A", "E", "B", "F", "H", "N"] | None = None
+
+    @field_validator("wire_diameters_mm", "parallel_paths", "connections", mode="after")
+    @classmethod
+    def _named_once(cls, values: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
+        return None if values is None else _each_once(values)
 
 
 class ThermalSection(Section):
@@ -632,9 +649,6 @@ class ThermalSection(Section):
     ``thermal.cooling``."""
 
     ambient_temperature_degC: Annotated[float | None, Quantity("temperature of the surroundings", -60, 200)] = None
-    copper_temperature_max_degC: Annotated[
-        float | None, Quantity("hottest place of the winding, by its insulation class", 50, 400)
-    ] = None
     magnet_temperature_max_degC: Annotated[float | None, Quantity("warmest magnets", 50, 400)] = None
     remanence_temperature_coefficient_per_K: Annotated[
         float | None, Quantity("reversible temperature coefficient of the remanence", -0.01, 0)
@@ -716,6 +730,12 @@ class Study(Section):
     def path(self) -> Path:
         """The file that the study was read from."""
         return self._path
+
+
+def _each_once(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    if len(set(values)) < len(values):
+        raise ValueError("names a value twice; give each one once")
+    return values
 
 
 def _require_order(section: Section, low_key: str, high_key: str, equal_allowed: bool = False) -> None:

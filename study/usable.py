@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import product
-from math import pi
 
 from drivetrain.four_bar import LinkageError
 from geometry.checks import check_machine
@@ -17,10 +16,12 @@ from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from geometry.mesh_size import check_mesh_size
+from geometry.winding import star_of_slots
 from materials.errors import MaterialError
 from materials.library import load_steel
 from study.chain import drives, searches_linkage
 from study.errors import StudyError
+from study.inputs_electrical import winding_limits, wires
 from study.inputs_linkage import linkage_search, stated_hardpoints
 from study.inputs_machine import machine_family, mesh_density
 from study.inputs_vehicle import ride_case
@@ -35,7 +36,16 @@ FEWEST_DIAMETERS = 4  # a quadratic through three points has no residual, so tha
 
 def check_study(study: Study) -> None:
     """Raise StudyError with one sentence for the first thing that would stop a run of the whole study."""
-    for check in (check_diameters, check_windings, check_steel, check_magnets, check_sweep, check_libraries):
+    for check in (
+        check_diameters,
+        check_windings,
+        check_paths,
+        check_wires,
+        check_steel,
+        check_magnets,
+        check_sweep,
+        check_libraries,
+    ):
         check(study)
 
 
@@ -126,14 +136,38 @@ def _steps(low: float, high: float, count: int) -> list[float]:
     return [low + (high - low) * k / (count - 1) for k in range(count)]
 
 
+def check_wires(study: Study) -> None:
+    """Every wire must be one that is sold."""
+    try:
+        wires(study)
+    except MaterialError as error:
+        raise StudyError(f"{study.path}: winding_selection.wire_diameters_mm, {sentence_part(error)}.") from error
+
+
+def check_paths(study: Study) -> None:
+    """Every number of parallel paths must be possible with one of the slot counts."""
+    layouts = [star_of_slots(slots, study.machine.poles // 2, study.winding.layers, study.winding.coil_pitch)
+               for slots in study.sweep.slots]  # fmt: skip
+    possible = sorted({number for layout in layouts for number in layout.path_numbers})
+    for number in study.winding_selection.parallel_paths or ():
+        if number not in possible:
+            raise StudyError(
+                f"{study.path}: winding_selection.parallel_paths = {number} are not equal by the star of slots, with "
+                f"sweep.slots = {list(study.sweep.slots)} and machine.poles = {study.machine.poles}; take some of "
+                f"{possible}."
+            )
+
+
 def _check_wire(study: Study, area: float) -> None:
     """One turn of one wire must fit the largest half slot of the sweep [m^2] (thesis eq. 3.119)."""
-    chosen, packing = study.winding_selection.si, study.winding.packing_factor
-    if pi / 4 * chosen.wire_diameter**2 > packing * (1 + chosen.packing_tolerance) * area:
+    limits, thinnest = winding_limits(study), wires(study)[0]
+    bare = limits.largest_packing * area / thinnest.area
+    if min(bare, limits.insulated_fill * area / (thinnest.area + thinnest.enamel_area)) < 1:
         raise StudyError(
-            f"{study.path}: winding_selection.wire_diameter_mm = {study.winding_selection.wire_diameter_mm:g} fits no "
-            f"slot of the sweep, a coil side has {area / SQUARE_MILLIMETRE:.3g} mm2 at most and winding.packing_factor "
-            f"= {packing:g} of that is copper; take a thinner wire."
+            f"{study.path}: no wire of winding_selection.wire_diameters_mm = "
+            f"{list(study.winding_selection.wire_diameters_mm)} fits a slot of the sweep, a coil side has "
+            f"{area / SQUARE_MILLIMETRE:.3g} mm2 at most, winding.packing_factor = {limits.packing_limit:g} of that is "
+            f"copper and {limits.insulated_fill:g} with enamel; take a thinner wire."
         )
 
 

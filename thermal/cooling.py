@@ -9,7 +9,6 @@ from thermal.slot import Liner
 from units import MILLIMETRE
 
 AMBIENT = 40.0  # degC, largest temperature of the coolant for which a rating counts (IEC 60034-1)
-CLASS_F = 155.0  # degC, hottest place of an insulation of class F (IEC 60085)
 MAGNET_LIMIT = 120.0  # degC, working temperature of sintered NdFeB with the letter H (makers' data sheets)
 EMISSIVITY = 0.9  # painted or anodised; bare machined aluminium 0.05 to 0.1 (Incropera, Table A.11)
 FILLER_CONDUCTIVITY = 0.2  # W/(m K), unfilled varnish or epoxy; 0.03 where nothing is impregnated, to 1 where potted
@@ -28,11 +27,8 @@ class Cooling:
     mount: conductance from the casing to what it is mounted on [W/K], 0 where nothing is known
     filler_conductivity: of what fills the slot between the wires [W/(m K)]; liner: of the slot
     casing_gap: gap of air that stands for the contact of laminations and casing [m]
-    wire_diameter: of the copper of one wire [m]; wire_insulation: thickness of its enamel [m]
     """
 
-    wire_diameter: float
-    wire_insulation: float
     ambient: float = AMBIENT
     film: Film = StillAir(EMISSIVITY)
     mount: float = 0.0
@@ -45,5 +41,5 @@ class Cooling:
 class HeatLimits:
     """copper: hottest place of the winding [degC]; magnets: their mean [degC]."""
 
-    copper: float = CLASS_F
+    copper: float
     magnets: float = MAGNET_LIMIT

@@ -1,4 +1,4 @@
-"""Heat in iron and magnets at a torque and a speed, where the steel has loss data, and where it has none."""
+"""Heat by the turning field at a torque and a speed, where the steel has loss data, and where it has none."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ from losses.map import PowerLosses
 
 
 @dataclass(frozen=True, eq=False)
-class IronAndMagnets:
-    """stator: its iron [W], any shape; rotor: its iron [W], that shape; magnets [W], that shape."""
+class FieldHeat:
+    """stator: its iron [W], any shape; rotor: its iron [W], that shape; magnets [W], that shape; copper: by the current
+    round a delta [W], that shape."""
 
     stator: np.ndarray
     rotor: np.ndarray
     magnets: np.ndarray
+    copper: np.ndarray
 
     @property
-    def mean(self) -> IronAndMagnets:
+    def mean(self) -> FieldHeat:
         """Over all points, scalars."""
-        return IronAndMagnets(*(np.mean(one) for one in (self.stator, self.rotor, self.magnets)))
+        return FieldHeat(*(np.mean(one) for one in (self.stator, self.rotor, self.magnets, self.copper)))
 
 
 class FieldLoss:
@@ -29,7 +31,7 @@ class FieldLoss:
 
     known: bool
 
-    def at(self, torque: np.ndarray, speed: np.ndarray) -> IronAndMagnets:
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> FieldHeat:
         """torque [Nm], speed of the rotor [rad/s]: any signs, arrays of shapes that broadcast."""
         raise NotImplementedError
 
@@ -46,16 +48,16 @@ class MappedLoss(FieldLoss):
     plane: PowerLosses
     known = True
 
-    def at(self, torque: np.ndarray, speed: np.ndarray) -> IronAndMagnets:
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> FieldHeat:
         """See ``FieldLoss``: torque [Nm], speed [rad/s], arrays of shapes that broadcast."""
         torques, speeds = self.plane.torque[:, 0], self.plane.speed[0]
         motoring = torques >= 0
         points = np.stack(np.broadcast_arrays(np.abs(torque), np.abs(speed)), axis=-1)
         points = np.minimum(points, [torques[-1], speeds[-1]])
-        tables = (self.plane.stator_iron, self.plane.rotor_iron, self.plane.magnet)
+        tables = (self.plane.stator_iron, self.plane.rotor_iron, self.plane.magnet, self.plane.circulating)
         axes = (torques[motoring], speeds)
         found = (RegularGridInterpolator(axes, _continued(one[motoring]))(points) for one in tables)
-        return IronAndMagnets(*(one.reshape(points.shape[:-1]) for one in found))
+        return FieldHeat(*(one.reshape(points.shape[:-1]) for one in found))
 
 
 @dataclass(frozen=True)
@@ -64,10 +66,10 @@ class NoLossData(FieldLoss):
 
     known = False
 
-    def at(self, torque: np.ndarray, speed: np.ndarray) -> IronAndMagnets:
+    def at(self, torque: np.ndarray, speed: np.ndarray) -> FieldHeat:
         """Nothing; torque [Nm] and speed [rad/s], arrays that broadcast."""
         nothing = np.zeros(np.broadcast_shapes(np.shape(torque), np.shape(speed)))
-        return IronAndMagnets(nothing, nothing, nothing)
+        return FieldHeat(nothing, nothing, nothing, nothing)
 
 
 def _continued(table: np.ndarray) -> np.ndarray:

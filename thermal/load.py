@@ -12,7 +12,7 @@ from electrical.flux_map_machine import FluxMapMachine
 from losses.copper import copper_loss, proximity_ratio
 from materials.conductor import Conductor
 from materials.magnet import Magnet
-from thermal.field_loss import FieldLoss, IronAndMagnets
+from thermal.field_loss import FieldHeat, FieldLoss
 from thermal.machine import CASING, COPPER_HEAT, ENDS, MAGNETS, ROTOR, SLOT, TEETH, YOKE, CooledMachine, yoke_share
 from thermal.network import Heat, Network, Temperatures
 
@@ -117,13 +117,13 @@ class TorqueHistory:
 class LoadedMachine:
     """A cooled machine with what flows in it, a ``Body``.
 
-    field: losses in iron and magnets, scalars; friction: of gears and bearings, into the casing [W]
+    field: losses by the turning field, scalars; friction: of gears and bearings, into the casing [W]
     """
 
     machine: CooledMachine
     copper: HotCopper
     loading: Loading
-    field: IronAndMagnets
+    field: FieldHeat
     friction: float
 
     def network(self, temperature: Temperatures) -> Network:
@@ -132,7 +132,8 @@ class LoadedMachine:
 
     def heat(self, temperature: Temperatures) -> Heat:
         """Of every part [W]; temperature [degC]. The wires in the slot and in the end windings have resistances of
-        their own; iron loss counts in proportion to the mass of teeth and yoke."""
+        their own; iron loss counts in proportion to the mass of teeth and yoke, and what circulates in a delta as at
+        the temperature of the loss map."""
         wound = self.machine.wound
         ends, yoke = wound.end_turn_share, yoke_share(wound.machine)
         square, fast = self.loading.squares(temperature[MAGNETS])
@@ -140,8 +141,8 @@ class LoadedMachine:
         direct = copper_loss(wound.phase_resistance, 0.0, square**0.5)
         stirred = proximity_ratio(wound) * copper_loss(wound.phase_resistance, 0.0, fast**0.5)
         return {
-            SLOT: (1 - ends) * (direct * slot + stirred / slot),
-            ENDS: ends * direct * outside,
+            SLOT: (1 - ends) * (direct * slot + stirred / slot + float(self.field.copper)),
+            ENDS: ends * (direct * outside + float(self.field.copper)),
             TEETH: (1 - yoke) * float(self.field.stator),
             YOKE: yoke * float(self.field.stator),
             ROTOR: float(self.field.rotor),

@@ -26,7 +26,7 @@ from geometry.machine import Machine
 from thermal.air import Air, air_gap_film, cylinder_surface, end_space_film
 from thermal.cooling import Cooling
 from thermal.network import Link, Network, Node, Temperatures
-from thermal.slot import MEAN_OF_SLAB, Filling, SlotPaths, enamel_share, equal_area_perimeter, slot_paths
+from thermal.slot import MEAN_OF_SLAB, Filling, SlotPaths, equal_area_perimeter, slot_paths
 
 SLOT, ENDS, TEETH, YOKE, CASING = "slot copper", "end windings", "teeth", "yoke", "casing"
 MAGNETS, ROTOR, END_AIR = "magnets", "rotor and shaft", "air in the ends"
@@ -91,7 +91,7 @@ class CooledMachine:
         """What lies in the slots."""
         machine, wound, cooling = self.wound.machine, self.wound, self.cooling
         copper = self._sides * wound.copper_area / (2 * machine.slots * machine.half_slot_area)
-        enamel = enamel_share(copper, cooling.wire_diameter, cooling.wire_insulation)
+        enamel = copper * wound.design.wire.enamel_area / wound.design.wire.area
         return Filling(copper, enamel, COPPER_CONDUCTIVITY, cooling.filler_conductivity)
 
     def network(self, temperature: Temperatures) -> Network:

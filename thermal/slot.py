@@ -54,14 +54,6 @@ class Filling:
         return around * ((1 + v) * copper + rest * around) / (rest * copper + (1 + v) * around)
 
 
-def enamel_share(copper: float, wire_diameter: float, insulation: float) -> float:
-    """Share of the slot that the enamel fills, dimensionless.
-
-    copper: share of the slot, dimensionless; wire_diameter: of the copper [m]; insulation: its thickness [m]
-    """
-    return copper * ((1 + 2 * insulation / wire_diameter) ** 2 - 1)
-
-
 @dataclass(frozen=True)
 class Liner:
     """Slot liner: thickness [m], conductivity [W/(m K)]."""

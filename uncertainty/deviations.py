@@ -15,7 +15,7 @@ from typing import ClassVar
 
 from drivetrain.masses import PartMaterials
 from electrical.wound_machine import WoundMachine
-from geometry.machine import Machine
+from geometry.machine import Machine, dimensions_of
 from geometry.morph import Morpher
 from magnetostatics.sensitivity import Variation
 from magnetostatics.variations import Dimension, RecoilPermeability, Remanence, StackingFactor
@@ -63,7 +63,7 @@ class SectionDimension(Deviation):
         raise NotImplementedError
 
     def variation(self, morpher: Morpher) -> Variation:
-        machine = morpher.section.machine
+        machine = dimensions_of(morpher.section.machine)
         return Dimension(morpher, lambda change: self.moved(machine, change), self.step)
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
@@ -230,7 +230,9 @@ class WireDiameter(Deviation):
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
         """With it; change: relative."""
-        return replace(wound, wire_area=wound.wire_area * (1 + change) ** 2)
+        design = wound.design
+        wire = replace(design.wire, copper_diameter=design.wire.copper_diameter * (1 + change))
+        return replace(wound, design=replace(design, wire=wire))
 
 
 @dataclass(frozen=True)

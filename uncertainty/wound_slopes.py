@@ -88,7 +88,8 @@ class OperatedMachine:
 
     def ampere_turns(self, current: tuple[float, float]) -> tuple[float, float]:
         """Of a coil [A peak]; current: (i_d, i_q) of a phase [A peak]."""
-        return self.wound.turns * current[0], self.wound.turns * current[1]
+        d, q = self.wound.ampere_turns(*current)
+        return float(d), float(q)
 
     def base_speed(self, flux_d: float, flux_q: float, resistance: float) -> float:
         """Where the full current meets the voltage [rad/s]; flux_d, flux_q: linkages there [Wb]; resistance [ohm]."""

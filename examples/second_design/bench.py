@@ -76,7 +76,7 @@ def built(results: Path) -> Truth:
     study, winding = read_study(STUDY), Results(results).load("winding")
     wound: WoundMachine = winding.wound
     currents = winding.limits.current_peak * SHARES
-    flux = wound.turns * wound.active_length * np.array([mean_flux(wound, float(i_q)) for i_q in currents])
+    flux = wound.equivalent_turns * wound.active_length * np.array([mean_flux(wound, float(i_q)) for i_q in currents])
     warm = 1 + ALPHA * (study.winding_selection.winding_temperature_degC - 20.0)
     continuous = wound.current_peak(study.sweep.si.j_nominal_rms)
     psi_d, psi_q = (tuple(column) for column in flux.T.tolist())
@@ -91,7 +91,7 @@ def mean_flux(wound: WoundMachine, i_q: float) -> np.ndarray:
     section = mesh_cross_section(machine, layout, DENSITY)
     steel, drawn = case.materials.stator_steel, case.materials.magnet
     materials = MachineMaterials(steel, steel, Magnet(REMANENCE_LEFT * drawn.remanence, drawn.recoil_permeability))
-    density = wound.turns * i_q / (section.half_slot_area * section.half_slots_per_coil_side)
+    density = wound.equivalent_turns * i_q / (section.half_slot_area * section.half_slots_per_coil_side)
     found = []
     for angle in (layout.phase_axis + pi / 3 * np.arange(ANGLES) / ANGLES) / machine.pole_pairs:
         state = State("bench", OperatingPoint(float(angle), density, 0.0, 1.0))

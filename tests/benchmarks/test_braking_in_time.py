@@ -5,12 +5,12 @@ import pytest
 
 from benchmarks.braking_in_time import SECTOR, TurningMachine, damping_over_time
 from electrical.braking import short_circuit
-from electrical.resistance import COPPER_RESISTIVITY_20
 from electrical.wound_machine import WoundMachine
 from tests.electrical.analytic_map import MATCHED, POLE_PAIRS, Saturating, flux_map
+from tests.electrical.wires import series_star, wire_of
 
 MAP = flux_map(Saturating(), points=25)
-WOUND = WoundMachine(MATCHED.machine, 4, 1, 30, 5, 0.2e-6, 0.04, COPPER_RESISTIVITY_20)
+WOUND = WoundMachine(MATCHED.machine, 4, 1, series_star(30, 5, wire_of(0.2e-6)), 0.04)
 AT = np.array([-12.0, 7.0])  # A
 
 
@@ -39,7 +39,7 @@ def test_the_map_is_met_at_its_own_points(machine):
     data = MAP.data
     angle = float(data["angle"][2]) * POLE_PAIRS
     at = data.isel(angle=2, id=4, iq=20)
-    i = np.array([float(at["id"]), float(at["iq"])]) / WOUND.turns
+    i = np.array([float(at["id"]), float(at["iq"])]) / WOUND.equivalent_turns
     assert machine.torque(angle, i) == pytest.approx(0.04 * float(at["torque"]), rel=1e-9)
     assert machine._psi(angle, i) == pytest.approx(
         30 * 0.04 * np.array([at["psi_d"], at["psi_q"]], dtype=float), rel=1e-9

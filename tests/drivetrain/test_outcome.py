@@ -41,6 +41,7 @@ from report.outcome import (
     section,
 )
 from tests.drivetrain.linear_machine import AREA, LENGTH, POLES, RHO, STRANDS, TURNS, flux_map
+from tests.electrical.wires import series_star, wire_of
 from tests.mechanics.a_rotor import strength
 from thermal.rating import COPPER_LIMIT, Rating
 from thermal.stage import HeatOutcome
@@ -58,7 +59,7 @@ def wound():
         back_iron_width=3.3 * MM, magnet_length=2.5 * MM, airgap=0.5 * MM, slot_opening=2 * MM,
         shoe_depth_fraction=0.52, shoe_aspect_ratio=1.0, shaft_radius=5 * MM,
     )  # fmt: skip
-    return WoundMachine(machine, 4, 1, TURNS, STRANDS, AREA, LENGTH, RHO)
+    return WoundMachine(machine, 4, 1, series_star(TURNS, STRANDS, wire_of(AREA, RHO)), LENGTH)
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,10 @@ from drivetrain.rotor_duty import rotor_duty
 from electrical.winding_stage import WindingOutcome
 from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing
+from tests.electrical.wires import series_star, wire_of
 from tests.magnetostatics.reference_machine import reference_machine
 
-WOUND = WoundMachine(reference_machine(), 4, 1, 12, 13, 0.2e-6, 45e-3, 1.7e-8)
+WOUND = WoundMachine(reference_machine(), 4, 1, series_star(12, 13, wire_of(0.2e-6)), 45e-3)
 MATERIALS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
 ASKED = Requirements(40e3, 300.0, 0.1, 30.0, 3.4, 2600.0, 1.6, 4250.0, 1340.0, 3.2)
 

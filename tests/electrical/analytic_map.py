@@ -6,13 +6,15 @@ import numpy as np
 import xarray as xr
 
 from drivetrain.requirements import Requirements, Transmission, shaft_demand
-from electrical.resistance import COPPER_RESISTIVITY_20
 from electrical.synchronous_machine import SynchronousMachine
-from electrical.winding_selection import WindingLimits, Wire
+from electrical.winding_connection import Star
+from electrical.winding_selection import WindingLimits
 from electrical.winding_stage import WindingInputs
 from geometry.family import MatchedMachine
 from geometry.machine import hanselman_machine
 from magnetostatics.flux_map_stage import FluxMap
+from materials.insulation import insulation_class
+from tests.electrical.wires import HALF_MILLIMETRE
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, RPM, SQUARE_MILLIMETRE
 
 POLE_PAIRS = 5
@@ -69,11 +71,14 @@ REQUIRED = Requirements(
 TRANSMISSION = Transmission(nominal=2.3 * MILLIMETRE, largest=2.4 * MILLIMETRE)
 DEMAND = shaft_demand(REQUIRED, TRANSMISSION)
 INPUTS = WindingInputs(
-    wire=Wire(0.5 * MILLIMETRE, COPPER_RESISTIVITY_20),
+    wires=(HALF_MILLIMETRE,),
+    paths=(1,),
+    closings=(Star(),),
     limits=WindingLimits(
         packing_limit=0.3, packing_tolerance=0.04, overload_current_density=OVERLOAD, dc_voltage=48.0,
-        maximum_speed=15000 * RPM, phase_current_rms=90.0,
+        maximum_speed=15000 * RPM, insulated_fill=0.55, circulating_share=0.05, phase_current_rms=90.0,
     ),
+    insulation=insulation_class("F"),
     nominal_density=6 * AMPERE_PER_SQUARE_MILLIMETRE,
     longest=70 * MILLIMETRE,
     damping_asked=False,

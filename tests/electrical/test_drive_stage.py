@@ -35,7 +35,7 @@ def test_on_a_linear_map_both_models_say_the_same(linear):
 
 def test_the_choice_is_that_of_the_rule(linear):
     winding, found = linear
-    assert (found.by_constant.turns, found.by_constant.strands) == (winding.wound.turns, winding.wound.strands)
+    assert (found.by_constant.turns, found.by_constant.strands) == (winding.chosen.turns, winding.chosen.strands)
 
 
 def test_torque_at_rest_is_the_peak_torque(saturating):
@@ -43,7 +43,7 @@ def test_torque_at_rest_is_the_peak_torque(saturating):
     for torque in (found.field.torque, found.envelope.torque[0], found.plane.torque[-1, 0]):
         assert torque == pytest.approx(winding.peak_torque, rel=1e-9)
     assert found.field.base_speed == pytest.approx(winding.chosen.base_speed, rel=1e-9)
-    assert found.neighbour(winding.wound.turns).envelope.torque == pytest.approx(found.envelope.torque)
+    assert found.neighbour(winding.chosen.design).envelope.torque == pytest.approx(found.envelope.torque)
 
 
 def test_saturation_separates_the_models(saturating):

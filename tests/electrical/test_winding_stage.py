@@ -52,14 +52,14 @@ def test_the_peak_torque_is_one_number(found):
 
 
 def test_the_ripple_is_that_of_the_map_at_the_current_of_the_peak_torque(found):
-    share = found.wound.turns * found.quadrature_current / AMPERE_TURNS
+    share = found.wound.equivalent_turns * found.quadrature_current / AMPERE_TURNS
     assert found.peak_torque_ripple == pytest.approx(RIPPLE * share * found.wound.active_length, rel=1e-3)
 
 
 def test_constant_parameters_of_a_linear_map_are_its_own(found):
     """Turns and length scale them, and the record of the wound machine has their resistance."""
-    scale = found.wound.turns * found.wound.active_length
-    expected = (scale * LINEAR.psi_m, *(found.wound.turns * scale * LINEAR.inductance_d,) * 2)
+    scale = found.chosen.turns * found.wound.active_length
+    expected = (scale * LINEAR.psi_m, *(found.chosen.turns * scale * LINEAR.inductance_d,) * 2)
     constant = found.constant
     assert (constant.psi_m, constant.inductance_d, constant.inductance_q) == pytest.approx(expected, rel=1e-6)
     assert constant.resistance == pytest.approx(found.wound.phase_resistance, rel=1e-12)
@@ -68,7 +68,7 @@ def test_constant_parameters_of_a_linear_map_are_its_own(found):
 
 def test_every_neighbour_has_its_maximum_power(found):
     turns = [one.turns for one in found.near]
-    assert turns == sorted(turns) and found.wound.turns in turns
+    assert turns == sorted(turns) and found.chosen.turns in turns
     assert all(one.maximum_power >= one.power_at_base_speed for one in found.near)
     assert {one.turns for one in found.table} > set(turns)
     assert all(one.maximum_power is None for one in found.table)
@@ -105,6 +105,17 @@ def test_no_damping_asks_for_no_length():
     assert found.length.set_by.name == "the peak torque"
 
 
+def test_a_length_that_is_cut_does_not_make_less_copper_look_as_short():
+    """All are 20 mm long then, and 110 turns of one wire just meet the speed that is asked for, with least current."""
+    short = replace(INPUTS, longest=20 * MILLIMETRE)
+    slow = replace(DEMAND, power=1.0)
+    thin = next(one for one in winding_stage(MAP, MATCHED, slow, short).table if one.turns == 110)
+    found = winding_stage(MAP, MATCHED, replace(slow, base_speed=0.999 * thin.base_speed), short)
+    assert thin.strands == 1 and {one.active_length for one in found.table} == {20 * MILLIMETRE}
+    assert found.chosen.packing > 1.3 * thin.packing and found.chosen.current_rms > thin.current_rms
+    assert found.chosen.needed_length < 0.8 * thin.needed_length
+
+
 def test_a_length_beyond_the_longest_is_cut_and_said():
     found = winding_stage(MAP, MATCHED, DEMAND, replace(INPUTS, longest=20 * MILLIMETRE))
     assert found.length.short and found.wound.active_length == 20 * MILLIMETRE
@@ -125,7 +136,7 @@ def test_a_current_limit_below_every_winding_names_its_key():
 
 def test_rows_are_of_the_overload_current(found):
     chosen = asdict(found.chosen)
-    density = chosen["current_rms"] / (found.wound.strands * found.wound.wire_area)
+    density = chosen["current_rms"] / (found.chosen.strands * found.wound.design.wire.area)
     assert density == pytest.approx(INPUTS.limits.overload_current_density)
     assert chosen["current_peak"] == pytest.approx(sqrt(2) * chosen["current_rms"])
     assert found.wound.current_peak(density) == pytest.approx(chosen["current_peak"])

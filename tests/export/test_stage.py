@@ -84,7 +84,7 @@ def test_power_in_is_power_out_and_copper_loss(found, winding):
 
 
 def test_the_continuous_current_is_that_of_the_nominal_density(found, winding):
-    density = found.continuous.current_peak / sqrt(2) / (winding.wound.strands * winding.wound.wire_area)
+    density = found.continuous.current_peak / sqrt(2) / (winding.chosen.strands * winding.wound.design.wire.area)
     assert density == pytest.approx(6 * AMPERE_PER_SQUARE_MILLIMETRE)
 
 
@@ -119,7 +119,9 @@ def test_the_brake_is_seen_at_the_rotor(found, brake):
 
 ENDS = SimpleNamespace(temperature={MAGNETS: 120.0}, hottest_copper=151.0)
 SLOW = Rating(speed=0.0, current=40.0, torque=3.0, bound_by=MAGNET_LIMIT, state=ENDS)
-WARM = SimpleNamespace(slow=SLOW, inputs=SimpleNamespace(limits=HeatLimits(), cooling=SimpleNamespace(ambient=40.0)))
+WARM = SimpleNamespace(
+    slow=SLOW, inputs=SimpleNamespace(limits=HeatLimits(155.0), cooling=SimpleNamespace(ambient=40.0))
+)
 STATES = (SimpleNamespace(name="no load", lost=0.0), SimpleNamespace(name="overload", lost=0.03))
 
 
@@ -146,7 +148,7 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
     table = sheet(found, winding, brake, outcome).table
     assert value(table, "active length") == pytest.approx(1e3 * winding.wound.active_length)
     assert value(table, "peak torque") == winding.peak_torque
-    assert value(table, "turns") == winding.wound.turns and value(table, "poles") == 10
+    assert value(table, "turns") == winding.chosen.turns and value(table, "poles") == 10
     cold, hot = table.value[table.quantity == "phase resistance"]
     assert cold == pytest.approx(1e3 * winding.wound.phase_resistance) and hot == pytest.approx(1.393 * cold)
     assert value(table, "L_d", "apparent") == pytest.approx(1e6 * winding.chosen.inductance_d)
@@ -162,7 +164,7 @@ def test_values_are_those_of_the_stages_in_drawing_units(found, winding, brake, 
 def test_the_temperatures_are_those_of_the_thermal_network(found, winding, brake, outcome):
     table = sheet(found, winding, brake, outcome).table
     assert value(table, "continuous torque", "the magnets bind") == 3.0
-    assert value(table, "continuous phase current", "40 °C") == pytest.approx(40.0 / sqrt(2))
+    assert value(table, "continuous line current", "40 °C") == pytest.approx(40.0 / sqrt(2))
     assert value(table, "hottest copper", "limit 155 °C") == 151.0 and value(table, "magnets", "limit 120 °C") == 120.0
 
 
@@ -194,9 +196,9 @@ def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outco
     table = sheet(found, winding, brake, outcome).table
     assert value(table, "electrical steel") == "35PN270" and value(table, "magnetisation") == "parallel"
     pure = set(table.quantity[table.unit == ""])
-    words = {"electrical steel", "magnetisation", "connection"}
+    words = {"electrical steel", "magnetisation", "connection", "insulation class"}
     assert pure == words | {"slots", "poles", "magnet arc", "layers", "winding factor", "turns",
-                            "wires in hand", "packing factor"}  # fmt: skip
+                            "wires in hand", "packing factor", "insulated fill", "parallel paths"}  # fmt: skip
     assert not table.duplicated(["quantity", "condition"]).any()
 
 

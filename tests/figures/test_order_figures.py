@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from electrical.winding_connection import Delta, Star
 from figures.lamination import lamination
 from figures.winding_diagram import _tracks, _wires, winding_diagram
 from geometry.connections import connections
@@ -17,17 +18,26 @@ WINDINGS = [(12, 5), (9, 4), (18, 2), (12, 5, 1), (48, 4)]
 @pytest.mark.parametrize("winding", WINDINGS, ids=str)
 def test_the_diagram_is_readable(winding, assert_readable):
     layout = star_of_slots(*winding)
-    figure = winding_diagram(layout, connections(layout), "4 coils in series a phase")
+    figure = winding_diagram(layout, connections(layout, 1), Star(), "4 coils in series a phase")
     assert_readable(figure)
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert texts.count("star point") == 1 and {"A", "B", "C"} <= set(texts)
+
+
+def test_a_delta_of_two_paths_has_terminals_in_the_place_of_a_star_point(assert_readable):
+    """Each phase begins twice at its own letter and ends twice at the next one's."""
+    layout = star_of_slots(12, 5)
+    figure = winding_diagram(layout, connections(layout, 2), Delta(), "2 coils in series a path")
+    assert_readable(figure)
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    assert "star point" not in texts and [texts.count(name) for name in "ABC"] == [4, 4, 4]
 
 
 @pytest.mark.parametrize("winding", WINDINGS, ids=str)
 def test_no_two_wires_lie_on_each_other(winding):
     layout = star_of_slots(*winding)
     for phase in range(3):
-        wires = _wires(layout, tuple(one for one in connections(layout) if one.phase == phase))
+        wires = _wires(layout, tuple(one for one in connections(layout, 1) if one.phase == phase))
         for track in set(tracks := _tracks(wires)):
             spans = sorted(sorted(wire) for wire, of in zip(wires, tracks) if of == track)
             assert all(one[1] < other[0] for one, other in zip(spans, spans[1:]))

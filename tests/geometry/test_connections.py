@@ -19,7 +19,7 @@ def _layout(request):
 
 def followed(layout, phase):
     """Coils from the terminal of a phase to the star point, by what each row says of the next."""
-    rows = {one.coil: one for one in connections(layout) if one.phase == phase}
+    rows = {one.coil: one for one in connections(layout, 1) if one.phase == phase}
     (here,) = [one for one in rows.values() if one.previous is None]
     chain = [here]
     while here.following is not None:
@@ -62,9 +62,9 @@ def test_phases_have_the_winding_factor_and_are_120_degrees_apart(layout):
 
 
 def test_teeth_lie_between_the_sides(layout):
-    for one in connections(layout):
+    for one in connections(layout, 1):
         assert len(one.teeth) == layout.coil_pitch
         low = one.to_slot if one.reversed else one.from_slot
         assert one.teeth[0] == (low + 1) % layout.slots
     if layout.coil_pitch == 1:
-        assert all(one.teeth == (one.coil,) for one in connections(layout))
+        assert all(one.teeth == (one.coil,) for one in connections(layout, 1))

@@ -1,25 +1,30 @@
 """Copper loss of the printed winding."""
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import sqrt
 
 import pytest
 
 from electrical.resistance import copper_resistivity
 from electrical.wound_machine import WoundMachine
 from losses.copper import copper_loss
+from tests.electrical.wires import HALF_MILLIMETRE, series_star
 from tests.losses.conftest import machine
 from units import MILLIMETRE, MILLIOHM
 
-WIRE = pi * (0.5 * MILLIMETRE) ** 2 / 4
-PRINTED = WoundMachine(machine(), 4, 1, 7, 22, WIRE, 41 * MILLIMETRE, copper_resistivity(20.0))
+WIRE = HALF_MILLIMETRE.area
+PRINTED = WoundMachine(machine(), 4, 1, series_star(7, 22), 41 * MILLIMETRE)
+
+
+def with_resistivity(resistivity):
+    return replace(PRINTED, design=series_star(7, 22, replace(HALF_MILLIMETRE, resistivity=resistivity)))
 
 
 @pytest.mark.reference
 def test_resistance_of_the_printed_winding():
     """24.96 mOhm phase to phase at 20 degC by eq. 3.82; the printed 27.4 mOhm is this copper at 45 degC."""
     assert 2 * PRINTED.phase_resistance == pytest.approx(24.96 * MILLIOHM, rel=1e-3)
-    warm = replace(PRINTED, resistivity=copper_resistivity(44.9))
+    warm = with_resistivity(copper_resistivity(44.9))
     assert 2 * warm.phase_resistance == pytest.approx(27.4 * MILLIOHM, rel=1e-3)
 
 
@@ -35,7 +40,7 @@ def test_loss_of_the_printed_machine():
 def test_loss_is_current_density_squared_times_copper():
     """rho J^2 times the copper volume, end turns included: the same power by another route."""
     rho, j_rms = copper_resistivity(80.0), 6e6
-    hot = replace(PRINTED, resistivity=rho)
+    hot = with_resistivity(rho)
     peak = hot.current_peak(j_rms)
     assert peak == pytest.approx(sqrt(2) * j_rms * 22 * WIRE)
     volume = 12 * 7 * 22 * WIRE * 2 * (PRINTED.active_length + PRINTED.end_turn_length)

@@ -95,7 +95,7 @@ def test_the_data_of_another_grade_are_said(found):
 
 def test_data_set_adds_up(found):
     data = dataset(found)
-    parts = data.copper_W + data.stator_iron_W + data.rotor_iron_W + data.magnet_W
+    parts = data.copper_W + data.stator_iron_W + data.rotor_iron_W + data.magnet_W + data.circulating_W
     assert np.allclose(parts, data.total_W, equal_nan=True)
     assert data.total_W.dims == ("torque_Nm", "speed_rpm")
 

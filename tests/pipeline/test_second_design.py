@@ -108,8 +108,8 @@ def test_the_second_design_holds_with_its_losses_counted(first, second):
     assert asked["ContinuousEffort"].reached == pytest.approx(heat.effort(heat.at_speed.torque) - SEAL)
     assert asked["PeakEffortAtRest"].reached == pytest.approx(winding.peak_torque - SEAL)
     assert after.limits.coulomb_friction == pytest.approx(before.limits.coulomb_friction + SEAL)
-    cold = first.results.load("winding").wound.resistivity
-    assert winding.wound.resistivity == pytest.approx(1.1 * cold)
+    cold = first.results.load("winding").wound.design.wire.resistivity
+    assert winding.wound.design.wire.resistivity == pytest.approx(1.1 * cold)
 
 
 def test_the_report_begins_with_what_was_learned(second):
@@ -148,7 +148,9 @@ def test_the_model_of_a_draft_answers_as_the_design(folder, first):
         assert len(names) == 9 and all(
             getattr(drawn, name) == pytest.approx(getattr(wound.machine, name)) for name in names
         )
-        assert set(model.design.turns) == {wound.turns} and model.design.length == pytest.approx(wound.active_length)
+        assert set(model.design.turns) == {wound.design.turns} and model.design.length == pytest.approx(
+            wound.active_length
+        )
         return
     field = winding.wound.on_map(first.results.load("flux_map").data)
     volts = 1.5**0.5 * field.pole_pairs * 100.0 * float(field.flux_linkage(0.0, 0.0)[0])

@@ -63,6 +63,22 @@ def test_table_of_windings(winding, tmp_path):
     assert table.maximum_power_W.notna().sum() == len(winding.near)
 
 
+def test_alternatives_say_what_was_chosen_and_why_the_others_were_not(tmp_path):
+    """One row for each gauge and number of paths; paths that the star of slots has not are said."""
+    thin = replace(INPUTS.wires[0], copper_diameter=4e-4, outer_diameter=4.39e-4)
+    inputs = replace(INPUTS, wires=(thin, *INPUTS.wires), paths=(1, 2, 3))
+    found = winding_stage(MAP, MATCHED, DEMAND, inputs)
+    table = pd.read_csv(written(winding_report.files(found), tmp_path) / "winding_alternatives.csv")
+    assert sorted(zip(table.wire_mm, table.paths)) == [(0.4, 1), (0.4, 2), (0.5, 1), (0.5, 2)]
+    chosen = table[table.verdict == "chosen"]
+    assert chosen.turns.item() == found.chosen.turns and chosen.paths.item() == found.chosen.design.connection.paths
+    assert table.verdict[table.verdict != "chosen"].str.contains("%|less copper|as good").all()
+    section = winding_report.section(found, inputs, None)
+    page = render_report((section,), tmp_path, title="winding")
+    assert "Paths by the number of 3 would not be equal" in page and str(found.chosen.design) in page
+    assert found.left_out == (3,) and list(winding_report.remarks(found, inputs, None))[-1].startswith("Paths by")
+
+
 def test_files_of_the_drive(driven, winding, tmp_path):
     folder = written(drive.files(driven, winding, MAP, TRANSMISSION, REQUIRED, Wheel()), tmp_path)
     envelope = pd.read_csv(folder / "flux_map_envelope.csv")

@@ -7,22 +7,22 @@ from study.inputs_heat import heat_inputs, warming_magnet
 from study.read import STUDIES, read_study
 from thermal.air import GivenFilm, StillAir
 from thermal.cooling import Cooling, HeatLimits
-from units import MILLIMETRE
 
 
 def test_a_study_that_says_nothing_has_the_defaults_of_the_room():
     found = heat_inputs(read_study("motorcycle"))
-    assert found.cooling == Cooling(0.5 * MILLIMETRE, 0.044 * MILLIMETRE)
+    assert found.cooling == Cooling()
     assert found.limits == HeatLimits(155.0, 120.0)
     assert found.winding_temperature == 20.0 and found.conductor.temperature_coefficient == 0.00393
 
 
 def test_what_a_study_states_counts_in_si():
-    said = {"ambient_temperature_degC": "60.0", "copper_temperature_max_degC": "180.0", "slot_liner_mm": "0.4",
+    said = {"ambient_temperature_degC": "60.0", "slot_liner_mm": "0.4",
             "slot_liner_conductivity_W_per_mK": "0.2", "slot_filler_conductivity_W_per_mK": "0.6",
             "casing_gap_mm": "0.01", "magnet_temperature_max_degC": "150.0", "mount_conductance_W_per_K": "2.5",
             "remanence_temperature_coefficient_per_K": "-0.0012", "emissivity": "0.3"}  # fmt: skip
-    study = read_study("pump", [f"thermal.{key}={value}" for key, value in said.items()])
+    winding = 'winding_selection.insulation_class="H"'
+    study = read_study("pump", [*(f"thermal.{key}={value}" for key, value in said.items()), winding])
     found = heat_inputs(study)
     cooling = found.cooling
     assert (cooling.ambient, cooling.mount, cooling.filler_conductivity) == (60.0, 2.5, 0.6)

@@ -66,7 +66,7 @@ def test_one_machine_may_have_poles_that_the_sweep_cannot_wind():
 
 def test_supply_and_wire_in_si(motorcycle):
     inputs = winding_inputs(motorcycle)
-    limits, wire = inputs.limits, inputs.wire
+    limits, (wire,) = inputs.limits, inputs.wires
     assert limits.overload_current_density == 20e6 and limits.dc_voltage == 48.0
     assert limits.maximum_speed == pytest.approx(15000 * 2 * math.pi / 60)
     assert wire.area == pytest.approx(math.pi * 0.25e-3**2) and wire.resistivity == pytest.approx(1.68e-8)
@@ -85,7 +85,7 @@ def test_match_and_gearbox_in_si(motorcycle):
 
 def test_a_warm_winding_has_more_resistance():
     study = read_study("motorcycle", ["winding_selection.winding_temperature_degC=120"])
-    assert winding_inputs(study).wire.resistivity == pytest.approx(1.68e-8 * 1.393)
+    assert winding_inputs(study).wires[0].resistivity == pytest.approx(1.68e-8 * 1.393)
 
 
 def test_mesh_keys_that_are_not_stated_leave_the_default():

@@ -23,7 +23,8 @@ PURE_NUMBERS = set(
     match.weight_inertia match.weight_radius match.chosen_slots match.gearbox_stages match.gear_ring_diameter_fraction
     match.gear_overload_factor match.gear_contact_ratio_factor match.gear_poisson_ratio
     prices.lamination prices.magnet prices.copper prices.shaft
-    winding_selection.packing_tolerance flux_map.angles flux_map.currents
+    winding_selection.packing_tolerance winding_selection.enamel_grade winding_selection.parallel_paths
+    winding_selection.insulated_fill_max winding_selection.delta_circulating_loss_max flux_map.angles flux_map.currents
     gearbox.ratio_tolerance gearbox.planets gearbox.accuracy_grade gearbox.application_factor
     gearbox.friction_coefficient gearbox.safety_flank gearbox.safety_root gearbox.safety_static_flank
     gearbox.safety_static_root gearbox.planet_bore_fraction gearbox.flange_fraction gearbox.printed_teeth

@@ -33,9 +33,15 @@ WRONG = {
     ),
     "three diameters": (["sweep.stator_diameters_mm=[80, 90, 100]"], ["stator_diameters_mm names 3", "add 1"]),
     "thick wire": (
-        ["winding_selection.wire_diameter_mm=10", "sweep.stator_diameters_mm=[60, 62, 64, 66]"],
-        ["wire_diameter_mm = 10", "winding.packing_factor = 0.3", "thinner wire"],
+        ["winding_selection.wire_diameters_mm=[2.0]", "winding_selection.insulated_fill_max=0.01"]
+        + ["sweep.stator_diameters_mm=[60, 62, 64, 66]"],
+        ["wire_diameters_mm = [2.0]", "0.01 with enamel", "thinner wire"],
     ),
+    "a wire that is not sold": (["winding_selection.wire_diameters_mm=[0.52]"], ["take 0.5 or 0.56"]),
+    "no wire": (["winding_selection.wire_diameters_mm=[]"], ["wire_diameters_mm"]),
+    "a wire twice": (["winding_selection.wire_diameters_mm=[0.5, 0.5]"], ["names a value twice"]),
+    "unequal paths": (["winding_selection.parallel_paths=[1, 4]"], ["parallel_paths = 4", "star of slots", "[1, 2]"]),
+    "unknown class": (['winding_selection.insulation_class="Z"'], ["winding_selection.insulation_class"]),
     "very fine mesh": (
         ["mesh.elements_across_tooth=40"],
         ["a design of the sweep", "reduce mesh.elements_across_tooth (now elements_across_tooth = 40.0)"],

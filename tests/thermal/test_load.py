@@ -98,7 +98,7 @@ def plane():
     torque, speed = np.meshgrid(np.linspace(-4.0, 4.0, 9), np.linspace(0.0, 400.0, 5), indexing="ij")
     stator = 0.1 * speed + np.abs(torque)
     stator[np.abs(torque) > 2.0] = np.where(speed == 400.0, np.nan, stator)[np.abs(torque) > 2.0]
-    return PowerLosses(torque, speed, 0 * torque, stator, 0.1 * stator, 0.01 * stator)
+    return PowerLosses(torque, speed, 0 * torque, stator, 0.1 * stator, 0.01 * stator, 0.2 * stator)
 
 
 def test_a_loss_map_is_read_between_its_points_and_for_both_senses():

@@ -12,10 +12,10 @@ from geometry.cross_section import mesh_cross_section
 from geometry.winding import star_of_slots
 from losses.copper import copper_loss, proximity_ratio
 from materials.conductor import COPPER
-from tests.thermal.built import COOLING, MACHINE, MM, WIRE, WOUND, cooled
+from tests.thermal.built import COOLING, MACHINE, MM, WOUND, cooled
 from thermal.air import Air, GivenFilm, StillAir
 from thermal.course import course
-from thermal.field_loss import IronAndMagnets
+from thermal.field_loss import FieldHeat
 from thermal.load import HotCopper, LoadedMachine, SteadyCurrent
 from thermal.machine import (
     AMBIENT,
@@ -33,7 +33,7 @@ from thermal.machine import (
 from thermal.network import Network, settled
 from thermal.slot import Liner
 
-IRON = IronAndMagnets(np.array(5.0), np.array(0.5), np.array(1.0))
+IRON = FieldHeat(np.array(5.0), np.array(0.5), np.array(1.0), np.array(0.0))
 
 
 def loaded(current=40.0, speed=0.0, cooling=COOLING, field=IRON, friction=2.0):
@@ -138,7 +138,7 @@ def test_over_time_what_arises_is_stored_or_delivered():
 
 def test_a_short_overload_warms_the_copper_as_if_it_kept_its_heat():
     """In the first second hardly anything leaves: dT/dt = J^2 rho / (density c), 20 A/mm^2 RMS."""
-    load = loaded(WOUND.current_peak(20e6), field=IronAndMagnets(*np.zeros(3)), friction=0.0)
+    load = loaded(WOUND.current_peak(20e6), field=FieldHeat(*np.zeros(4)), friction=0.0)
     cold = load.machine.cold()
     rise = course(load, cold, 0.5).of(SLOT)[-1] - COOLING.ambient
     exact = 0.5 * 20e6**2 * COPPER.resistivity(COOLING.ambient) / (8900.0 * 397.0)
@@ -150,7 +150,7 @@ def test_a_short_overload_warms_the_copper_as_if_it_kept_its_heat():
 
 
 def test_the_copper_loses_what_its_warm_resistance_says():
-    load = loaded(30.0, field=IronAndMagnets(*np.zeros(3)), friction=0.0)
+    load = loaded(30.0, field=FieldHeat(*np.zeros(4)), friction=0.0)
     warm = dict.fromkeys(load.machine.cold(), 120.0)
     resistance = WOUND.phase_resistance * (1 + 0.00393 * 100.0)
     assert sum(load.heat(warm).values()) == pytest.approx(1.5 * resistance * 30.0**2, rel=1e-6)
@@ -165,12 +165,22 @@ def test_wires_in_their_slot_lose_by_the_field_between_them():
     wires = 2 * 7 * 22
     amplitude = 4e-7 * np.pi * wires * (current / 22) / width
     y = (np.arange(wires) + 0.5) / wires
-    x, z = np.meshgrid(*[np.linspace(-WIRE / 2, WIRE / 2, 201)] * 2)
-    inside = (np.hypot(x, z) < WIRE / 2) * (WIRE / 200) ** 2
-    each = 0.5 * np.sum(inside * (speed * x) ** 2) / WOUND.resistivity
+    diameter = WOUND.design.wire.copper_diameter
+    x, z = np.meshgrid(*[np.linspace(-diameter / 2, diameter / 2, 201)] * 2)
+    inside = (np.hypot(x, z) < diameter / 2) * (diameter / 200) ** 2
+    each = 0.5 * np.sum(inside * (speed * x) ** 2) / WOUND.design.wire.resistivity
     exact = 12 * WOUND.active_length * np.sum((amplitude * y) ** 2) * each
     assert proximity_ratio(WOUND) * speed**2 * in_slot == pytest.approx(exact, rel=0.01)
     assert 0.001 < exact / in_slot < 0.1
+
+
+def test_what_circulates_in_a_delta_heats_slots_and_end_windings_by_their_copper():
+    plain, more = (loaded(field=replace(IRON, copper=np.array(watts))) for watts in (0.0, 3.0))
+    cold = plain.machine.cold()
+    added = {part: more.heat(cold)[part] - watts for part, watts in plain.heat(cold).items()}
+    ends = 3.0 * WOUND.end_turn_share
+    assert added[ENDS] == pytest.approx(ends) and added[SLOT] == pytest.approx(3.0 - ends)
+    assert sum(abs(watts) for watts in added.values()) == pytest.approx(3.0)
 
 
 def test_better_cooling_is_cooler():

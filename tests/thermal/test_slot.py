@@ -5,10 +5,11 @@ import pytest
 from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
+from electrical.wire import Wire
 from geometry.areas import part_areas
 from tests.thermal.built import MACHINE
 from thermal.errors import ThermalError
-from thermal.slot import Filling, Liner, enamel_share, half_slot, heated_slices, slot_paths
+from thermal.slot import Filling, Liner, half_slot, heated_slices, slot_paths
 
 NO_LINER, LINER = Liner(1e-9, 1.0), Liner(0.25e-3, 0.14)
 
@@ -65,7 +66,8 @@ def test_round_wires_conduct_as_rayleigh_found(share, close):
 def test_enamel_and_filler_lie_side_by_side():
     assert Filling(0.3, 0.2, 393.0, 0.22).conductivity == pytest.approx(Filling(0.3, 0.0, 393.0, 0.22).conductivity)
     assert Filling(0.3, 0.2, 393.0, 0.03).conductivity > Filling(0.3, 0.0, 393.0, 0.03).conductivity
-    assert enamel_share(0.3, 0.5, 0.05) == pytest.approx(0.3 * (1.2**2 - 1))
+    wire = Wire(0.5e-3, 0.6e-3, 1.7e-8)
+    assert wire.enamel_area / wire.area == pytest.approx(1.2**2 - 1)
 
 
 def test_more_than_fits_a_slot_is_refused():

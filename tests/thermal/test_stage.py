@@ -17,7 +17,7 @@ from tests.thermal.built import CASING, COOLING, WEIGHTS
 from thermal.air import StillAir
 from thermal.cooling import HeatLimits
 from thermal.course import course
-from thermal.field_loss import FieldLoss, IronAndMagnets, NoLossData
+from thermal.field_loss import FieldHeat, FieldLoss, NoLossData
 from thermal.machine import MAGNETS, ROTOR, SLOT, TEETH, YOKE
 from thermal.network import settled
 from thermal.rating import COPPER_LIMIT, CURRENT_LIMIT, MAGNET_LIMIT, allowed_for, continuous, overload, state_of
@@ -26,7 +26,7 @@ from thermal.stage import Assembled, BuiltMachine, Duty, HeatInputs, heat_stage
 MAP = flux_map(Saturating())
 BUILT = BuiltMachine(WEIGHTS, 0.95, CASING, 2.3e-3, 250.0, 3.0)
 STATED = Duty(np.array([300.0]), np.array([0.1]), 0.0)
-HEAT = HeatInputs(COOLING, HeatLimits(), Magnet(1.3), COPPER, 20.0)
+HEAT = HeatInputs(COOLING, HeatLimits(155.0), Magnet(1.3), COPPER, 20.0)
 
 
 class Turning(FieldLoss):
@@ -36,7 +36,7 @@ class Turning(FieldLoss):
 
     def at(self, torque, speed):
         stator = 0.02 * np.abs(speed) + 0.0 * torque
-        return IronAndMagnets(stator, 0 * stator, 0.1 * stator)
+        return FieldHeat(stator, 0 * stator, 0.1 * stator, 0 * stator)
 
 
 @pytest.fixture(scope="module")
