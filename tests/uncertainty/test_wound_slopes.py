@@ -90,3 +90,9 @@ def test_values_are_those_of_the_stage():
     assert values.base_speed == pytest.approx(WINDING.chosen.base_speed, rel=1e-6)
     assert values.magnet_flux * 1.5 * 5 == pytest.approx(WINDING.chosen.no_load_torque_constant, rel=1e-6)
     assert 0.5 < OPERATED.elasticity < 1.0, "saturation"
+
+
+def test_without_loss_data_the_iron_loss_is_not_known():
+    found = slopes(StackLength(1.0), **{NOMINAL: np.zeros(3)})
+    assert np.isnan(found.iron_loss) and found.copper_loss != 0
+    assert slopes(StackLength(1.0)).iron_loss == pytest.approx(1 / OPERATED.wound.active_length)
