@@ -1,4 +1,4 @@
-"""The loop closed: radius, slots, active length, ratio and linkage together, beside the design found stage by stage.
+"""The loop closed: radius, slots and poles, active length, ratio and linkage together, beside the design found stage by stage.
 
 The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
 front are then solved by the field.
@@ -30,6 +30,7 @@ from drivetrain.whole_design import (
     road_loss,
     spread,
 )
+from geometry.family import Combination
 from geometry.machine import Machine
 from losses.iron import FrequencyTerms
 from losses.map import field_losses
@@ -49,7 +50,7 @@ class WholeSearchInputs:
 
     loss_grade: whose iron-loss data stand in for the steel's, None where the study names none
     seed, population, generations: of the front; solved: points of the front that the field solves
-    idle_radii: of each slot count, at which the idle loss is solved
+    idle_radii: of each slot-pole combination, at which the idle loss is solved
     """
 
     loss_grade: str | None
@@ -187,31 +188,34 @@ def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]
 
 
 class _IdleSections:
-    """(slots, stator outer radius [m]) -> ``RoadSection`` from the fits, its idle loss a parabola over the radius."""
+    """(combination, stator outer radius [m]) -> ``RoadSection`` from the fits, its idle loss a parabola over the radius."""
 
-    def __init__(self, matcher: Matcher, parabolas: dict[int, np.ndarray]) -> None:
-        self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by slot count
+    def __init__(self, matcher: Matcher, parabolas: dict[Combination, np.ndarray]) -> None:
+        self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by combination
 
-    def __call__(self, slots: int, radius: float) -> RoadSection:
-        section = self._matcher.section(slots, self._matcher.inputs.overload, radius)
-        idle = (float(np.polyval(one, radius)) for one in self._parabolas[slots].T)
+    def __call__(self, combination: Combination, radius: float) -> RoadSection:
+        section = self._matcher.section(combination, self._matcher.inputs.overload, radius)
+        idle = (float(np.polyval(one, radius)) for one in self._parabolas[combination].T)
         return RoadSection.of(section, FrequencyTerms(*idle))
 
 
 def _idle_sections(matcher: Matcher, law: IronLossLaw, count: int, workers: Workers) -> _IdleSections:
-    """Idle loss solved at so many radii of each slot count, and the cross-sections that carry it."""
+    """Idle loss solved at so many radii of each combination, and the cross-sections that carry it."""
     inputs = matcher.inputs
-    samples = [(n, float(radius)) for n in inputs.slots for radius in np.linspace(*matcher.fits.range(n), count)]
+    samples = [
+        (one, float(radius)) for one in inputs.combinations for radius in np.linspace(*matcher.fits.range(one), count)
+    ]
     tasks = {
-        f"{n} slots, {2 * radius / MILLIMETRE:.2f} mm": FieldTask(
-            matcher.case, matcher.section(n, inputs.overload, radius).machine, law
+        f"{one.words}, {2 * radius / MILLIMETRE:.2f} mm": FieldTask(
+            matcher.case, matcher.section(one, inputs.overload, radius).machine, law
         )
-        for n, radius in samples
+        for one, radius in samples
     }
     found = workers.map("idle loss", solve_idle, tasks)
     terms = np.array([(one.hysteresis, one.eddy, one.excess) for one in found.values()]).reshape(-1, count, 3)
     radii = np.array([radius for _, radius in samples]).reshape(-1, count)
-    return _IdleSections(matcher, {n: np.polyfit(x, y, 2) for n, x, y in zip(inputs.slots, radii, terms, strict=True)})
+    parabolas = {one: np.polyfit(x, y, 2) for one, x, y in zip(inputs.combinations, radii, terms, strict=True)}
+    return _IdleSections(matcher, parabolas)
 
 
 def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleSections) -> WholeProblem:
@@ -220,8 +224,8 @@ def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleS
     longest = inputs.limits.active_length
     return WholeProblem(
         section_at=section_at,
-        slots=inputs.slots,
-        radii=tuple(matcher.fits.range(slots) for slots in inputs.slots),
+        combinations=inputs.combinations,
+        radii=tuple(matcher.fits.range(one) for one in inputs.combinations),
         lengths=(_SHORTEST * longest, longest),
         linkage_ratios=_linkage_ratios(matcher.linkage, linkages),
         constraints_of=matcher.constraints_without_planets,
@@ -249,7 +253,7 @@ def _staged(problem: WholeProblem, match: MatchOutcome, linkage: Linkage) -> Rat
     """The design of match and linkage."""
     machine, found = match.machine, match.chosen
     design = WholeDesign(
-        machine.slots,
+        Combination.of(machine),
         machine.stator_outer_radius,
         found.active_length,
         found.transmission_ratio,
@@ -304,7 +308,7 @@ def _solved(
 ) -> tuple[SolvedDesign, ...]:
     """Every design with its cross-section by the field in the place of the fits."""
     machines = {
-        name: problem.section_at(one.design.slots, one.design.stator_outer_radius).machine for name, one in shown
+        name: problem.section_at(one.design.combination, one.design.stator_outer_radius).machine for name, one in shown
     }
     tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
     found = workers.map("designs", solve_section, tasks)

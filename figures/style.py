@@ -8,6 +8,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+import pandas as pd
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -77,6 +78,11 @@ def series_style(values: Iterable[Key]) -> dict[Key, Look]:
     ordered = sorted(set(values))
     looks = ({"color": SERIES[i % len(SERIES)], "marker": MARKERS[i % len(MARKERS)]} for i in range(len(ordered)))
     return dict(zip(ordered, looks, strict=True))
+
+
+def combinations(table: pd.DataFrame) -> pd.Series:
+    """Slots and poles of each row in words, to tell series apart by; columns slots, poles."""
+    return table.slots.astype(str) + " slots, " + table.poles.astype(str) + " poles"
 
 
 def show_grid(*axes: Axes) -> None:

@@ -1,10 +1,11 @@
-"""Constrained optimum of every slot count and stator radius, refined with the field solver beyond the grid."""
+"""Constrained optimum of every slot-pole combination and stator radius, refined with the field solver beyond the grid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import nan
 
+from geometry.family import Combination
 from geometry.machine import Machine
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
@@ -24,7 +25,7 @@ _ON_THE_EDGE = 0.02  # of the range of the grid: an optimum closer to its end ma
 
 @dataclass(frozen=True)
 class Optimum:
-    """The best cross-section of one slot count and stator radius under the limit; lengths in m, torques in Nm/m.
+    """The best cross-section of one combination and stator radius under the limit; lengths in m, torques in Nm/m.
 
     half_slot_area: of one coil side [m^2]
     torque_nominal, torque_overload: mean over one electrical period (``MeanTorque``) [Nm/m], at the two current
@@ -37,7 +38,7 @@ class Optimum:
     field_solutions: designs solved on the way; newton_iterations: of the last one
     """
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     back_iron_width: float
     rotor_outer_radius: float
@@ -60,9 +61,9 @@ class Optimum:
 
 @dataclass(frozen=True)
 class NoOptimum:
-    """A slot count and stator radius [m] without an optimum, and why."""
+    """A combination and stator radius [m] without an optimum, and why."""
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     reason: str
 
@@ -74,7 +75,7 @@ class GridEdge:
     key: of the study, to be moved so that the grid holds the optimum; edge, found: shares of the stator radius
     """
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     key: str
     edge: float
@@ -85,7 +86,7 @@ class GridEdge:
         """Where the optimum lies and what to widen."""
         way = "lower" if self.key.endswith("_min") else "raise"
         return (
-            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at "
+            f"{self.combination.words}, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at "
             f"{self.found:.4f} of the stator radius, on or beyond the edge of the sweep at {self.edge:g}: "
             f"{way} {self.key}"
         )
@@ -101,13 +102,13 @@ class Optima:
     edges: tuple[GridEdge, ...]
 
     @property
-    def slots(self) -> tuple[int, ...]:
-        """Slot counts that have optima, each once, in the order of the sweep."""
-        return tuple(dict.fromkeys(optimum.slots for optimum in self.found))
+    def combinations(self) -> tuple[Combination, ...]:
+        """Those that have optima, each once, in the order of the sweep."""
+        return tuple(dict.fromkeys(optimum.combination for optimum in self.found))
 
-    def of(self, slots: int) -> tuple[Optimum, ...]:
-        """The optima of one slot count by rising radius."""
-        own = (optimum for optimum in self.found if optimum.slots == slots)
+    def of(self, combination: Combination) -> tuple[Optimum, ...]:
+        """The optima of one combination by rising radius."""
+        own = (optimum for optimum in self.found if optimum.combination == combination)
         return tuple(sorted(own, key=lambda optimum: optimum.stator_outer_radius))
 
 
@@ -117,7 +118,7 @@ class OptimumSearch:
 
     case: FieldCase
     limit: SaturationLimit
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     start: tuple[float, float]
 
@@ -142,9 +143,9 @@ def solve_optimum(search: OptimumSearch) -> Optimum | NoOptimum:
     case, limit = search.case, search.limit
     judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
     try:
-        best = find_optimum(judge, search.slots, search.stator_outer_radius, limit.limit, search.start)
+        best = find_optimum(judge, search.combination, search.stator_outer_radius, limit.limit, search.start)
     except NoOptimumError as error:
-        return NoOptimum(search.slots, search.stator_outer_radius, str(error))
+        return NoOptimum(search.combination, search.stator_outer_radius, str(error))
     return _record(case, best)
 
 
@@ -159,22 +160,22 @@ def edges_at(optimum: Optimum, grid: SweepGrid) -> list[GridEdge]:
     for key, share, (low, high) in places:
         margin = _ON_THE_EDGE * (high - low)
         if share < low + margin:
-            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_min", low, share))
+            found.append(GridEdge(optimum.combination, outer, f"sweep.{key}_min", low, share))
         if share > high - margin:
-            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_max", high, share))
+            found.append(GridEdge(optimum.combination, outer, f"sweep.{key}_max", high, share))
     return found
 
 
 def _searches(case: FieldCase, maps: DesignMaps) -> tuple[dict[str, OptimumSearch], tuple[NoOptimum, ...]]:
     """The searches that have a start, and where no design of the map holds the limit."""
     searches, without = {}, []
-    for slots, outer in maps.grid.sections:
-        name = f"{slots} slots, {2 * outer / MILLIMETRE:g} mm"
-        best = maps.map(slots, outer).best_point(maps.limit.limit)
+    for combination, outer in maps.grid.sections:
+        name = f"{combination.words}, {2 * outer / MILLIMETRE:g} mm"
+        best = maps.map(combination, outer).best_point(maps.limit.limit)
         if best is None:
-            without.append(NoOptimum(slots, outer, f"{name}: no design of the sweep holds {maps.limit.words}"))
+            without.append(NoOptimum(combination, outer, f"{name}: no design of the sweep holds {maps.limit.words}"))
         else:
-            searches[name] = OptimumSearch(case, maps.limit, slots, outer, (best.width, best.radius))
+            searches[name] = OptimumSearch(case, maps.limit, combination, outer, (best.width, best.radius))
     return searches, tuple(without)
 
 
@@ -189,7 +190,7 @@ def _record(case: FieldCase, best: BestDesign) -> Optimum:
     design, machine = best.design, best.design.machine
     torques = _torques(case, machine)
     return Optimum(
-        slots=machine.slots,
+        combination=Combination.of(machine),
         stator_outer_radius=machine.stator_outer_radius,
         back_iron_width=machine.back_iron_width,
         rotor_outer_radius=machine.rotor_outer_radius,

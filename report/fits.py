@@ -9,6 +9,7 @@ import pandas as pd
 from figures.files import File, figure_file, picture_name, table_file
 from figures.fits import fits as fits_figure
 from figures.report import Picture, Remark, Section, Table, heading
+from geometry.family import Combination
 from optimisation.fits import QUANTITIES, SectionFits
 from optimisation.optima import Optima
 from optimisation.polynomial_fits import PolynomialFit
@@ -29,7 +30,7 @@ def files(fits: SectionFits, optima: Optima) -> Iterator[File]:
 
 def section(fits: SectionFits) -> Section:
     """Fits over the stator radius, and which are refused."""
-    columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual"]
+    columns = ["slots", "poles", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual"]
     table = fits_table(fits)
     shown = table[columns].assign(quantity=table.quantity.map(heading))
     caption = "y = p2 R² + p1 R + p0 with the stator radius R in mm and y in the unit of its name."
@@ -43,20 +44,21 @@ def section(fits: SectionFits) -> Section:
 
 def remarks(fits: SectionFits) -> Iterator[str]:
     """What the run says at once: fits that are refused."""
-    for one in fits.by_slots:
+    for one in fits.each:
         yield from (f"refused: {fit.quantity}: {fit.refused}" for fit in one.fits if fit.refused)
 
 
 def fits_table(fits: SectionFits) -> pd.DataFrame:
     """Coefficients p2, p1, p0 in the unit of the quantity and millimetres of radius, with residuals and range."""
-    return pd.DataFrame([_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in _ORDER])
+    return pd.DataFrame([_row(one.combination, quantity, one.of(quantity)) for one in fits.each for quantity in _ORDER])
 
 
-def _row(slots: int, quantity: str, fit: PolynomialFit) -> dict[str, object]:
+def _row(combination: Combination, quantity: str, fit: PolynomialFit) -> dict[str, object]:
     unit = _UNITS.get(quantity, _TORQUE_UNIT)
     p2, p1, p0 = (p * MILLIMETRE**power / FACTORS[unit] for p, power in zip(fit.powers, (2, 1, 0)))
     return {
-        "slots": slots,
+        "slots": combination.slots,
+        "poles": combination.poles,
         "quantity": f"{quantity}_{unit}",
         "p2": p2,
         "p1": p1,

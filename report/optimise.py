@@ -48,7 +48,7 @@ def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Sectio
 
 def _text(output: Output) -> str:
     return (
-        f"Slot count, radius, active length, {output.transmission} are varied together against the design that was "
+        f"Slots and poles, radius, active length, {output.transmission} are varied together against the design that was "
         "found stage by stage. The model is that of the match: fits of the cross-section, masses of the drawn parts, "
         f"scaling laws of the gears. The loss {output.duty} is copper loss of the RMS {output.effort} and idle loss of "
         f"iron and magnets at a {output.speed} that is normally distributed with the RMS value. Copper loss alone "
@@ -115,7 +115,8 @@ def _row(name: str, one: SolvedDesign, output: Output) -> dict[str, object]:
     damping, loss = (column for column, _ in _columns(output)[2:])
     return {
         "design": name,
-        "slots": design.slots,
+        "slots": design.combination.slots,
+        "poles": design.combination.poles,
         "stator_diameter_mm": 2 * design.stator_outer_radius / MILLIMETRE,
         "active_length_mm": design.active_length / MILLIMETRE,
         **output.ratio_columns(design.transmission_ratio, design.linkage_ratio),
@@ -134,7 +135,8 @@ def _gain(staged: RatedDesign, one: Bettered, output: Output) -> dict[str, objec
         "stage by stage": old,
         "together": new,
         "change_percent": 100 * (new / old - 1),
-        "slots": one.found.design.slots,
+        "slots": one.found.design.combination.slots,
+        "poles": one.found.design.combination.poles,
         "stator_diameter_mm": 2 * one.found.design.stator_outer_radius / MILLIMETRE,
     }
 

@@ -80,6 +80,12 @@ class StudySection(Section):
     title: Annotated[str, Field(min_length=1)]
 
 
+def _in_pairs(poles: int) -> int:
+    if poles % 2:
+        raise ValueError("is odd, but magnets come in pairs; give an even number")
+    return poles
+
+
 class MachineSection(Section):
     """Cross-section (thesis Fig. 3.16, Table 3.10)."""
 
@@ -105,9 +111,7 @@ class MachineSection(Section):
     @field_validator("poles", mode="after")
     @classmethod
     def _poles_come_in_pairs(cls, poles: int) -> int:
-        if poles % 2:
-            raise ValueError("is odd, but magnets come in pairs; give an even number")
-        return poles
+        return _in_pairs(poles)
 
 
 class MaterialsSection(Section):
@@ -191,6 +195,7 @@ class SweepSection(Section):
     """Grid of the cross-section optimisation and its two current densities."""
 
     slots: Annotated[tuple[int, ...], Listed, Field(min_length=1), Quantity("slot counts", 3, 360)]
+    poles: Annotated[tuple[int, ...] | None, Listed, Field(min_length=1), Quantity("pole counts", 2, 360)] = None
     stator_diameters_mm: Annotated[
         tuple[float, ...], Listed, Field(min_length=1), Quantity("stator outer diameters", 10, 2000)
     ]
@@ -210,12 +215,17 @@ class SweepSection(Section):
         _require_order(self, "j_nominal_rms_A_per_mm2", "j_overload_rms_A_per_mm2")
         return self
 
-    @field_validator("slots", "stator_diameters_mm", mode="after")
+    @field_validator("slots", "poles", "stator_diameters_mm", mode="after")
     @classmethod
-    def _named_once(cls, values: tuple[float, ...]) -> tuple[float, ...]:
-        if len(set(values)) < len(values):
+    def _named_once(cls, values: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if values is not None and len(set(values)) < len(values):
             raise ValueError("names a value twice; give each one once")
         return values
+
+    @field_validator("poles", mode="after")
+    @classmethod
+    def _poles_come_in_pairs(cls, counts: tuple[int, ...] | None) -> tuple[int, ...] | None:
+        return counts if counts is None else tuple(_in_pairs(poles) for poles in counts)
 
 
 SaturationReading = Literal["aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period"]
@@ -456,6 +466,7 @@ class MatchSection(Section):
     enforce_damping: bool
     # optional: the designer's choice of the machine to go on with; without it the least cost decides
     chosen_slots: Annotated[int | None, Quantity("slot count to go on with", 3, 360)] = None
+    chosen_poles: Annotated[int | None, Quantity("pole count to go on with", 2, 360)] = None
     chosen_stator_diameter_mm: Annotated[float | None, Quantity("stator diameter to go on with", 10, 2000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
