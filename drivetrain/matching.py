@@ -167,7 +167,7 @@ class MatchInputs:
 
 @dataclass(frozen=True)
 class CombinationMatches:
-    """The matches of one slot-pole combination with one overload law; why there are none where ``over_radius`` is None."""
+    """The matches of one combination with one overload law; why there are none where ``over_radius`` is None."""
 
     combination: Combination
     overload: OverloadLaw

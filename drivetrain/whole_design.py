@@ -1,4 +1,4 @@
-"""Radius, slots and poles, active length, transmission ratio and linkage chosen together instead of one after the other.
+"""Radius, slots, poles, active length, transmission ratio and linkage chosen together, not one after the other.
 
 Four objectives: mass, equivalent mass, regenerative damping and loss on the road. The machine is its polynomials over
 the stator radius with the masses of its drawn parts, the gearbox its scaling laws, as in the match; the constraints are
@@ -66,7 +66,7 @@ class RoadDemand:
 
 @dataclass(frozen=True)
 class WholeDesign:
-    """One design, SI: slots and poles, stator outer radius, active length, tau_t [m/rad], nominal linkage ratio [m/rad]."""
+    """One design, SI: slots, poles, stator outer radius, active length, tau_t [m/rad], nominal linkage ratio [m/rad]."""
 
     combination: Combination
     stator_outer_radius: float
@@ -105,7 +105,8 @@ class WholeProblem:
     """What a design is judged by.
 
     section_at: (combination, stator outer radius [m]) -> ``SizedSection``, for example from the polynomial fits
-    combinations: of slots and poles; radii: range of the stator outer radius [m] for each; lengths: range of the active length [m]
+    combinations: of slots and poles; radii: range of the stator outer radius [m] for each
+    lengths: range of the active length [m]
     linkage_ratios: smallest and largest nominal ratio of the linkages that may be built [m/rad]
     constraints_of: as in ``match_over_radius``, without that on the planets, which depends on the linkage
     gearbox: at any linkage ratio, which the design replaces; masses: what a motor weighs

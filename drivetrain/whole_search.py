@@ -1,4 +1,4 @@
-"""The loop closed: radius, slots and poles, active length, ratio and linkage together, beside the design found stage by stage.
+"""The loop closed: radius, slots, poles, active length, ratio and linkage together, beside the design found by stages.
 
 The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
 front are then solved by the field.
@@ -188,7 +188,7 @@ def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]
 
 
 class _IdleSections:
-    """(combination, stator outer radius [m]) -> ``RoadSection`` from the fits, its idle loss a parabola over the radius."""
+    """(combination, stator outer radius [m]) -> ``RoadSection`` of the fits, its idle loss a parabola over the radius."""
 
     def __init__(self, matcher: Matcher, parabolas: dict[Combination, np.ndarray]) -> None:
         self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by combination

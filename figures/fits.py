@@ -23,22 +23,30 @@ _ROOM_FOR_TEXT = 0.32  # of the height, for the quality of the fits
 
 
 @styled
-def fits(optima: pd.DataFrame, polynomials: pd.DataFrame) -> Figure:
-    """Each quantity at the optimum over the stator outer radius, with its fit, R^2 and residual, for every slot-pole combination.
+def fits(optima: pd.DataFrame, polynomials: pd.DataFrame, further: tuple[tuple[str, str, str], ...] = ()) -> Figure:
+    """Each quantity at the optimum over the stator outer radius, with its fit, R^2 and residual, for every
+    slot-pole combination.
 
     optima: columns slots, poles, stator_diameter_mm and the names of ``QUANTITIES``; one reading and limit
-    polynomials: columns slots, poles, quantity, p2, p1, p0, r_squared, rms_residual, refused; p2 R^2 + p1 R + p0 with the
-        stator outer radius R in mm. ``refused`` holds the reason, or nothing (empty, False, NaN) when the fit holds
+    polynomials: columns slots, poles, quantity, p2, p1, p0, r_squared, rms_residual, refused; p2 R^2 + p1 R + p0 with
+        the stator outer radius R in mm. ``refused`` holds the reason, or nothing (empty, False, NaN) when the fit holds
+    further: (column, title, unit) of quantities beside ``QUANTITIES``
     """
-    figure = new_figure(9.0)
-    axes = figure.subplots(3, 2, sharex=True).ravel()
+    panels = (*QUANTITIES, *further)
+    rows = -(-len(panels) // 2)
+    figure = new_figure(3.0 * rows)
+    axes = figure.subplots(rows, 2, sharex=True).ravel()
+    for axis in axes[len(panels) :]:
+        axis.axis("off")
+    axes = axes[: len(panels)]
     optima, polynomials = (table.assign(combination=combinations(table)) for table in (optima, polynomials))
     style = series_style(optima.combination)
-    for axis, (quantity, title, unit) in zip(axes, QUANTITIES, strict=True):
+    for axis, (quantity, title, unit) in zip(axes, panels, strict=True):
         _panel(axis, optima, polynomials[polynomials.quantity == quantity], quantity, unit, style)
         axis.set_title(title, loc="left")
         axis.set_ylabel(f"{_noun(title)} / {f'({unit})' if '/' in unit else unit}")
     for axis in axes[-2:]:
+        axis.tick_params(labelbottom=True)
         axis.set_xlabel("stator outer radius / mm")
     letter(axes)
     show_grid(*axes)

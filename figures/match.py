@@ -20,7 +20,6 @@ from figures.style import (
     LIGHT_GREY,
     SERIES,
     VERMILION,
-    Look,
     combinations,
     letter,
     new_figure,

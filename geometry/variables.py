@@ -1,4 +1,4 @@
-"""Dimensions of the cross-section that may be varied, by name: what the sweep, the optima, fits and reports speak of."""
+"""Dimensions of the cross-section that may be varied, by name: what sweep, optima, fits and reports speak of."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ class BuildRule(Protocol):
     """A rule that a machine must hold."""
 
     def room(self, machine: Machine, layout: WindingLayout) -> float:
-        """Room that is left, relative: zero or more where the rule holds."""
+        """Room that is left, relative (dimensionless): zero or more where the rule holds."""
 
     def words(self, machine: Machine, layout: WindingLayout) -> str:
         """What the rule asks of this machine."""
@@ -32,7 +32,7 @@ class MagnetStands:
         B g / mu_0 + (B - B_r) l_m / (mu_0 mu_r) = -U,   B >= B_knee
         l_m >= mu_r (mu_0 U + B_knee g) / (B_r - B_knee)
 
-    remanence: B_r, knee: B_knee [T], both at the worst temperature; recoil_permeability: mu_r, dimensionless
+    remanence: B_r [T], knee: B_knee [T], both at the worst temperature; recoil_permeability: mu_r, dimensionless
     slot_density: amplitude of the overload current density over the whole slot, k_cp J [A/m^2]
     Standard magnetic circuit without leakage and curvature, an estimate; the field decides later, over all of the
     magnet, in ``electrical.magnets_stage``.
@@ -50,6 +50,7 @@ class MagnetStands:
         return self.recoil_permeability * driven / (self.remanence - self.knee)
 
     def room(self, machine: Machine, layout: WindingLayout) -> float:
+        """Of the magnet length, dimensionless, see ``BuildRule``."""
         return 1 - self.least_length(machine, layout) / machine.magnet_length
 
     def words(self, machine: Machine, layout: WindingLayout) -> str:
@@ -57,8 +58,22 @@ class MagnetStands:
         return f"magnets of {least:.2f} mm at least, which stand the overload current"
 
 
+@dataclass(frozen=True)
+class WireEnters:
+    """The slot opening must let a wire pass; diameter: of the wire over its insulation [m]."""
+
+    diameter: float
+
+    def room(self, machine: Machine, layout: WindingLayout) -> float:
+        """Of the slot opening, dimensionless, see ``BuildRule``."""
+        return 1 - self.diameter / machine.opening_width
+
+    def words(self, machine: Machine, layout: WindingLayout) -> str:
+        return f"a slot opening of {self.diameter / MILLIMETRE:.2f} mm at least, through which the wire passes"
+
+
 def largest_tooth_potential(layout: WindingLayout) -> float:
-    """Largest magnetic potential of a tooth against the mean of all, over the ampere-turns of a coil side.
+    """Largest magnetic potential of a tooth against the mean of all, over the ampere-turns of a coil side, dimensionless.
 
     With balanced currents of amplitude 1, tooth j has the phasor c_j = sum_k s_k exp(-i 2 pi phase_k / 3) over the
     coils k around it, and the largest of |c_j - mean c| is returned, dimensionless; 1 for coils on every single tooth.

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import OptimizeResult, minimize
 
 from geometry.family import Combination
 from geometry.machine import GeometryError, Machine
@@ -23,14 +23,21 @@ from units import MILLIMETRE
 
 _FARTHEST = 0.35  # relative change of a dimension in one search
 _STEP = 1e-4  # relative change for the derivatives
-_TOLERANCE = 1e-4  # of torque and limit, relative; below it the search jams in the rounding of the field solutions
-_ROUNDS = 25  # of one search
+_TOLERANCE = 1e-5  # of torque and limit, relative
+_ROUNDS = 12  # of one search
+_SHORTEST = 1e-4  # relative; designs closer together differ by the rounding of their field solutions
+_HELD = 2e-4  # relative excess over limit and rules at which a design of a search that ends there still counts
 _SEARCHES = 2, 6  # at least, at most; each on a mesh of where the last one ended
 _STANDS_STILL = 5e-3  # relative change of every dimension in the last search
 _BINDS = 5e-3  # relative distance from the limit at which it still counts as binding
+_RULE_SLACK = 1e-3  # relative, of a rule at the end of a search
 _UNBUILDABLE = 1.0  # torque and limit of a design that cannot be built, relative: worse than any
 
 _Looked = tuple[Design, np.ndarray, np.ndarray]  # design, slopes of torque [Nm/m] and limited flux density [T], (k,)
+
+
+class _StandsStillError(Exception):
+    """The search asks for a design that differs from a known one by rounding."""
 
 
 @dataclass
@@ -59,11 +66,16 @@ class _Problem:
         """What is known of a design at x, each solved once; None where it cannot be built."""
         key = np.asarray(x, dtype=float).tobytes()
         if key not in self.known:
+            self._require_a_step(x)
             try:
                 self.known[key] = self._solved(x)
             except GeometryError:
                 self.known[key] = None
         return self.known[key]
+
+    def _require_a_step(self, x: np.ndarray) -> None:
+        if any(np.abs(x - np.frombuffer(key)).max() < _SHORTEST for key in self.known):
+            raise _StandsStillError
 
     def _solved(self, x: np.ndarray) -> _Looked:
         design = self.solver.design(self.machine(x))
@@ -89,9 +101,22 @@ class _Problem:
 
     def search(self) -> np.ndarray:
         """x of the largest torque under the limit."""
+        try:
+            found = self._minimised()
+            end, why = found.x, found.message
+            x = end if found.success else self._best_known()
+        except _StandsStillError:
+            x, why = self._best_known(), "the search stands still where the limit is not held"
+            end = np.zeros(len(self.centre))
+        self._require_rules(end if x is None else x)
+        if x is None:
+            raise NoOptimumError(f"{self.where}: {why}")
+        return x
+
+    def _minimised(self) -> OptimizeResult:
         still = np.zeros(len(self.centre))
         scale = self.require(still)[0].torque
-        found = minimize(
+        return minimize(
             lambda x: _UNBUILDABLE if (seen := self.look(x)) is None else -seen[0].torque / scale,
             still,
             jac=lambda x: -self.require(x)[1] / scale,
@@ -100,9 +125,40 @@ class _Problem:
             constraints=[{"type": "ineq", "fun": self.room, "jac": self.room_slopes}],
             options={"ftol": _TOLERANCE, "maxiter": _ROUNDS},
         )
-        if not found.success:
-            raise NoOptimumError(f"{self.where}: {found.message}")
-        return found.x
+
+    def _require_rules(self, x: np.ndarray) -> None:
+        machine = self.machine(x)
+        layout = self.solver.judge.case.layout(machine)
+        for rule in self.freedom.rules:
+            if rule.room(machine, layout) < -_RULE_SLACK:
+                raise NoOptimumError(
+                    f"{self.where}: no design was found that holds the limit and has {rule.words(machine, layout)}: "
+                    "widen [variables]"
+                )
+
+    def _best_known(self) -> np.ndarray | None:
+        """x of the largest torque among the designs that were looked at and hold limit and rules.
+
+        A search that starts at its optimum ends in the rounding of the field solutions.
+        """
+        places = {key: np.frombuffer(key) for key, seen in self.known.items() if seen is not None}
+        held = [key for key, x in places.items() if self.room(x).min() > -_HELD]
+        return places[max(held, key=self._torque_of)] if held else None
+
+    def _torque_of(self, key: bytes) -> float:
+        seen = self.known[key]
+        assert seen is not None  # those that cannot be built are left out
+        return seen[0].torque
+
+    def _require_rules(self, x: np.ndarray) -> None:
+        machine = self.machine(x)
+        layout = self.solver.judge.case.layout(machine)
+        for rule in self.freedom.rules:
+            if rule.room(machine, layout) < -_RULE_SLACK:
+                raise NoOptimumError(
+                    f"{self.where}: no design was found that holds the limit and has {rule.words(machine, layout)}: "
+                    "widen [variables]"
+                )
 
     def room(self, x: np.ndarray) -> np.ndarray:
         """What is left below the limit and of every rule, relative (1 + rules,)."""

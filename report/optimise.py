@@ -48,7 +48,7 @@ def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Sectio
 
 def _text(output: Output) -> str:
     return (
-        f"Slots and poles, radius, active length, {output.transmission} are varied together against the design that was "
+        f"Slots, poles, radius, active length, {output.transmission} are varied together against the design that was "
         "found stage by stage. The model is that of the match: fits of the cross-section, masses of the drawn parts, "
         f"scaling laws of the gears. The loss {output.duty} is copper loss of the RMS {output.effort} and idle loss of "
         f"iron and magnets at a {output.speed} that is normally distributed with the RMS value. Copper loss alone "

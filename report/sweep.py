@@ -79,7 +79,8 @@ def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComp
             Picture(picture_name("design_maps"), "The same for every stator diameter, as shares of the stator radius."),
             *(Remark(f"{edge.sentence}.") for edge in optima.edges),
             *(Remark(f"{one.reason}.") for one in optima.without),
-            Table(optima_table(optima)[list(_SHOWN)], caption),
+            *_freed(optima),
+            Table(optima_table(optima)[[*_SHOWN, *_freed_columns(optima)]], caption),
             _overload(case, optima),
             *_readings(limits),
         ),
@@ -89,7 +90,7 @@ def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComp
 def optima_table(optima: Optima) -> pd.DataFrame:
     """The optima in drawing units, one row each."""
     rows = [_row(optimum, optima) for optimum in optima.found]
-    return pd.DataFrame(rows, columns=list(_COLUMNS))
+    return pd.DataFrame(rows, columns=[*_COLUMNS, *_freed_columns(optima)])
 
 
 def limits_table(limits: LimitComparison) -> pd.DataFrame:
@@ -130,7 +131,13 @@ def _row(optimum: Optimum, optima: Optima) -> dict[str, object]:
             "reading": optima.limit.reading.name,
         }
     )
-    return drawn(values, _COLUMNS)
+    further = zip(optima.freedom.further, optimum.further, strict=True)
+    return drawn(values, _COLUMNS) | {variable.key: variable.drawn(value) for variable, value in further}
+
+
+def _freed_columns(optima: Optima) -> list[str]:
+    """Columns of what was freed, without those that stand in the table anyway."""
+    return [variable.key for variable in optima.freedom.further if variable.key not in _COLUMNS]
 
 
 def _of(table: pd.DataFrame, combination: Combination) -> pd.DataFrame:
@@ -154,8 +161,21 @@ def _what(maps: DesignMaps) -> str:
     return (
         "Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux "
         f"density of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs "
-        f"for every slot-pole combination and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined "
-        "with further field solutions until the limit is met to 0.02 %."
+        f"for every slot-pole combination and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then "
+        "refined with further field solutions until the limit is met to 0.02 %."
+    )
+
+
+def _freed(optima: Optima) -> tuple[str, ...]:
+    """What the optima could choose beside back iron and rotor radius."""
+    if not optima.freedom.further:
+        return ()
+    said = "; ".join(
+        f"{one.words} {one.drawn(one.low):.4g} to {one.amount(one.high)}" for one in optima.freedom.further
+    )
+    return (
+        f"From the optimum over the grid on, the search by gradients was free in more dimensions: {said}. The magnets "
+        "must stand the overload current in the magnetic circuit, and the wire must pass the slot opening.",
     )
 
 

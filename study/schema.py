@@ -191,6 +191,29 @@ class FluxMapSection(Section):
     currents: Annotated[int | None, Quantity("currents along either axis", 5, 101)] = None
 
 
+Bounds = Annotated[tuple[float, float] | None, Listed]
+
+
+class VariablesSection(Section):
+    """Dimensions that the optima choose beside back iron and rotor radius: smallest and largest; optional, and what is
+    not named stays as [machine] states it."""
+
+    magnet_length_mm: Annotated[Bounds, Quantity("radial magnet length", 0.3, 50)] = None
+    magnet_arc_fraction: Annotated[Bounds, Quantity("magnet arc over pole pitch", 0.1, 1)] = None
+    airgap_mm: Annotated[Bounds, Quantity("air gap between magnets and teeth", 0.05, 20)] = None
+    tooth_width_mm: Annotated[Bounds, Quantity("tooth width", 0.3, 200)] = None
+    slot_opening_mm: Annotated[Bounds, Quantity("slot opening", 0.1, 50)] = None
+    shoe_d1_mm: Annotated[Bounds, Quantity("depth of the parallel-sided slot opening", 0.05, 50)] = None
+    shoe_d2_mm: Annotated[Bounds, Quantity("depth of the shoe's taper", 0.05, 50)] = None
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _ends_are_in_order(cls, ends: tuple[float, float] | None) -> tuple[float, float] | None:
+        if ends is not None and not ends[0] < ends[1]:
+            raise ValueError(f"goes from {ends[0]:g} to {ends[1]:g}; give the smallest value first, then the largest")
+        return ends
+
+
 class SweepSection(Section):
     """Grid of the cross-section optimisation and its two current densities."""
 
@@ -657,6 +680,7 @@ class Study(Section):
     winding: WindingSection
     mesh: MeshSection = MeshSection()
     sweep: SweepSection
+    variables: VariablesSection = VariablesSection()
     saturation: SaturationSection
     chain: ChainSection | None = None  # without it everything is as stated
     motorcycle: MotorcycleSection | None = None

@@ -23,6 +23,7 @@ from study.chain import drives, searches_linkage
 from study.errors import StudyError
 from study.inputs_linkage import linkage_search, stated_hardpoints
 from study.inputs_machine import combinations, machine_family, mesh_density
+from study.inputs_variables import freedom
 from study.inputs_vehicle import ride_case
 from study.magnet_choice import design_magnet
 from study.read import check_winding, sentence_part, with_keys
@@ -35,7 +36,15 @@ FEWEST_DIAMETERS = 4  # a quadratic through three points has no residual, so tha
 
 def check_study(study: Study) -> None:
     """Raise StudyError with one sentence for the first thing that would stop a run of the whole study."""
-    for check in (check_diameters, check_windings, check_steel, check_magnets, check_sweep, check_libraries):
+    for check in (
+        check_diameters,
+        check_windings,
+        check_steel,
+        check_magnets,
+        check_variables,
+        check_sweep,
+        check_libraries,
+    ):
         check(study)
 
 
@@ -70,6 +79,11 @@ def check_steel(study: Study) -> None:
 def check_magnets(study: Study) -> None:
     """The grade of the magnets must exist, and what the study states beside it must be its own."""
     design_magnet(study)
+
+
+def check_variables(study: Study) -> None:
+    """What the optima may choose must leave machines that can be built."""
+    freedom(study)
 
 
 def check_sweep(study: Study) -> None:

@@ -16,6 +16,7 @@ PURE_NUMBERS = set(
     machine.stacking_factor thermal.emissivity
     materials.recoil_permeability winding.layers winding.packing_factor winding.coil_pitch
     mesh.gap_edges_per_revolution mesh.gap_layers mesh.elements_across_tooth
+    variables.magnet_arc_fraction
     sweep.slots sweep.poles sweep.back_iron_fraction_min sweep.back_iron_fraction_max sweep.back_iron_steps
     sweep.rotor_radius_fraction_min sweep.rotor_radius_fraction_max sweep.rotor_radius_steps
     motorcycle.front_weight_fraction motorcycle.rear_motion_ratio ride.road_seeds
