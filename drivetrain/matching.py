@@ -7,7 +7,7 @@ and as somebody else states them, and the chosen machine under the requirements 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
 from math import sqrt
 from operator import attrgetter
@@ -33,6 +33,7 @@ from drivetrain.match import (
     SizedSection,
     linear_overload,
     match,
+    match_at,
     match_curves,
     match_over_radius,
     planet_clearance,
@@ -96,17 +97,19 @@ OVERLOAD_LAWS: tuple[OverloadLaw, ...] = (FieldOverload(), LinearOverload())
 class ChosenByHand:
     """What the study fixes of the machine to go on with; None where the least cost decides.
 
-    stator_outer_radius: [m]
+    stator_outer_radius: [m]; gear_ratio: linkage ratio over transmission ratio; active_length: [m]
     """
 
     slots: int | None = None
     stator_outer_radius: float | None = None
     poles: int | None = None
+    gear_ratio: float | None = None
+    active_length: float | None = None
 
     @property
     def nothing(self) -> bool:
         """Whether the least cost decides about everything."""
-        return self.slots is None and self.poles is None and self.stator_outer_radius is None
+        return all(getattr(self, one.name) is None for one in fields(self))
 
 
 @dataclass(frozen=True)
@@ -270,6 +273,19 @@ class Matcher:
         found = self.constraints(section)
         return match(section, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox, model=self.model)
 
+    def match_by_hand(self, section: SizedSection) -> Match:
+        """As ``match``, at the gear ratio and active length that the designer gives. Raises Infeasible, MatchError."""
+        ratio, length = self.inputs.by_hand.gear_ratio, self.inputs.by_hand.active_length
+        if ratio is None and length is None:
+            return self.match(section)
+        if ratio is None and self.inputs.gear_stages:
+            raise MatchError("match.chosen_active_length_mm needs match.chosen_gear_ratio; add it")
+        found, at = self.constraints(section), self.linkage.ratio_nominal / (ratio or 1.0)
+        return match_at(
+            section, at, length, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox,
+            model=self.model,
+        )  # fmt: skip
+
     def over_radius(self, combination: Combination, overload: OverloadLaw) -> CombinationMatches:
         """Over the range of the fits."""
         try:
@@ -394,7 +410,7 @@ def _choose(matcher: Matcher, best: RadiusMatches, output: Output) -> tuple[Matc
         return best.best, "least cost over all radii and slot-pole combinations"
     section = _section_by_hand(matcher, best.best.section.machine)
     try:
-        chosen = matcher.match(section)
+        chosen = matcher.match_by_hand(section)
     except Infeasible as refusal:
         raise MatchError(_no_match_by_hand(section.machine, best.best, refusal.finding.words(output))) from None
     return chosen, _comparison(chosen, best)

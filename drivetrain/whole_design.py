@@ -66,7 +66,7 @@ class RoadDemand:
 
 @dataclass(frozen=True)
 class WholeDesign:
-    """One design, SI: slots, poles, stator outer radius, active length, tau_t [m/rad], nominal linkage ratio [m/rad]."""
+    """One design, SI: slots, poles, stator outer radius, active length, tau_t and nominal linkage ratio [m/rad]."""
 
     combination: Combination
     stator_outer_radius: float

@@ -124,11 +124,65 @@ class SolvedDesign:
 
 
 @dataclass(frozen=True)
+class SearchRange:
+    """What the search could choose from.
+
+    radii: of the stator for each combination [m]; lengths: active [m]; ratios: transmission, linkage_ratios: nominal
+        ratios of the linkages [m/rad], all smallest and largest
+    """
+
+    radii: tuple[tuple[Combination, tuple[float, float]], ...]
+    lengths: tuple[float, float]
+    ratios: tuple[float, float]
+    linkage_ratios: tuple[float, float]
+
+    def hits(self, design: WholeDesign) -> tuple[str, ...]:
+        """The ends that a design lies on, in words with the key of the study that widens them."""
+        radii = dict(self.radii)[design.combination]
+        axes = (
+            (design.stator_outer_radius, radii, _DIAMETER_ENDS),
+            (design.active_length, self.lengths, _LENGTH_ENDS),
+            (design.transmission_ratio, self.ratios, _RATIO_ENDS),
+            (design.linkage_ratio, self.linkage_ratios, _LINKAGE_ENDS),
+        )
+        return tuple(words for value, ends, names in axes for words in _end(value, ends, names))
+
+
+_AT_THE_END = 2e-3  # of the range; a design closer to its end lies on it
+_DIAMETER_ENDS = (
+    "the smallest diameter: add smaller ones to sweep.stator_diameters_mm",
+    "the largest diameter: add larger ones to sweep.stator_diameters_mm",
+)
+_LENGTH_ENDS = (
+    "the shortest machine of the search, a tenth of match.length_max_mm",
+    "the longest machine: raise match.length_max_mm",
+)
+_RATIO_ENDS = (
+    "the smallest transmission ratio: raise match.speed_max_rad_per_s, or match.gearbox_stages",
+    "the largest transmission ratio: lower match.gearbox_stages",
+)
+_LINKAGE_ENDS = (
+    "the smallest linkage ratio: let [linkage_search] choose a smaller one",
+    "the largest linkage ratio of the front: raise linkage_search.ratio_limit_mm_per_rad",
+)
+
+
+def _end(value: float, ends: tuple[float, float], names: tuple[str, str]) -> tuple[str, ...]:
+    """Which end of a range a value lies on; none where there is nothing to choose."""
+    low, high = ends
+    margin = _AT_THE_END * (high - low)
+    if margin <= 0:
+        return ()
+    return tuple(name for name, apart in zip(names, (value - low, high - value), strict=True) if apart <= margin)
+
+
+@dataclass(frozen=True)
 class WholeSearch:
     """What the searches found.
 
     staged: the design found stage by stage, by the model; bettered: in one objective at a time; front: by the model
     solved: staged, bettered and some of the front by the field, in this order; force_rms: of the road [N]
+    choices: what the search could choose from
     """
 
     staged: RatedDesign
@@ -136,6 +190,7 @@ class WholeSearch:
     front: tuple[RatedDesign, ...]
     solved: tuple[SolvedDesign, ...]
     force_rms: float
+    choices: SearchRange
 
 
 def optimise_stage(
@@ -167,7 +222,8 @@ def optimise_stage(
         for one in questions(staged.values.objectives, requirements.maximum_damping)
     )
     shown = _shown(staged, bettered, spread(found, inputs.solved))
-    return WholeSearch(staged, bettered, found, _solved(problem, case, law, shown, workers), requirements.force_rms)
+    solved, choices = _solved(problem, case, law, shown, workers), _choices(problem)
+    return WholeSearch(staged, bettered, found, solved, requirements.force_rms, choices)
 
 
 def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:
@@ -188,7 +244,7 @@ def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]
 
 
 class _IdleSections:
-    """(combination, stator outer radius [m]) -> ``RoadSection`` of the fits, its idle loss a parabola over the radius."""
+    """(combination, stator outer radius [m]) -> ``RoadSection`` of the fits, its idle loss a parabola over that."""
 
     def __init__(self, matcher: Matcher, parabolas: dict[Combination, np.ndarray]) -> None:
         self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by combination
@@ -235,6 +291,12 @@ def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleS
         loss_of=partial(_road_loss, demand),
         targets=(inputs.scales.mass, inputs.scales.equivalent_mass),
     )
+
+
+def _choices(problem: WholeProblem) -> SearchRange:
+    radii = tuple(zip(problem.combinations, problem.radii, strict=True))
+    ratios = problem.ratios if problem.gearbox.stage_count else problem.linkage_ratios
+    return SearchRange(radii, problem.lengths, ratios, problem.linkage_ratios)
 
 
 def _road_loss(demand: RoadDemand, section: SizedSection, design: WholeDesign) -> float:

@@ -73,7 +73,7 @@ class WireEnters:
 
 
 def largest_tooth_potential(layout: WindingLayout) -> float:
-    """Largest magnetic potential of a tooth against the mean of all, over the ampere-turns of a coil side, dimensionless.
+    """Largest magnetic potential of a tooth against their mean, over the ampere-turns of a coil side, dimensionless.
 
     With balanced currents of amplitude 1, tooth j has the phasor c_j = sum_k s_k exp(-i 2 pi phase_k / 3) over the
     coils k around it, and the largest of |c_j - mean c| is returned, dimensionless; 1 for coils on every single tooth.

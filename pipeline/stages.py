@@ -165,7 +165,7 @@ _MACHINE: tuple[Node, ...] = (
     Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
     Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
-    Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
+    Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True, remarks=optimise.remarks),
 )
 
 

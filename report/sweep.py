@@ -161,8 +161,8 @@ def _what(maps: DesignMaps) -> str:
     return (
         "Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux "
         f"density of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs "
-        f"for every slot-pole combination and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then "
-        "refined with further field solutions until the limit is met to 0.02 %."
+        f"for every slot-pole combination and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), "
+        "then refined with further field solutions until the limit is met to 0.02 %."
     )
 
 

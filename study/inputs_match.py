@@ -98,7 +98,13 @@ def whole_search_inputs(study: Study) -> WholeSearchInputs:
 
 def _by_hand(section: MatchSection) -> ChosenByHand:
     diameter = section.si.chosen_stator_diameter
-    return ChosenByHand(section.chosen_slots, None if diameter is None else diameter / 2, section.chosen_poles)
+    return ChosenByHand(
+        slots=section.chosen_slots,
+        stator_outer_radius=None if diameter is None else diameter / 2,
+        poles=section.chosen_poles,
+        gear_ratio=section.chosen_gear_ratio,
+        active_length=section.si.chosen_active_length,
+    )
 
 
 def _printed(study: Study) -> PrintedMachine | None:

@@ -491,6 +491,8 @@ class MatchSection(Section):
     chosen_slots: Annotated[int | None, Quantity("slot count to go on with", 3, 360)] = None
     chosen_poles: Annotated[int | None, Quantity("pole count to go on with", 2, 360)] = None
     chosen_stator_diameter_mm: Annotated[float | None, Quantity("stator diameter to go on with", 10, 2000)] = None
+    chosen_gear_ratio: Annotated[float | None, Quantity("linkage ratio over transmission ratio", 1, 1e5)] = None
+    chosen_active_length_mm: Annotated[float | None, Quantity("active length to go on with", 1, 5000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
     # optional: only with planetary stages

@@ -21,7 +21,8 @@ PURE_NUMBERS = set(
     sweep.rotor_radius_fraction_min sweep.rotor_radius_fraction_max sweep.rotor_radius_steps
     motorcycle.front_weight_fraction motorcycle.rear_motion_ratio ride.road_seeds
     linkage_search.ratio_weight linkage_search.seeds linkage_search.population linkage_search.generations
-    match.weight_inertia match.weight_radius match.chosen_slots match.chosen_poles match.gearbox_stages
+    match.weight_inertia match.weight_radius match.chosen_slots match.chosen_poles match.chosen_gear_ratio
+    match.gearbox_stages
     match.gear_ring_diameter_fraction
     match.gear_overload_factor match.gear_contact_ratio_factor match.gear_poisson_ratio
     prices.lamination prices.magnet prices.copper prices.shaft
