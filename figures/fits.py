@@ -19,7 +19,7 @@ QUANTITIES = (
     ("rotor_outer_radius_mm", "rotor outer radius", "mm"),
     ("half_slot_area_mm2", "half-slot area", "mm²"),
 )
-_ROOM_FOR_TEXT = 0.32  # of the height, for the quality of the fits
+_ROOM_FOR_TEXT = 0.16  # of the height, for each line on the quality of a fit
 
 
 @styled
@@ -83,7 +83,7 @@ def _panel(
             _draw_fit(axes, fit, radius, combination, look)
             lines.append(_quality(fit, combination, unit))
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + _ROOM_FOR_TEXT * (high - low))
+    axes.set_ylim(low, high + _ROOM_FOR_TEXT * len(lines) * (high - low))
     axes.text(0.02, 0.97, "\n".join(lines), transform=axes.transAxes, va="top", fontsize=8.5)
 
 

@@ -148,7 +148,7 @@ def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame
         ("active_length_mm", "active length / mm"),
         ("cost", "cost (dimensionless)"),
     )
-    figure = new_figure(4.4)
+    figure = new_figure(4.8)
     axes = figure.subplots(1, 3)
     table = table.assign(combination=combinations(table))
     style = series_style(table.combination)
@@ -159,7 +159,7 @@ def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame
         axis.set_title(label.split(" /")[0].split(" (")[0], loc="left")
     letter(axes)
     show_grid(*axes)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 

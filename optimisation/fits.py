@@ -106,7 +106,8 @@ class SectionFits:
         """The best cross-section at a stator radius [m]. Raises FitRefused outside the range or for a refused fit."""
         own = self.of(combination)
         further = tuple((one.variable.name, one(radius)) for one in own.further)
-        return FittedSection(*(float(fit(radius)) for fit in own.fits), further)
+        values = {name: float(fit(radius)) for name, fit in zip(QUANTITIES, own.fits, strict=True)}
+        return FittedSection(**values, further=further)
 
 
 def fits_stage(optima: Optima) -> SectionFits:

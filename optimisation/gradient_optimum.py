@@ -126,16 +126,6 @@ class _Problem:
             options={"ftol": _TOLERANCE, "maxiter": _ROUNDS},
         )
 
-    def _require_rules(self, x: np.ndarray) -> None:
-        machine = self.machine(x)
-        layout = self.solver.judge.case.layout(machine)
-        for rule in self.freedom.rules:
-            if rule.room(machine, layout) < -_RULE_SLACK:
-                raise NoOptimumError(
-                    f"{self.where}: no design was found that holds the limit and has {rule.words(machine, layout)}: "
-                    "widen [variables]"
-                )
-
     def _best_known(self) -> np.ndarray | None:
         """x of the largest torque among the designs that were looked at and hold limit and rules.
 

@@ -193,10 +193,13 @@ def test_radius_without_a_match_stays_empty(assert_readable):
     numbers = {"transmission_ratio": 2.3e-3, "active_length": 36e-3, "cost": 0.6}
     found = {name: np.array([np.nan, value]) for name, value in numbers.items()}
     result = SimpleNamespace(radii=np.array([35e-3, 42.5e-3]), **found)
-    table = pd.concat([radius_table(TWELVE, "field", result, Wheel()), radius_table(TWELVE, "linear", result, Wheel())])
+    table = pd.concat([radius_table(TWELVE, law, result, Wheel()) for law in ("field", "linear")])
     assert table.stator_outer_radius_mm.tolist() == [35.0, 42.5] * 2
     assert table.cost.isna().tolist() == [True, False] * 2
-    figure = match_over_radius(table, Wheel(), best=best_row(TWELVE, "field", 42.5e-3, MATCHED, Wheel()))
+    other = radius_table(Combination(9, 14), "linear", result, Wheel())
+    figure = match_over_radius(
+        pd.concat([table, other]), Wheel(), best=best_row(TWELVE, "field", 42.5e-3, MATCHED, Wheel())
+    )
     assert "12 slots, 10 poles, overload torque scaled linearly" in words(figure) and "chosen" in words(figure)
     assert_readable(figure)
 

@@ -11,6 +11,7 @@ import optimisation.sweep as sweep_module
 from geometry.family import Combination
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.fits import QUANTITIES, fits_stage
+from optimisation.freedom import AS_SWEPT
 from optimisation.limits import limits_stage
 from optimisation.optima import Optima, Optimum, edges_at, optima_stage
 from optimisation.polynomial_fits import FitRefused
@@ -37,7 +38,7 @@ def maps():
 
 @pytest.fixture(scope="module")
 def optima(maps):
-    return optima_stage(CASE, maps, InThisProcess())
+    return optima_stage(CASE, maps, AS_SWEPT, InThisProcess())
 
 
 # ---- sweep ----------------------------------------------------------------------------------------------------------
@@ -111,7 +112,7 @@ def test_no_design_below_the_limit_is_a_sentence(maps):
     impossible = DesignMaps(GRID, replace(LIMIT, limit=0.4), maps.data)
     refused = "no design of the sweep holds the limit of 0.4 T.*raise saturation.limit_T"
     with pytest.raises(NoOptimumError, match=refused):
-        optima_stage(CASE, impossible, InThisProcess())
+        optima_stage(CASE, impossible, AS_SWEPT, InThisProcess())
 
 
 def test_one_section_without_an_optimum_leaves_the_others(maps):
@@ -120,7 +121,7 @@ def test_one_section_without_an_optimum_leaves_the_others(maps):
     second = maps.data.assign_coords(stator_outer_radius=[45e-3])
     hot = second.assign(limited=second.limited + 2.0)
     both = DesignMaps(grid, LIMIT, xr.concat([maps.data, hot], "stator_outer_radius", data_vars="minimal"))
-    found = optima_stage(CASE, both, InThisProcess())
+    found = optima_stage(CASE, both, AS_SWEPT, InThisProcess())
     assert [one.stator_outer_radius for one in found.found] == [42.5e-3]
     assert "12 slots, 10 poles, 90 mm: no design of the sweep holds 1.2 T" in found.without[0].reason
 

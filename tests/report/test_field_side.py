@@ -12,6 +12,7 @@ from figures.export import read_vtu
 from geometry.family import Combination
 from magnetostatics.rotation_stage import STATES, rotations_stage
 from optimisation.fits import fits_stage
+from optimisation.freedom import AS_SWEPT
 from optimisation.limits import LimitComparison, LimitPoint
 from optimisation.optima import GridEdge, Optima, Optimum, optima_stage
 from optimisation.states import AlignedTooth
@@ -32,7 +33,7 @@ def maps():
 
 @pytest.fixture(scope="module")
 def optima(maps):
-    return optima_stage(CASE, maps, InThisProcess())
+    return optima_stage(CASE, maps, AS_SWEPT, InThisProcess())
 
 
 def written(files, folder):
