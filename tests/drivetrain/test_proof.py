@@ -19,7 +19,7 @@ from drivetrain.asked import (
 )
 from drivetrain.nearest import NearestDesign
 from drivetrain.output import Wheel
-from drivetrain.proof import impossibility
+from drivetrain.proof import ceilings, impossibility
 from drivetrain.remedies import DIRECT_DRIVE_LEVERS, LEVER_RANGE, LEVERS
 from report.outcome import nearest_in_words
 from tests.drivetrain.linear_machine import actuator
@@ -116,7 +116,18 @@ def every(design, hard):
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("hard", (0.5, 1.5, 3.0))
+def test_nothing_reaches_beyond_its_ceilings(design):
+    others = drawn(design)
+    factors = {lever: lever.value(others) / lever.value(design) for lever in LEVERS}
+    for one in every(design, 1.0):
+        reached = one.reached(others)
+        for ceiling in ceilings(one, design):
+            value = ceiling.best * np.prod([factors[lever] ** power for lever, power in ceiling.powers], axis=0)
+            apart = (reached / value - 1) * (-1 if one.at_most else 1)
+            assert apart.max() < 1e-6, one
+
+
+@pytest.mark.parametrize("hard", (0.5, 3.0))
 def test_no_design_of_many_is_better_than_a_proof_allows(design, hard):
     asked, others = every(design, hard), drawn(design)
     margins = np.array([one.margin(one.reached(others)) for one in asked]).min(axis=0)
