@@ -29,6 +29,7 @@ from benchmarks.speed_figure import draw
 from benchmarks.this_machine import machine_name
 from disk import write_atomically
 from figures.style import save_png
+from geometry.family import Combination
 from geometry.half_cell import MeshDensity
 from magnetostatics.cholesky import one_thread
 from magnetostatics.flux_map import CurrentGrid, map_angles, solve_angle
@@ -182,7 +183,7 @@ def solve_optimum(slots: int, radius: float, guess: tuple[float, float]) -> floa
     judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
     try:
         start = guess[0] * radius, guess[1] * radius
-        found = find_optimum_by_gradients(judge, slots, radius, limit.limit, start)
+        found = find_optimum_by_gradients(judge, Combination(slots, 10), radius, limit.limit, start)
     except NoOptimumError:
         return np.nan
     return found.design.torque
@@ -242,7 +243,7 @@ def work(number: int) -> int:
     study = read_study(STUDY)
     case, limit = field_case(study), saturation_limit(study)
     for k in range(4):
-        machine = case.family.machine(12, 42.5e-3, (3.0 + 0.05 * k) * 1e-3, 15.7e-3)
+        machine = case.family.machine(Combination(12, 10), back_iron_width=(3.0 + 0.05 * k) * 1e-3)
         Judge(case, limit.reading, case.nominal_density, QuickMeanTorque()).judge(machine)
     return number
 

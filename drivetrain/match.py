@@ -420,6 +420,39 @@ def match(
     )
 
 
+def match_at(
+    section: SizedSection,
+    ratio: float,
+    length: float | None,
+    *,
+    enforced: tuple[Constraint, ...],
+    reported: tuple[Constraint, ...] = (),
+    gearbox: GearboxDesign,
+    model: CostModel,
+) -> Match:
+    """The match at a transmission ratio [m/rad] and active length [m] that are given; the rest as in ``match``.
+
+    length: None takes the shortest that the enforced constraints allow. What a given length violates is among the notes
+    Raises Infeasible where speed or gears do not leave the ratio.
+    """
+    bounds = _gear_bounds(enforced, gearbox)
+    if not bounds[0] * (1 - BOUND_SLACK) <= ratio <= bounds[1] * (1 + BOUND_SLACK):
+        raise Infeasible(RatioOutside(ratio, *bounds))
+    chosen = float(active_length(enforced, ratio)) if length is None else length
+    box = gearbox.size(envelope_radius=section.machine.stator_outer_radius, transmission_ratio=ratio)
+    return Match(
+        section=section,
+        transmission_ratio=ratio,
+        active_length=chosen,
+        cost=evaluate_cost(section, ratio, chosen, box, model),
+        gearbox=box,
+        binding=max(enforced, key=lambda constraint: constraint.minimum_length(ratio)),
+        ratio_bounds=bounds,
+        bound=None,
+        notes=(*_violations(enforced + reported, ratio, chosen), *(Sentence(note) for note in box.notes)),
+    )
+
+
 def match_curves(
     section: SizedSection,
     ratio: np.ndarray,
@@ -581,6 +614,21 @@ class NoRatio(Finding):
         return (
             f"{asked}, the planets vanish at {largest} (stage ratio 2): use fewer gear stages (match.gearbox_stages) "
             "or allow a faster rotor (match.speed_max_rad_per_s)"
+        )
+
+
+@dataclass(frozen=True)
+class RatioOutside(Finding):
+    """A given transmission ratio that speed and gears do not leave; ratio, least, largest: [m/rad]."""
+
+    ratio: float
+    least: float
+    largest: float
+
+    def words(self, output: Output) -> str:
+        return (
+            f"match.chosen_gear_ratio asks for a transmission ratio of {output.ratio(self.ratio)}, rotor speed and "
+            f"gears leave {output.ratio(self.least)} to {output.ratio(self.largest)}"
         )
 
 

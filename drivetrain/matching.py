@@ -1,4 +1,4 @@
-"""Gearbox and motor matched over the stator radius for every slot count, and the machine to go on with.
+"""Gearbox and motor matched over the stator radius for every slot-pole combination, and the machine to go on with.
 
 Cross-sections come from the fits of the optima, with the overload torque as the field gives it and as it would be if
 torque grew in proportion to current. Beside them: the machine that the study states, with its torques from the field
@@ -7,9 +7,10 @@ and as somebody else states them, and the chosen machine under the requirements 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
 from math import sqrt
+from operator import attrgetter
 from typing import ClassVar
 
 import numpy as np
@@ -33,6 +34,7 @@ from drivetrain.match import (
     SizedSection,
     linear_overload,
     match,
+    match_at,
     match_curves,
     match_over_radius,
     planet_clearance,
@@ -40,7 +42,7 @@ from drivetrain.match import (
 from drivetrain.output import Output
 from drivetrain.planetary import GearboxDesign, GearLaws
 from drivetrain.requirements import Linkage, Requirements
-from geometry.family import MatchedMachine
+from geometry.family import Combination, MatchedMachine
 from geometry.machine import Machine
 from geometry.winding import star_of_slots
 from magnetostatics.case import FieldCase
@@ -96,16 +98,19 @@ OVERLOAD_LAWS: tuple[OverloadLaw, ...] = (FieldOverload(), LinearOverload())
 class ChosenByHand:
     """What the study fixes of the machine to go on with; None where the least cost decides.
 
-    stator_outer_radius: [m]
+    stator_outer_radius: [m]; gear_ratio: linkage ratio over transmission ratio; active_length: [m]
     """
 
     slots: int | None = None
     stator_outer_radius: float | None = None
+    poles: int | None = None
+    gear_ratio: float | None = None
+    active_length: float | None = None
 
     @property
     def nothing(self) -> bool:
         """Whether the least cost decides about everything."""
-        return self.slots is None and self.stator_outer_radius is None
+        return all(getattr(self, one.name) is None for one in fields(self))
 
 
 @dataclass(frozen=True)
@@ -132,13 +137,13 @@ class StatedDemands:
 class MatchInputs:
     """What the study fixes of the match.
 
-    slots: counts that are matched; resistivity: of the winding's copper at its temperature [ohm m]
+    combinations: of slots and poles that are matched; resistivity: of the winding's copper at its temperature [ohm m]
     gear_stages, planets, gear_laws: of the gearbox; overload: the law that the choice rests on
     damping: which constraints are enforced; masses: densities of the parts
     by_hand: the designer's choice; printed: somebody else's numbers for the study's machine
     """
 
-    slots: tuple[int, ...]
+    combinations: tuple[Combination, ...]
     limits: MatchLimits
     scales: CostScales
     weights: CostWeights
@@ -165,10 +170,10 @@ class MatchInputs:
 
 
 @dataclass(frozen=True)
-class SlotMatches:
-    """The matches of one slot count with one overload law; why there are none where ``over_radius`` is None."""
+class CombinationMatches:
+    """The matches of one combination with one overload law; why there are none where ``over_radius`` is None."""
 
-    slots: int
+    combination: Combination
     overload: OverloadLaw
     over_radius: RadiusMatches | None
     refusal: Finding | None = None
@@ -192,7 +197,7 @@ class MatchOutcome:
         an end of the investigated radii; overload: law of its overload torque
     parts: masses and inertias of its active parts at the matched length; cylinder_mass: of the thesis's solid steel
         cylinder in their place [kg]
-    over_radius: matches by slot count and overload law
+    over_radius: matches by combination and overload law
     reference: the study's own machine with its torques from the field; printed: with somebody else's, as the thesis's
         cylinder of steel; reference_cylinder: that cylinder with the torques from the field
     stated: the chosen cross-section under stated requirements and linkage, None where they are the ones that are met
@@ -206,7 +211,7 @@ class MatchOutcome:
     at_edge: str | None
     parts: PartMasses
     cylinder_mass: float
-    over_radius: tuple[SlotMatches, ...]
+    over_radius: tuple[CombinationMatches, ...]
     reference: NamedMatch
     reference_cylinder: NamedMatch | None
     printed: NamedMatch | None
@@ -252,11 +257,11 @@ class Matcher:
         """What is made small."""
         return CostModel(self.masses, self.inputs.scales, self.inputs.weights)
 
-    def section(self, slots: int, overload: OverloadLaw, radius: float) -> SizedSection:
+    def section(self, combination: Combination, overload: OverloadLaw, radius: float) -> SizedSection:
         """The fitted cross-section at a stator outer radius [m]. Raises FitRefused."""
         radius = float(radius)  # numpy's would stay in every number of the artefact
-        fitted = self.fits.at(slots, radius)
-        machine = self.case.family.machine(slots, radius, fitted.back_iron_width, fitted.rotor_outer_radius)
+        fitted = self.fits.at(combination, radius)
+        machine = self.case.family.machine(combination, stator_outer_radius=radius, **fitted.dimensions)
         torques = fitted.torque_nominal, overload.torque_per_length(fitted)
         return sized_section(self.case, machine, fitted.half_slot_area, *torques)
 
@@ -277,13 +282,26 @@ class Matcher:
             samples=self.ratio_samples,
         )  # fmt: skip
 
-    def over_radius(self, slots: int, overload: OverloadLaw) -> SlotMatches:
+    def match_by_hand(self, section: SizedSection) -> Match:
+        """As ``match``, at the gear ratio and active length that the designer gives. Raises Infeasible, MatchError."""
+        ratio, length = self.inputs.by_hand.gear_ratio, self.inputs.by_hand.active_length
+        if ratio is None and length is None:
+            return self.match(section)
+        if ratio is None and self.inputs.gear_stages:
+            raise MatchError("match.chosen_active_length_mm needs match.chosen_gear_ratio; add it")
+        found, at = self.constraints(section), self.linkage.ratio_nominal / (ratio or 1.0)
+        return match_at(
+            section, at, length, enforced=found.enforced, reported=found.reported, gearbox=self.gearbox,
+            model=self.model,
+        )  # fmt: skip
+
+    def over_radius(self, combination: Combination, overload: OverloadLaw) -> CombinationMatches:
         """Over the range of the fits."""
         try:
-            low, high = self.fits.range(slots)
-            self.section(slots, overload, low)  # a refused fit may have one radius only, or none
+            low, high = self.fits.range(combination)
+            self.section(combination, overload, low)  # a refused fit may have one radius only, or none
             found = match_over_radius(
-                partial(self.section, slots, overload),
+                partial(self.section, combination, overload),
                 np.linspace(low, high, self.radii),
                 constraints_of=self.constraints,
                 gearbox=self.gearbox,
@@ -291,10 +309,10 @@ class Matcher:
                 samples=self.ratio_samples,
             )
         except Infeasible as refusal:
-            return SlotMatches(slots, overload, None, refusal.finding)
+            return CombinationMatches(combination, overload, None, refusal.finding)
         except FitRefused as refusal:
-            return SlotMatches(slots, overload, None, Sentence(str(refusal)))
-        return SlotMatches(slots, overload, found)
+            return CombinationMatches(combination, overload, None, Sentence(str(refusal)))
+        return CombinationMatches(combination, overload, found)
 
     def curves(self, chosen: Match) -> MatchCurves:
         """Over the transmission ratio, from below the allowed ratios to well above the chosen one."""
@@ -347,7 +365,7 @@ def match_stage(
     inputs: MatchInputs,
     output: Output,
 ) -> MatchOutcome:
-    """Match gearbox and motor for all slot counts and radii, and choose the machine to go on with.
+    """Match gearbox and motor for all slot-pole combinations and radii, and choose the machine to go on with.
 
     case: materials, winding and currents of the field solutions of the reference machine
     fits: of the optimised cross-sections; requirements, linkage: what is to be met
@@ -358,7 +376,7 @@ def match_stage(
     """
     drawn = DrawnParts(inputs.masses, case.packing)
     matcher = Matcher(case, fits, requirements, linkage, inputs, drawn, radii=RADII)
-    results = tuple(matcher.over_radius(slots, law) for slots in inputs.slots for law in OVERLOAD_LAWS)
+    results = tuple(matcher.over_radius(one, law) for one in inputs.combinations for law in OVERLOAD_LAWS)
     best = _least(tuple(one for one in results if one.overload == inputs.overload), output)
     chosen, reason = _choose(matcher, best, output)
     cylinder = SteelCylinder(inputs.gear_laws.density)
@@ -386,23 +404,23 @@ def matched_machine(found: MatchOutcome) -> MatchedMachine:
     return MatchedMachine(found.machine)
 
 
-def _least(results: tuple[SlotMatches, ...], output: Output) -> RadiusMatches:
-    """Those of the slot count with the least cost; MatchError with every reason where no slot count has a match."""
+def _least(results: tuple[CombinationMatches, ...], output: Output) -> RadiusMatches:
+    """Those of the combination with the least cost; MatchError with every reason where none has a match."""
     found = [one.over_radius for one in results if one.over_radius is not None]
     if not found:
-        said = ((one.slots, one.refusal.words(output)) for one in results if one.refusal is not None)
-        reasons = "; ".join(f"{slots} slots: {words}" for slots, words in said)
-        raise MatchError(f"no slot count of sweep.slots has a match: {reasons}")
+        said = ((one.combination.words, one.refusal.words(output)) for one in results if one.refusal is not None)
+        reasons = "; ".join(f"{which}: {words}" for which, words in said)
+        raise MatchError(f"no slot-pole combination of sweep.slots and sweep.poles has a match: {reasons}")
     return min(found, key=lambda one: one.best.cost.total)
 
 
 def _choose(matcher: Matcher, best: RadiusMatches, output: Output) -> tuple[Match, str]:
     """The designer's choice of machine, or the least cost, and why."""
     if matcher.inputs.by_hand.nothing:
-        return best.best, "least cost over all radii and slot counts"
+        return best.best, "least cost over all radii and slot-pole combinations"
     section = _section_by_hand(matcher, best.best.section.machine)
     try:
-        chosen = matcher.match(section)
+        chosen = matcher.match_by_hand(section)
     except Infeasible as refusal:
         raise MatchError(_no_match_by_hand(section.machine, best.best, refusal.finding.words(output))) from None
     return chosen, _comparison(chosen, best)
@@ -411,9 +429,9 @@ def _choose(matcher: Matcher, best: RadiusMatches, output: Output) -> tuple[Matc
 def _no_match_by_hand(machine: Machine, best: Match, why: str) -> str:
     least = best.section.machine
     return (
-        f"the machine chosen in the study file ({machine.slots} slots, "
+        f"the machine chosen in the study file ({_words(machine)}, "
         f"{2 * machine.stator_outer_radius / MILLIMETRE:g} mm) has no match: {why}; or choose another with "
-        f"match.chosen_slots and match.chosen_stator_diameter_mm, the least cost belongs to {least.slots} slots and "
+        f"match.chosen_slots and match.chosen_stator_diameter_mm, the least cost belongs to {_words(least)} and "
         f"{2 * least.stator_outer_radius / MILLIMETRE:.1f} mm"
     )
 
@@ -421,25 +439,37 @@ def _no_match_by_hand(machine: Machine, best: Match, why: str) -> str:
 def _section_by_hand(matcher: Matcher, least: Machine) -> SizedSection:
     """The designer's cross-section; what he leaves open is that of least cost."""
     inputs, wanted = matcher.inputs, matcher.inputs.by_hand
-    slots = least.slots if wanted.slots is None else wanted.slots
+    combination = Combination(wanted.slots or least.slots, wanted.poles or least.poles)
     radius = least.stator_outer_radius if wanted.stator_outer_radius is None else wanted.stator_outer_radius
-    if slots not in inputs.slots:
-        raise MatchError(f"match.chosen_slots = {slots} is not among sweep.slots {list(inputs.slots)}; add it there")
-    low, high = matcher.fits.range(slots)
+    if combination not in inputs.combinations:
+        raise MatchError(_not_swept(combination, inputs.combinations))
+    low, high = matcher.fits.range(combination)
     if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
         first, last, found = (2 * length / MILLIMETRE for length in (low, high, radius))
         raise MatchError(
             f"match.chosen_stator_diameter_mm = {found:g} lies outside the {first:g} to {last:g} mm of "
             "sweep.stator_diameters_mm; add diameters there or choose another"
         )
-    return matcher.section(slots, inputs.overload, min(max(radius, low), high))
+    return matcher.section(combination, inputs.overload, min(max(radius, low), high))
+
+
+def _not_swept(wanted: Combination, swept: tuple[Combination, ...]) -> str:
+    for key, of in (("slots", attrgetter("slots")), ("poles", attrgetter("poles"))):
+        counts = list(dict.fromkeys(of(one) for one in swept))
+        if of(wanted) not in counts:
+            return f"match.chosen_{key} = {of(wanted)} is not among sweep.{key} {counts}; add it there"
+    return f"{wanted.words} of match.chosen_slots and match.chosen_poles are not swept; choose another pair"
+
+
+def _words(machine: Machine) -> str:
+    return Combination.of(machine).words
 
 
 def _comparison(chosen: Match, best: RadiusMatches) -> str:
     own, least = chosen.section.machine, best.best.section.machine
     return (
-        f"chosen in the study file ({own.slots} slots, {2 * own.stator_outer_radius / MILLIMETRE:g} mm, cost "
-        f"{chosen.cost.total:.3f}); the least cost, {best.best.cost.total:.3f}, belongs to {least.slots} slots and "
+        f"chosen in the study file ({_words(own)}, {2 * own.stator_outer_radius / MILLIMETRE:g} mm, cost "
+        f"{chosen.cost.total:.3f}); the least cost, {best.best.cost.total:.3f}, belongs to {_words(least)} and "
         f"{2 * least.stator_outer_radius / MILLIMETRE:.1f} mm"
     )
 

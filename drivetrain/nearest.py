@@ -11,7 +11,7 @@ it gets first, from the best of many designs spread over the range.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from scipy.stats import qmc
 
 from drivetrain.asked import Check, Requirement
 from drivetrain.capability import ActuatorDesign, together
+from drivetrain.proof import Impossibility, impossibility
 from drivetrain.remedies import LEVER_RANGE, Lever
 
 _SPREAD = 6  # 2^6 designs over the range
@@ -42,12 +43,14 @@ class Move:
 class NearestDesign:
     """All levers together, and how every requirement stands then.
 
-    moves: of the levers; checks: of the requirements at the new values. Where no design of the range holds all of
-    them, it is the one that comes nearest to that: the largest shortfall is least
+    moves: of the levers; checks: of the requirements at the new values. Where no design of the range was found that
+        holds all of them, it is the one that comes nearest to that: the largest shortfall is least
+    impossible: the proof that there is none, None where there is one or the bounds prove nothing
     """
 
     moves: tuple[Move, ...]
     checks: tuple[Check, ...]
+    impossible: Impossibility | None = None
 
     @property
     def holds(self) -> bool:
@@ -65,7 +68,8 @@ def nearest_design(
         return asked.at(near)
     best = asked.best_from(asked.of_a_spread())
     near = asked.nearest_from(best) if asked.least_margin(best) >= 0 else best
-    return asked.at(near if asked.least_margin(near) >= 0 else best)
+    found = asked.at(near if asked.least_margin(near) >= 0 else best)
+    return found if found.holds else replace(found, impossible=impossibility(design, requirements, levers))
 
 
 @dataclass(frozen=True, eq=False)

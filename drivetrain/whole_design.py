@@ -1,4 +1,4 @@
-"""Radius, slots, active length, transmission ratio and linkage chosen together instead of one after the other.
+"""Radius, slots, poles, active length, transmission ratio and linkage chosen together, not one after the other.
 
 Four objectives: mass, equivalent mass, regenerative damping and loss on the road. The machine is its polynomials over
 the stator radius with the masses of its drawn parts, the gearbox its scaling laws, as in the match; the constraints are
@@ -32,6 +32,7 @@ from drivetrain.match import (
 )
 from drivetrain.pareto import non_dominated
 from drivetrain.planetary import GearboxDesign, GearboxError
+from geometry.family import Combination
 from losses.iron import FrequencyTerms
 
 OBJECTIVES = ("mass", "equivalent mass", "damping", "loss")
@@ -65,9 +66,9 @@ class RoadDemand:
 
 @dataclass(frozen=True)
 class WholeDesign:
-    """One design, SI: slots, stator outer radius, active length, tau_t [m/rad], nominal linkage ratio [m/rad]."""
+    """One design, SI: slots, poles, stator outer radius, active length, tau_t and nominal linkage ratio [m/rad]."""
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     active_length: float
     transmission_ratio: float
@@ -103,8 +104,9 @@ class RatedDesign:
 class WholeProblem:
     """What a design is judged by.
 
-    section_at: (slots, stator outer radius [m]) -> ``SizedSection``, for example from the polynomial fits
-    slots; radii: range of the stator outer radius [m] for each; lengths: range of the active length [m]
+    section_at: (combination, stator outer radius [m]) -> ``SizedSection``, for example from the polynomial fits
+    combinations: of slots and poles; radii: range of the stator outer radius [m] for each
+    lengths: range of the active length [m]
     linkage_ratios: smallest and largest nominal ratio of the linkages that may be built [m/rad]
     constraints_of: as in ``match_over_radius``, without that on the planets, which depends on the linkage
     gearbox: at any linkage ratio, which the design replaces; masses: what a motor weighs
@@ -112,8 +114,8 @@ class WholeProblem:
     targets: largest mass and equivalent mass [kg]; a design must also have the damping that is asked for
     """
 
-    section_at: Callable[[int, float], SizedSection]
-    slots: tuple[int, ...]
+    section_at: Callable[[Combination, float], SizedSection]
+    combinations: tuple[Combination, ...]
     radii: tuple[tuple[float, float], ...]
     lengths: tuple[float, float]
     linkage_ratios: tuple[float, float]
@@ -127,7 +129,7 @@ class WholeProblem:
     @cached_property
     def ratios(self) -> tuple[float, float]:
         """Range of the transmission ratio [m/rad]: from the fastest rotor or touching planets to stages of ratio 2."""
-        section = self.section_at(self.slots[0], sum(self.radii[0]) / 2)
+        section = self.section_at(self.combinations[0], sum(self.radii[0]) / 2)
         least = [one.minimum_ratio() for one in self.constraints_of(section).enforced]
         least.append(planet_clearance(self._box(self.linkage_ratios[0])).minimum_ratio())
         high = self._box(self.linkage_ratios[1]).largest_transmission_ratio
@@ -136,12 +138,16 @@ class WholeProblem:
     def _box(self, linkage_ratio: float) -> GearboxDesign:
         return replace(self.gearbox, linkage_ratio=linkage_ratio)
 
-    def design(self, unit: np.ndarray, slots: int | None = None) -> WholeDesign:
-        """From unit, fractions 0 ... 1, (5,), for slots, radius, length, ratio (logarithmic) and linkage."""
-        number = min(int(unit[0] * len(self.slots)), len(self.slots) - 1) if slots is None else self.slots.index(slots)
+    def design(self, unit: np.ndarray, combination: Combination | None = None) -> WholeDesign:
+        """From unit, fractions 0 ... 1, (5,), for combination, radius, length, ratio (logarithmic) and linkage.
+
+        combination: in the place of the first fraction
+        """
+        count = len(self.combinations)
+        number = min(int(unit[0] * count), count - 1) if combination is None else self.combinations.index(combination)
         (low, high), linkage = self.ratios, _between(self.linkage_ratios, unit[4])
         return WholeDesign(
-            self.slots[number],
+            self.combinations[number],
             _between(self.radii[number], unit[1]),
             _between(self.lengths, unit[2]),
             linkage if self.gearbox.stage_count == 0 else float(low * (high / low) ** unit[3]),
@@ -150,10 +156,10 @@ class WholeProblem:
 
     def unit(self, design: WholeDesign) -> np.ndarray:
         """The inverse of ``design``: fractions 0 ... 1, (5,)."""
-        number, (low, high) = self.slots.index(design.slots), self.ratios
+        number, (low, high) = self.combinations.index(design.combination), self.ratios
         return np.array(
             [
-                (number + 0.5) / len(self.slots),
+                (number + 0.5) / len(self.combinations),
                 _share(self.radii[number], design.stator_outer_radius),
                 _share(self.lengths, design.active_length),
                 np.log(design.transmission_ratio / low) / np.log(high / low),
@@ -166,7 +172,7 @@ class WholeProblem:
 
         section: in the place of the fits, such as one solved by the field
         """
-        section = section or self.section_at(design.slots, design.stator_outer_radius)
+        section = section or self.section_at(design.combination, design.stator_outer_radius)
         ratio, length, box = design.transmission_ratio, design.active_length, self._box(design.linkage_ratio)
         limits = self._limits(section, box, ratio, length)
         try:
@@ -260,14 +266,15 @@ def _costs(rated: Sequence[RatedDesign]) -> np.ndarray:
 
 
 def improved(problem: WholeProblem, start: WholeDesign, objective: int, allowed: tuple[float, ...]) -> RatedDesign:
-    """The design of least (damping: most) ``objective`` with the others no worse than ``allowed``, for all slots.
+    """The design of least (damping: most) ``objective`` with the others no worse than ``allowed``, for all
+    combinations.
 
     allowed: [kg, kg, Ns/m, W], (4,), in the order of OBJECTIVES, the entry of the objective itself does not count
     returns the start where no design keeps them
-    Differential evolution for each slot count, with ``start`` among the first designs of its own.
+    Differential evolution for each combination, with ``start`` among the first designs of its own.
     """
     bounds = np.array(allowed)
-    searches = [_evolved(problem, start, slots, objective, bounds) for slots in problem.slots]
+    searches = [_evolved(problem, start, one, objective, bounds) for one in problem.combinations]
     rated = [RatedDesign(design, problem.values(design)) for design in (start, *searches)]
     keeping = [one for one in rated if _excess(one.values, objective, bounds) <= _FEASIBLE]
     return min(keeping or rated[:1], key=lambda one: _SIGNS[objective] * one.values.objectives[objective])
@@ -282,21 +289,23 @@ def _excess(values: Values, objective: int, allowed: np.ndarray) -> float:
     return float(np.maximum(miss, 0).sum() + np.maximum(values.constraints, 0).sum())
 
 
-def _evolved(problem: WholeProblem, start: WholeDesign, slots: int, objective: int, allowed: np.ndarray) -> WholeDesign:
+def _evolved(
+    problem: WholeProblem, start: WholeDesign, combination: Combination, objective: int, allowed: np.ndarray
+) -> WholeDesign:
     scale = abs(problem.values(start).objectives[objective])
 
     def cost(x: np.ndarray) -> float:
-        values = problem.values(problem.design(np.concatenate([[0], x]), slots))
+        values = problem.values(problem.design(np.concatenate([[0], x]), combination))
         excess = _excess(values, objective, allowed)
         if excess > _FEASIBLE:
             return _PENALTY * (1 + excess)
         return float(_SIGNS[objective] * values.objectives[objective] / scale)
 
-    first = np.clip(problem.unit(start)[1:], 0, 1) if slots == start.slots else None
+    first = np.clip(problem.unit(start)[1:], 0, 1) if combination == start.combination else None
     found = differential_evolution(
         cost, [(0, 1)] * 4, x0=first, seed=_SEED, popsize=12, maxiter=_GENERATIONS, tol=1e-8, polish=False
     )
-    return problem.design(np.concatenate([[0], found.x]), slots)
+    return problem.design(np.concatenate([[0], found.x]), combination)
 
 
 def spread(rated: Sequence[RatedDesign], count: int) -> tuple[RatedDesign, ...]:

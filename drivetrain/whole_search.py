@@ -1,4 +1,4 @@
-"""The loop closed: radius, slots, active length, ratio and linkage together, beside the design found stage by stage.
+"""The loop closed: radius, slots, poles, active length, ratio and linkage together, beside the design found by stages.
 
 The search runs on the fits of the cross-sections; the design found stage by stage, the bettered ones and some of the
 front are then solved by the field.
@@ -30,6 +30,7 @@ from drivetrain.whole_design import (
     road_loss,
     spread,
 )
+from geometry.family import Combination
 from geometry.machine import Machine
 from losses.iron import FrequencyTerms
 from losses.map import field_losses
@@ -49,7 +50,7 @@ class WholeSearchInputs:
 
     loss_grade: whose iron-loss data stand in for the steel's, None where the study names none
     seed, population, generations: of the front; solved: points of the front that the field solves
-    idle_radii: of each slot count, at which the idle loss is solved
+    idle_radii: of each slot-pole combination, at which the idle loss is solved
     """
 
     loss_grade: str | None
@@ -123,11 +124,65 @@ class SolvedDesign:
 
 
 @dataclass(frozen=True)
+class SearchRange:
+    """What the search could choose from.
+
+    radii: of the stator for each combination [m]; lengths: active [m]; ratios: transmission, linkage_ratios: nominal
+        ratios of the linkages [m/rad], all smallest and largest
+    """
+
+    radii: tuple[tuple[Combination, tuple[float, float]], ...]
+    lengths: tuple[float, float]
+    ratios: tuple[float, float]
+    linkage_ratios: tuple[float, float]
+
+    def hits(self, design: WholeDesign) -> tuple[str, ...]:
+        """The ends that a design lies on, in words with the key of the study that widens them."""
+        radii = dict(self.radii)[design.combination]
+        axes = (
+            (design.stator_outer_radius, radii, _DIAMETER_ENDS),
+            (design.active_length, self.lengths, _LENGTH_ENDS),
+            (design.transmission_ratio, self.ratios, _RATIO_ENDS),
+            (design.linkage_ratio, self.linkage_ratios, _LINKAGE_ENDS),
+        )
+        return tuple(words for value, ends, names in axes for words in _end(value, ends, names))
+
+
+_AT_THE_END = 2e-3  # of the range; a design closer to its end lies on it
+_DIAMETER_ENDS = (
+    "the smallest diameter: add smaller ones to sweep.stator_diameters_mm",
+    "the largest diameter: add larger ones to sweep.stator_diameters_mm",
+)
+_LENGTH_ENDS = (
+    "the shortest machine of the search, a tenth of match.length_max_mm",
+    "the longest machine: raise match.length_max_mm",
+)
+_RATIO_ENDS = (
+    "the smallest transmission ratio: raise match.speed_max_rad_per_s, or match.gearbox_stages",
+    "the largest transmission ratio: lower match.gearbox_stages",
+)
+_LINKAGE_ENDS = (
+    "the smallest linkage ratio: let [linkage_search] choose a smaller one",
+    "the largest linkage ratio of the front: raise linkage_search.ratio_limit_mm_per_rad",
+)
+
+
+def _end(value: float, ends: tuple[float, float], names: tuple[str, str]) -> tuple[str, ...]:
+    """Which end of a range a value lies on; none where there is nothing to choose."""
+    low, high = ends
+    margin = _AT_THE_END * (high - low)
+    if margin <= 0:
+        return ()
+    return tuple(name for name, apart in zip(names, (value - low, high - value), strict=True) if apart <= margin)
+
+
+@dataclass(frozen=True)
 class WholeSearch:
     """What the searches found.
 
     staged: the design found stage by stage, by the model; bettered: in one objective at a time; front: by the model
     solved: staged, bettered and some of the front by the field, in this order; force_rms: of the road [N]
+    choices: what the search could choose from
     """
 
     staged: RatedDesign
@@ -135,6 +190,7 @@ class WholeSearch:
     front: tuple[RatedDesign, ...]
     solved: tuple[SolvedDesign, ...]
     force_rms: float
+    choices: SearchRange
 
 
 def optimise_stage(
@@ -166,7 +222,8 @@ def optimise_stage(
         for one in questions(staged.values.objectives, requirements.maximum_damping)
     )
     shown = _shown(staged, bettered, spread(found, inputs.solved))
-    return WholeSearch(staged, bettered, found, _solved(problem, case, law, shown, workers), requirements.force_rms)
+    solved, choices = _solved(problem, case, law, shown, workers), _choices(problem)
+    return WholeSearch(staged, bettered, found, solved, requirements.force_rms, choices)
 
 
 def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:
@@ -187,31 +244,34 @@ def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]
 
 
 class _IdleSections:
-    """(slots, stator outer radius [m]) -> ``RoadSection`` from the fits, its idle loss a parabola over the radius."""
+    """(combination, stator outer radius [m]) -> ``RoadSection`` of the fits, its idle loss a parabola over that."""
 
-    def __init__(self, matcher: Matcher, parabolas: dict[int, np.ndarray]) -> None:
-        self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by slot count
+    def __init__(self, matcher: Matcher, parabolas: dict[Combination, np.ndarray]) -> None:
+        self._matcher, self._parabolas = matcher, parabolas  # (3, terms) by combination
 
-    def __call__(self, slots: int, radius: float) -> RoadSection:
-        section = self._matcher.section(slots, self._matcher.inputs.overload, radius)
-        idle = (float(np.polyval(one, radius)) for one in self._parabolas[slots].T)
+    def __call__(self, combination: Combination, radius: float) -> RoadSection:
+        section = self._matcher.section(combination, self._matcher.inputs.overload, radius)
+        idle = (float(np.polyval(one, radius)) for one in self._parabolas[combination].T)
         return RoadSection.of(section, FrequencyTerms(*idle))
 
 
 def _idle_sections(matcher: Matcher, law: IronLossLaw, count: int, workers: Workers) -> _IdleSections:
-    """Idle loss solved at so many radii of each slot count, and the cross-sections that carry it."""
+    """Idle loss solved at so many radii of each combination, and the cross-sections that carry it."""
     inputs = matcher.inputs
-    samples = [(n, float(radius)) for n in inputs.slots for radius in np.linspace(*matcher.fits.range(n), count)]
+    samples = [
+        (one, float(radius)) for one in inputs.combinations for radius in np.linspace(*matcher.fits.range(one), count)
+    ]
     tasks = {
-        f"{n} slots, {2 * radius / MILLIMETRE:.2f} mm": FieldTask(
-            matcher.case, matcher.section(n, inputs.overload, radius).machine, law
+        f"{one.words}, {2 * radius / MILLIMETRE:.2f} mm": FieldTask(
+            matcher.case, matcher.section(one, inputs.overload, radius).machine, law
         )
-        for n, radius in samples
+        for one, radius in samples
     }
     found = workers.map("idle loss", solve_idle, tasks)
     terms = np.array([(one.hysteresis, one.eddy, one.excess) for one in found.values()]).reshape(-1, count, 3)
     radii = np.array([radius for _, radius in samples]).reshape(-1, count)
-    return _IdleSections(matcher, {n: np.polyfit(x, y, 2) for n, x, y in zip(inputs.slots, radii, terms, strict=True)})
+    parabolas = {one: np.polyfit(x, y, 2) for one, x, y in zip(inputs.combinations, radii, terms, strict=True)}
+    return _IdleSections(matcher, parabolas)
 
 
 def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleSections) -> WholeProblem:
@@ -220,8 +280,8 @@ def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleS
     longest = inputs.limits.active_length
     return WholeProblem(
         section_at=section_at,
-        slots=inputs.slots,
-        radii=tuple(matcher.fits.range(slots) for slots in inputs.slots),
+        combinations=inputs.combinations,
+        radii=tuple(matcher.fits.range(one) for one in inputs.combinations),
         lengths=(_SHORTEST * longest, longest),
         linkage_ratios=_linkage_ratios(matcher.linkage, linkages),
         constraints_of=matcher.constraints_without_planets,
@@ -231,6 +291,12 @@ def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleS
         loss_of=partial(_road_loss, demand),
         targets=(inputs.scales.mass, inputs.scales.equivalent_mass),
     )
+
+
+def _choices(problem: WholeProblem) -> SearchRange:
+    radii = tuple(zip(problem.combinations, problem.radii, strict=True))
+    ratios = problem.ratios if problem.gearbox.stage_count else problem.linkage_ratios
+    return SearchRange(radii, problem.lengths, ratios, problem.linkage_ratios)
 
 
 def _road_loss(demand: RoadDemand, section: SizedSection, design: WholeDesign) -> float:
@@ -249,7 +315,7 @@ def _staged(problem: WholeProblem, match: MatchOutcome, linkage: Linkage) -> Rat
     """The design of match and linkage."""
     machine, found = match.machine, match.chosen
     design = WholeDesign(
-        machine.slots,
+        Combination.of(machine),
         machine.stator_outer_radius,
         found.active_length,
         found.transmission_ratio,
@@ -304,7 +370,7 @@ def _solved(
 ) -> tuple[SolvedDesign, ...]:
     """Every design with its cross-section by the field in the place of the fits."""
     machines = {
-        name: problem.section_at(one.design.slots, one.design.stator_outer_radius).machine for name, one in shown
+        name: problem.section_at(one.design.combination, one.design.stator_outer_radius).machine for name, one in shown
     }
     tasks = {name: FieldTask(case, machine, law) for name, machine in machines.items()}
     found = workers.map("designs", solve_section, tasks)

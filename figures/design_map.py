@@ -52,18 +52,19 @@ class Design:
 
 @styled
 def design_map(
-    maps: xr.Dataset, optima: pd.DataFrame, slots: int, stator_diameter_mm: float, reading: str, limit_T: float
+    maps: xr.Dataset, optima: pd.DataFrame, name: str, stator_diameter_mm: float, reading: str, limit_T: float
 ) -> Figure:
-    """Torque per length with the feasible domain, and the probes beside it, for one slot count and diameter.
+    """Torque per length with the feasible domain, and the probes beside it, for one diameter.
 
-    maps: dimensions slots, stator_diameter_mm, back_iron, rotor_radius; variables ``back_iron_width_mm``,
+    maps: of one family; dimensions stator_diameter_mm, back_iron, rotor_radius; variables ``back_iron_width_mm``,
         ``rotor_outer_radius_mm``, ``torque_Nm_per_m``, ``tooth_aligned_T``, ``tooth_worst_T``, ``back_iron_worst_T``;
         NaN where the machine cannot be built
-    optima: columns slots, stator_diameter_mm, reading, limit_T, back_iron_width_mm, rotor_outer_radius_mm,
+    optima: of the same; columns stator_diameter_mm, reading, limit_T, back_iron_width_mm, rotor_outer_radius_mm,
         torque_nominal_Nm_per_m; reading and limit_T select among them
+    name: of the family, such as its slots and poles
     """
-    one = maps.sel(slots=slots, stator_diameter_mm=stator_diameter_mm)
-    optimum = select_optimum(optima, slots, stator_diameter_mm, reading, limit_T)
+    one = maps.sel(stator_diameter_mm=stator_diameter_mm)
+    optimum = select_optimum(optima, stator_diameter_mm, reading, limit_T)
     design = in_millimetres(one, reading, limit_T, optimum)
     figure = new_figure(8.4)
     axes = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
@@ -71,22 +72,22 @@ def design_map(
     for axis, (name, words) in zip(axes[1:], _PROBE_MAPS, strict=True):
         _probe_panel(figure, axis, design, one[name].transpose("rotor_radius", "back_iron").values, words)
     _label(axes)
-    figure.suptitle(f"{slots} slots, Ø {stator_diameter_mm:g} mm, limit {limit_T:g} T ({_in_words(reading)})")
+    figure.suptitle(f"{name}, Ø {stator_diameter_mm:g} mm, limit {limit_T:g} T ({_in_words(reading)})")
     figure.legend(handles=_legend(), loc="outside lower center", ncols=5, frameon=False)
     return figure
 
 
 @styled
-def design_maps(maps: xr.Dataset, optima: pd.DataFrame, slots: int, reading: str, limit_T: float) -> Figure:
+def design_maps(maps: xr.Dataset, optima: pd.DataFrame, name: str, reading: str, limit_T: float) -> Figure:
     """One small torque map for each stator diameter; the axes are shares of the stator radius, the colours shares of
     the torque at the optimum (of the largest feasible torque on the grid where there is no optimum).
 
     Arguments as in ``design_map``.
     """
     diameters = [float(value) for value in maps.stator_diameter_mm.values]
-    optimum = {diameter: select_optimum(optima, slots, diameter, reading, limit_T) for diameter in diameters}
+    optimum = {diameter: select_optimum(optima, diameter, reading, limit_T) for diameter in diameters}
     panels = {
-        diameter: _as_shares(maps.sel(slots=slots, stator_diameter_mm=diameter), reading, limit_T, optimum[diameter])
+        diameter: _as_shares(maps.sel(stator_diameter_mm=diameter), reading, limit_T, optimum[diameter])
         for diameter in diameters
     }
     rows = -(-(len(diameters) + 1) // _COLUMNS)
@@ -97,15 +98,13 @@ def design_maps(maps: xr.Dataset, optima: pd.DataFrame, slots: int, reading: str
         colours = _small_panel(axis, design, levels)
         axis.set_title(_small_title(diameter, optimum[diameter]), loc="left", fontsize=9)
     _finish_overview(figure, axes, len(diameters), colours)
-    figure.suptitle(f"{slots} slots, limit {limit_T:g} T ({_in_words(reading)})")
+    figure.suptitle(f"{name}, limit {limit_T:g} T ({_in_words(reading)})")
     return figure
 
 
-def select_optimum(
-    optima: pd.DataFrame, slots: int, stator_diameter_mm: float, reading: str, limit_T: float
-) -> pd.Series | None:
+def select_optimum(optima: pd.DataFrame, stator_diameter_mm: float, reading: str, limit_T: float) -> pd.Series | None:
     """The row of the optimum, or None where no feasible machine was found."""
-    same = (optima.slots == slots) & np.isclose(optima.stator_diameter_mm, stator_diameter_mm)
+    same = np.isclose(optima.stator_diameter_mm, stator_diameter_mm)
     rows = optima[same & (optima.reading == reading) & np.isclose(optima.limit_T, limit_T)]
     rows = rows[np.isfinite(rows.torque_nominal_Nm_per_m)]
     return None if rows.empty else rows.iloc[0]
@@ -125,7 +124,7 @@ def constrained_flux_density(one: xr.Dataset, reading: str) -> xr.DataArray:
 
 
 def in_millimetres(one: xr.Dataset, reading: str, limit_T: float, optimum: pd.Series | None = None) -> Design:
-    """One slot count and diameter as a panel with axes in mm."""
+    """One diameter as a panel with axes in mm."""
     place = None if optimum is None else (optimum.back_iron_width_mm, optimum.rotor_outer_radius_mm)
     return _design(one, one.back_iron_width_mm.values, one.rotor_outer_radius_mm.values, reading, limit_T, place)
 

@@ -20,12 +20,14 @@ from figures.style import (
     LIGHT_GREY,
     SERIES,
     VERMILION,
+    combinations,
     letter,
     new_figure,
     series_style,
     show_grid,
     styled,
 )
+from geometry.family import Combination
 from units import MILLIMETRE, written
 
 _TERMS = (("mass_term", "mass"), ("inertia_term", "equivalent inertia"), ("radius_term", "stator radius"))
@@ -134,9 +136,9 @@ def match_curves(curves: Curves, match: Optimum, *, output: Output, title: str, 
 
 @styled
 def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame | None = None) -> Figure:
-    """Transmission ratio, active length and cost of the match over the stator radius, for each slot count.
+    """Transmission ratio, active length and cost of the match over the stator radius, for each slot-pole combination.
 
-    table: columns slots, overload ("field" or "linear", drawn solid and dashed), stator_outer_radius_mm,
+    table: columns slots, poles, overload ("field" or "linear", drawn solid and dashed), stator_outer_radius_mm,
         transmission_ratio in the unit of the output, active_length_mm, cost; NaN where there is no match. See
         ``radius_table``
     best: rows of the same columns to mark with a star, usually the chosen machine
@@ -146,9 +148,10 @@ def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame
         ("active_length_mm", "active length / mm"),
         ("cost", "cost (dimensionless)"),
     )
-    figure = new_figure(4.4)
+    figure = new_figure(4.8)
     axes = figure.subplots(1, 3)
-    style = series_style(table.slots)
+    table = table.assign(combination=combinations(table))
+    style = series_style(table.combination)
     for axis, (column, label) in zip(axes, panels, strict=True):
         _draw_over_radius(axis, table, column, style)
         _draw_best(axis, best, column)
@@ -156,11 +159,11 @@ def match_over_radius(table: pd.DataFrame, output: Output, *, best: pd.DataFrame
         axis.set_title(label.split(" /")[0].split(" (")[0], loc="left")
     letter(axes)
     show_grid(*axes)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 
-def radius_table(slots: int, overload: str, result: OverRadius, output: Output) -> pd.DataFrame:
+def radius_table(combination: Combination, overload: str, result: OverRadius, output: Output) -> pd.DataFrame:
     """Rows for ``match_over_radius`` in drawing units.
 
     overload: where the overload torque of these matches comes from, "field" or "linear"
@@ -168,7 +171,8 @@ def radius_table(slots: int, overload: str, result: OverRadius, output: Output) 
     unit = output.ratio_unit
     return pd.DataFrame(
         {
-            "slots": slots,
+            "slots": combination.slots,
+            "poles": combination.poles,
             "overload": overload,
             "stator_outer_radius_mm": result.radii / MILLIMETRE,
             output.column("transmission_ratio", unit): in_unit(result.transmission_ratio, unit),
@@ -178,10 +182,11 @@ def radius_table(slots: int, overload: str, result: OverRadius, output: Output) 
     )
 
 
-def best_row(slots: int, overload: str, radius: float, match: Optimum, output: Output) -> pd.DataFrame:
+def best_row(combination: Combination, overload: str, radius: float, match: Optimum, output: Output) -> pd.DataFrame:
     """One match at a stator outer radius [m] as a row of the same columns."""
     row = {
-        "slots": slots,
+        "slots": combination.slots,
+        "poles": combination.poles,
         "overload": overload,
         "stator_outer_radius_mm": radius / MILLIMETRE,
         output.column("transmission_ratio", output.ratio_unit): in_unit(match.transmission_ratio, output.ratio_unit),
@@ -237,13 +242,14 @@ def _cross() -> Look:
 # ---- over the stator radius -----------------------------------------------------------------------------------------
 
 
-def _draw_over_radius(axes: Axes, table: pd.DataFrame, column: str, style: dict[int, Look]) -> None:
-    for slots, look in style.items():
+def _draw_over_radius(axes: Axes, table: pd.DataFrame, column: str, style: dict[str, Look]) -> None:
+    for combination, look in style.items():
         for overload, line in _OVERLOADS:
-            rows = table[(table.slots == slots) & (table.overload == overload)].sort_values("stator_outer_radius_mm")
+            own = table[(table.combination == combination) & (table.overload == overload)]
+            rows = own.sort_values("stator_outer_radius_mm")
             if rows.empty:
                 continue
-            label = f"{slots} slots, overload torque {'by field' if overload == 'field' else 'scaled linearly'}"
+            label = f"{combination}, overload torque {'by field' if overload == 'field' else 'scaled linearly'}"
             shape = {**look, "markersize": 4, "linestyle": line, "label": label}
             shape["markevery"] = max(1, len(rows) // _MOST_MARKERS)
             axes.plot(rows.stator_outer_radius_mm, rows[column], **shape)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from functools import wraps
 from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+import pandas as pd
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -74,9 +76,21 @@ def new_figure(height: float, width: float = WIDTH) -> Figure:
 
 def series_style(values: Iterable[Key]) -> dict[Key, Look]:
     """Colour and marker for each of the values, in their sorted order: ``style[9]["color"]``."""
-    ordered = sorted(set(values))
+    ordered = sorted(set(values), key=_natural)
     looks = ({"color": SERIES[i % len(SERIES)], "marker": MARKERS[i % len(MARKERS)]} for i in range(len(ordered)))
     return dict(zip(ordered, looks, strict=True))
+
+
+def _natural(value: Key) -> list[object]:
+    """What values are sorted by: 9 slots before 12 slots."""
+    if not isinstance(value, str):
+        return [value]
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", value)]
+
+
+def combinations(table: pd.DataFrame) -> pd.Series:
+    """Slots and poles of each row in words, to tell series apart by; columns slots, poles."""
+    return table.slots.astype(str) + " slots, " + table.poles.astype(str) + " poles"
 
 
 def show_grid(*axes: Axes) -> None:

@@ -1,13 +1,37 @@
-"""The machines of one study: everything that is stated stays, four numbers vary."""
+"""The machines of one study: everything that is stated stays, slots, poles and some dimensions vary."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 from geometry.machine import Machine, hanselman_machine
 from geometry.magnetisation import Magnetisation
 
 _STATED = ("tooth_width", "shoe_d1", "shoe_d2")
+
+
+@dataclass(frozen=True, order=True)
+class Combination:
+    """How many slots and poles a machine has: its slot-pole combination."""
+
+    slots: int
+    poles: int
+
+    @classmethod
+    def of(cls, machine: Machine) -> Combination:
+        """That of a machine."""
+        return cls(machine.slots, machine.poles)
+
+    @property
+    def pole_pairs(self) -> int:
+        """Half the poles."""
+        return self.poles // 2
+
+    @property
+    def words(self) -> str:
+        """The combination as a sentence names it."""
+        return f"{self.slots} slots, {self.poles} poles"
 
 
 @dataclass(frozen=True)
@@ -44,17 +68,18 @@ class MachineFamily:
             hanselman_machine(**arguments), **{name: length for name, length in stated.items() if length is not None}
         )
 
-    def machine(
-        self, slots: int, stator_outer_radius: float, back_iron_width: float, rotor_outer_radius: float
-    ) -> Machine:
-        """The study's machine with four numbers changed, lengths in m; what follows from them is derived anew."""
-        return replace(
-            self,
-            slots=slots,
-            stator_outer_radius=stator_outer_radius,
-            back_iron_width=back_iron_width,
-            rotor_outer_radius=rotor_outer_radius,
-        ).reference
+    @property
+    def combination(self) -> Combination:
+        """Slots and poles of the reference machine."""
+        return Combination(self.slots, 2 * self.pole_pairs)
+
+    def machine(self, combination: Combination, **dimensions: float) -> Machine:
+        """The study's machine with other slots, poles and dimensions; what follows from them is derived anew.
+
+        dimensions: by the names of the fields above [m or 1]
+        """
+        changed: dict[str, Any] = {"slots": combination.slots, "pole_pairs": combination.pole_pairs, **dimensions}
+        return replace(self, **changed).reference
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from geometry.errors import GeometryError
+from geometry.family import Combination
+from geometry.machine import Machine
 from optimisation.design import Design, DesignSolver, Judge
 from units import MILLIMETRE
 
@@ -54,10 +56,10 @@ class BestDesign:
 
 @dataclass
 class _Search:
-    """Field solutions by (width, radius) for one slot count and stator radius; every point is solved once."""
+    """Field solutions by (width, radius) for one combination and stator radius; every point is solved once."""
 
     solver: DesignSolver
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     limit: float
     known: dict[tuple[float, float], Design | None] = field(default_factory=dict)
@@ -72,11 +74,18 @@ class _Search:
         key = (float(width), float(radius))
         if key not in self.known:
             try:
-                family = self.solver.judge.case.family
-                self.known[key] = self.solver.design(family.machine(self.slots, self.stator_outer_radius, *key))
+                self.known[key] = self.solver.design(self._machine(*key))
             except GeometryError:
                 self.known[key] = None
         return self.known[key]
+
+    def _machine(self, width: float, radius: float) -> Machine:
+        return self.solver.judge.case.family.machine(
+            self.combination,
+            stator_outer_radius=self.stator_outer_radius,
+            back_iron_width=width,
+            rotor_outer_radius=radius,
+        )
 
     def start_anew(self) -> None:
         """Mesh the next design anew and solve every point again."""
@@ -87,7 +96,7 @@ class _Search:
 
 def find_optimum(
     judge: Judge,
-    slots: int,
+    combination: Combination,
     stator_outer_radius: float,
     limit: float,
     start: tuple[float, float],
@@ -99,7 +108,7 @@ def find_optimum(
     Returns the best design with the limit held to 0.02 %.
     Raises NoOptimumError.
     """
-    search = _Search(DesignSolver(judge), slots, stator_outer_radius, limit)
+    search = _Search(DesignSolver(judge), combination, stator_outer_radius, limit)
     point, box = np.array(start), np.array(_FIRST_BOX)
     for _ in range(_MOST_ROUNDS):
         target, on_edge = _round(search, point, box * point)
@@ -193,6 +202,6 @@ def _require(search: _Search, width: float, radius: float) -> Design:
 def _where(search: _Search, point: Sequence[float] | np.ndarray) -> str:
     width, radius = (length / MILLIMETRE for length in point)
     return (
-        f"{search.slots} slots, stator radius {search.stator_outer_radius / MILLIMETRE:g} mm, near back iron "
+        f"{search.combination.words}, stator radius {search.stator_outer_radius / MILLIMETRE:g} mm, near back iron "
         f"{width:.3f} mm and rotor radius {radius:.3f} mm: "
     )

@@ -59,7 +59,7 @@ class LimitRow:
     def _machine(self, width: float) -> Machine | None:
         family = self.case.family
         with suppress(GeometryError):
-            return family.machine(family.slots, family.stator_outer_radius, width, self.rotor_outer_radius)
+            return family.machine(family.combination, back_iron_width=width, rotor_outer_radius=self.rotor_outer_radius)
         return None
 
 

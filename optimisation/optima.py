@@ -1,11 +1,14 @@
-"""Constrained optimum of every slot count and stator radius, refined with the field solver beyond the grid."""
+"""Constrained optimum of every combination and stator radius, refined with the field solver beyond the grid."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import nan
 
+from geometry.family import Combination
 from geometry.machine import Machine
+from geometry.variables import Variable
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
 from magnetostatics.model import FieldModel, FieldSolution
@@ -13,18 +16,21 @@ from magnetostatics.positions import period_points
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from optimisation.constrained_optimum import BestDesign, NoOptimumError, find_optimum
 from optimisation.design import Judge
+from optimisation.freedom import AS_SWEPT, Freedom
+from optimisation.gradient_optimum import find_optimum_by_gradients
 from optimisation.states import STEPS_OVER_PERIOD
 from optimisation.sweep import DesignMaps, SaturationLimit, SweepGrid
 from optimisation.torque import QuickMeanTorque
 from tasks import Workers
 from units import MILLIMETRE
 
+_ON_THE_BOUND = 1e-4  # relative; an optimum closer to the bound of a variable lies on it
 _ON_THE_EDGE = 0.02  # of the range of the grid: an optimum closer to its end may lie beyond
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """The best cross-section of one slot count and stator radius under the limit; lengths in m, torques in Nm/m.
+    """The best cross-section of one combination and stator radius under the limit; lengths in m, torques in Nm/m.
 
     half_slot_area: of one coil side [m^2]
     torque_nominal, torque_overload: mean over one electrical period (``MeanTorque``) [Nm/m], at the two current
@@ -32,12 +38,13 @@ class Optimum:
     torque_nominal_error, torque_overload_error: bounds of their mesh errors [Nm/m]
     torque_nominal_ring: the first by the ring average [Nm/m]
     torque_overload_linear: scaled from the nominal one (thesis eq. 3.68) [Nm/m]
+    further: values of what the optimum chose beside these [m or 1], in the order of ``Freedom.further``
     torque_null: in the thesis's null state at the nominal current density [Nm/m]; NaN where the reading looks elsewhere
     limited, tooth_worst, back_iron_worst: flux densities in the states of the reading [T]
     field_solutions: designs solved on the way; newton_iterations: of the last one
     """
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     back_iron_width: float
     rotor_outer_radius: float
@@ -56,13 +63,14 @@ class Optimum:
     back_iron_worst: float
     field_solutions: int
     newton_iterations: int
+    further: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class NoOptimum:
-    """A slot count and stator radius [m] without an optimum, and why."""
+    """A combination and stator radius [m] without an optimum, and why."""
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     reason: str
 
@@ -74,7 +82,7 @@ class GridEdge:
     key: of the study, to be moved so that the grid holds the optimum; edge, found: shares of the stator radius
     """
 
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     key: str
     edge: float
@@ -85,29 +93,53 @@ class GridEdge:
         """Where the optimum lies and what to widen."""
         way = "lower" if self.key.endswith("_min") else "raise"
         return (
-            f"{self.slots} slots, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at "
+            f"{self.combination.words}, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies at "
             f"{self.found:.4f} of the stator radius, on or beyond the edge of the sweep at {self.edge:g}: "
             f"{way} {self.key}"
         )
 
 
 @dataclass(frozen=True)
+class BoundHit:
+    """An optimum on a bound of a variable that it may choose; bound: which one [m or 1]."""
+
+    combination: Combination
+    stator_outer_radius: float
+    variable: Variable
+    bound: float
+
+    @property
+    def sentence(self) -> str:
+        """Which bound, and what to widen."""
+        which = "smallest" if self.bound == self.variable.low else "largest"
+        return (
+            f"{self.combination.words}, {2 * self.stator_outer_radius / MILLIMETRE:g} mm: the optimum lies on the "
+            f"{which} {self.variable.words} that is allowed, {self.variable.amount(self.bound)}: widen "
+            f"variables.{self.variable.key} where it can be built"
+        )
+
+
+@dataclass(frozen=True)
 class Optima:
-    """The refined optima in the order of the sweep, what has none, and those at the edge of the grid."""
+    """The refined optima in the order of the sweep, what has none, and those at the edge of the grid or on a bound.
+
+    freedom: what they could choose
+    """
 
     limit: SaturationLimit
     found: tuple[Optimum, ...]
     without: tuple[NoOptimum, ...]
-    edges: tuple[GridEdge, ...]
+    edges: tuple[GridEdge | BoundHit, ...]
+    freedom: Freedom = AS_SWEPT
 
     @property
-    def slots(self) -> tuple[int, ...]:
-        """Slot counts that have optima, each once, in the order of the sweep."""
-        return tuple(dict.fromkeys(optimum.slots for optimum in self.found))
+    def combinations(self) -> tuple[Combination, ...]:
+        """Those that have optima, each once, in the order of the sweep."""
+        return tuple(dict.fromkeys(optimum.combination for optimum in self.found))
 
-    def of(self, slots: int) -> tuple[Optimum, ...]:
-        """The optima of one slot count by rising radius."""
-        own = (optimum for optimum in self.found if optimum.slots == slots)
+    def of(self, combination: Combination) -> tuple[Optimum, ...]:
+        """The optima of one combination by rising radius."""
+        own = (optimum for optimum in self.found if optimum.combination == combination)
         return tuple(sorted(own, key=lambda optimum: optimum.stator_outer_radius))
 
 
@@ -117,24 +149,25 @@ class OptimumSearch:
 
     case: FieldCase
     limit: SaturationLimit
-    slots: int
+    freedom: Freedom
+    combination: Combination
     stator_outer_radius: float
     start: tuple[float, float]
 
 
-def optima_stage(case: FieldCase, maps: DesignMaps, workers: Workers) -> Optima:
-    """Refine the best point of every map.
+def optima_stage(case: FieldCase, maps: DesignMaps, freedom: Freedom, workers: Workers) -> Optima:
+    """Refine the best point of every map, then free the further dimensions.
 
     Raises NoOptimumError where no design of the sweep holds the limit.
     """
-    searches, without = _searches(case, maps)
+    searches, without = _searches(case, maps, freedom)
     results = workers.map("optima", solve_optimum, searches).values() if searches else ()
     found = tuple(one for one in results if isinstance(one, Optimum))
     without += tuple(one for one in results if isinstance(one, NoOptimum))
     if not found:
         raise NoOptimumError(_nothing(maps.limit, without))
-    edges = tuple(edge for optimum in found for edge in edges_at(optimum, maps.grid))
-    return Optima(maps.limit, found, without, edges)
+    edges = tuple(edge for optimum in found for edge in _ends(optimum, maps.grid, freedom))
+    return Optima(maps.limit, found, without, edges, freedom)
 
 
 def solve_optimum(search: OptimumSearch) -> Optimum | NoOptimum:
@@ -142,10 +175,38 @@ def solve_optimum(search: OptimumSearch) -> Optimum | NoOptimum:
     case, limit = search.case, search.limit
     judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
     try:
-        best = find_optimum(judge, search.slots, search.stator_outer_radius, limit.limit, search.start)
+        best = find_optimum(judge, search.combination, search.stator_outer_radius, limit.limit, search.start)
+        best = _freed(judge, search, best)
     except NoOptimumError as error:
-        return NoOptimum(search.slots, search.stator_outer_radius, str(error))
-    return _record(case, best)
+        return NoOptimum(search.combination, search.stator_outer_radius, str(error))
+    return _record(case, best, search.freedom)
+
+
+def _freed(judge: Judge, search: OptimumSearch, best: BestDesign) -> BestDesign:
+    """The optimum with the further dimensions free, from the one where they are the study's."""
+    if not search.freedom.further:
+        return best
+    start = [variable.of(best.design.machine) for variable in search.freedom.variables]
+    found = find_optimum_by_gradients(
+        judge, search.combination, search.stator_outer_radius, search.limit.limit, start, search.freedom
+    )
+    return replace(found, solves=best.solves + found.solves)
+
+
+def _ends(optimum: Optimum, grid: SweepGrid, freedom: Freedom) -> Sequence[GridEdge | BoundHit]:
+    """Where an optimum may lie beyond what was looked at: the grid where that alone was searched, or bounds."""
+    return bounds_of(optimum, freedom) if freedom.further else edges_at(optimum, grid)
+
+
+def bounds_of(optimum: Optimum, freedom: Freedom) -> list[BoundHit]:
+    """The bounds that an optimum lies on."""
+    place = optimum.combination, optimum.stator_outer_radius
+    return [
+        BoundHit(*place, variable, bound)
+        for variable, value in zip(freedom.further, optimum.further, strict=True)
+        for bound in (variable.low, variable.high)
+        if abs(value - bound) < _ON_THE_BOUND * bound
+    ]
 
 
 def edges_at(optimum: Optimum, grid: SweepGrid) -> list[GridEdge]:
@@ -159,22 +220,24 @@ def edges_at(optimum: Optimum, grid: SweepGrid) -> list[GridEdge]:
     for key, share, (low, high) in places:
         margin = _ON_THE_EDGE * (high - low)
         if share < low + margin:
-            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_min", low, share))
+            found.append(GridEdge(optimum.combination, outer, f"sweep.{key}_min", low, share))
         if share > high - margin:
-            found.append(GridEdge(optimum.slots, outer, f"sweep.{key}_max", high, share))
+            found.append(GridEdge(optimum.combination, outer, f"sweep.{key}_max", high, share))
     return found
 
 
-def _searches(case: FieldCase, maps: DesignMaps) -> tuple[dict[str, OptimumSearch], tuple[NoOptimum, ...]]:
+def _searches(
+    case: FieldCase, maps: DesignMaps, freedom: Freedom
+) -> tuple[dict[str, OptimumSearch], tuple[NoOptimum, ...]]:
     """The searches that have a start, and where no design of the map holds the limit."""
     searches, without = {}, []
-    for slots, outer in maps.grid.sections:
-        name = f"{slots} slots, {2 * outer / MILLIMETRE:g} mm"
-        best = maps.map(slots, outer).best_point(maps.limit.limit)
+    for combination, outer in maps.grid.sections:
+        name = f"{combination.words}, {2 * outer / MILLIMETRE:g} mm"
+        best = maps.map(combination, outer).best_point(maps.limit.limit)
         if best is None:
-            without.append(NoOptimum(slots, outer, f"{name}: no design of the sweep holds {maps.limit.words}"))
+            without.append(NoOptimum(combination, outer, f"{name}: no design of the sweep holds {maps.limit.words}"))
         else:
-            searches[name] = OptimumSearch(case, maps.limit, slots, outer, (best.width, best.radius))
+            searches[name] = OptimumSearch(case, maps.limit, freedom, combination, outer, (best.width, best.radius))
     return searches, tuple(without)
 
 
@@ -185,11 +248,11 @@ def _nothing(limit: SaturationLimit, without: tuple[NoOptimum, ...]) -> str:
     )
 
 
-def _record(case: FieldCase, best: BestDesign) -> Optimum:
+def _record(case: FieldCase, best: BestDesign, freedom: Freedom) -> Optimum:
     design, machine = best.design, best.design.machine
     torques = _torques(case, machine)
     return Optimum(
-        slots=machine.slots,
+        combination=Combination.of(machine),
         stator_outer_radius=machine.stator_outer_radius,
         back_iron_width=machine.back_iron_width,
         rotor_outer_radius=machine.rotor_outer_radius,
@@ -208,6 +271,7 @@ def _record(case: FieldCase, best: BestDesign) -> Optimum:
         back_iron_worst=design.back_iron_worst,
         field_solutions=best.solves,
         newton_iterations=design.newton_iterations,
+        further=tuple(variable.of(machine) for variable in freedom.further),
     )
 
 

@@ -1,4 +1,5 @@
-"""Map of torque and flux densities over back-iron width and rotor radius, for every slot count and stator radius."""
+"""Map of torque and flux densities over back-iron width and rotor radius, for every slot-pole combination and
+stator radius."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from geometry.errors import GeometryError
+from geometry.family import Combination
 from geometry.machine import Machine
 from magnetostatics.case import FieldCase
 from magnetostatics.newton import NewtonSettings
@@ -25,7 +27,7 @@ _RADII_TOGETHER = 5  # rotor radii of a task; of a fine sweep one mesh reaches a
 _TOLERANCE = 1e-3  # of Newton's method: torque is within 0.03 % of the converged one
 # What the map holds of a ``Design``.
 VARIABLES = ("torque", "torque_null", "tooth_aligned", "tooth_worst", "back_iron_worst", "limited")
-_DIMENSIONS = ("slots", "stator_outer_radius", "back_iron", "rotor_radius")
+_DIMENSIONS = ("combination", "stator_outer_radius", "back_iron", "rotor_radius")
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class SweepGrid:
     stator_outer_radii [m]; back_iron_fractions, rotor_radius_fractions: smallest and largest share of the stator radius
     """
 
-    slots: tuple[int, ...]
+    combinations: tuple[Combination, ...]
     stator_outer_radii: tuple[float, ...]
     back_iron_fractions: tuple[float, float]
     back_iron_steps: int
@@ -78,26 +80,31 @@ class SweepGrid:
         return stator_outer_radius * self.rotor
 
     @property
-    def sections(self) -> tuple[tuple[int, float], ...]:
-        """Every slot count with every stator radius [m]."""
-        return tuple(product(self.slots, self.stator_outer_radii))
+    def sections(self) -> tuple[tuple[Combination, float], ...]:
+        """Every slot-pole combination with every stator radius [m]."""
+        return tuple(product(self.combinations, self.stator_outer_radii))
 
 
 @dataclass(frozen=True, eq=False)
 class DesignMaps:
     """Designs on the grid at the nominal current density; NaN where a machine cannot be built.
 
-    data: ``VARIABLES`` of ``Design`` in SI over slots, stator_outer_radius, back_iron, rotor_radius, with
-        ``back_iron_width`` and ``rotor_outer_radius`` [m]; torque by ``QuickMeanTorque``
+    data: ``VARIABLES`` of ``Design`` in SI over combination, stator_outer_radius, back_iron, rotor_radius,
+        with ``slots`` and ``poles`` of a combination, ``back_iron_width`` and ``rotor_outer_radius`` [m]; torque by
+        ``QuickMeanTorque``
     """
 
     grid: SweepGrid
     limit: SaturationLimit
     data: xr.Dataset
 
-    def map(self, slots: int, stator_outer_radius: float) -> DesignMap:
-        """Torque and limited flux density of one slot count and stator radius [m]."""
-        one = self.data.sel(slots=slots, stator_outer_radius=stator_outer_radius)
+    def one(self, combination: Combination) -> xr.Dataset:
+        """``data`` of one slot-pole combination."""
+        return self.data.isel(combination=self.grid.combinations.index(combination))
+
+    def map(self, combination: Combination, stator_outer_radius: float) -> DesignMap:
+        """Torque and limited flux density of one combination and stator radius [m]."""
+        one = self.one(combination).sel(stator_outer_radius=stator_outer_radius)
         order = ("back_iron", "rotor_radius")
         torque, limited = (one[name].transpose(*order).values for name in ("torque", "limited"))
         return DesignMap(one.back_iron_width.values, one.rotor_outer_radius.values, torque, limited)
@@ -115,11 +122,11 @@ class DesignMaps:
 
 @dataclass(frozen=True)
 class SweepBlock:
-    """All back_iron_widths [m] at some rotor_outer_radii [m] of one slot count and stator radius [m]."""
+    """All back_iron_widths [m] at some rotor_outer_radii [m] of one combination and stator radius [m]."""
 
     case: FieldCase
     reading: SaturationReading
-    slots: int
+    combination: Combination
     stator_outer_radius: float
     back_iron_widths: tuple[float, ...]
     rotor_outer_radii: tuple[float, ...]
@@ -130,7 +137,12 @@ class SweepBlock:
 
     def machine(self, rotor_outer_radius: float, back_iron_width: float) -> Machine:
         """One design. Raises GeometryError where it cannot even be drawn."""
-        return self.case.family.machine(self.slots, self.stator_outer_radius, back_iron_width, rotor_outer_radius)
+        return self.case.family.machine(
+            self.combination,
+            stator_outer_radius=self.stator_outer_radius,
+            back_iron_width=back_iron_width,
+            rotor_outer_radius=rotor_outer_radius,
+        )
 
 
 def sweep_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> DesignMaps:
@@ -157,19 +169,19 @@ def _row(design: Design | None) -> list[float]:
 def blocks_of(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
     """The tasks of a sweep by name: some rotor radii together, because they share a mesh."""
     blocks = {}
-    for slots, outer in grid.sections:
+    for combination, outer in grid.sections:
         widths, radii = (tuple(lengths.tolist()) for lengths in (grid.widths(outer), grid.radii(outer)))
         for first in range(0, len(radii), _RADII_TOGETHER):
             some = radii[first : first + _RADII_TOGETHER]
-            name = f"{slots} slots, {2 * outer / MILLIMETRE:g} mm, radii from {first}"
-            blocks[name] = SweepBlock(case, reading, slots, outer, widths, some)
+            name = f"{combination.words}, {2 * outer / MILLIMETRE:g} mm, radii from {first}"
+            blocks[name] = SweepBlock(case, reading, combination, outer, widths, some)
     return blocks
 
 
 def _dataset(grid: SweepGrid, blocks: list[np.ndarray]) -> xr.Dataset:
     """The labelled map from the blocks of ``blocks_of``, in their order."""
     outer = np.array(grid.stator_outer_radii)
-    shape = len(grid.slots), len(outer), grid.rotor_radius_steps, grid.back_iron_steps, len(VARIABLES)
+    shape = len(grid.combinations), len(outer), grid.rotor_radius_steps, grid.back_iron_steps, len(VARIABLES)
     values = np.concatenate(blocks).reshape(shape).swapaxes(2, 3)
     data: dict[str, object] = {name: (_DIMENSIONS, values[..., k]) for k, name in enumerate(VARIABLES)}
     data |= {
@@ -180,4 +192,5 @@ def _dataset(grid: SweepGrid, blocks: list[np.ndarray]) -> xr.Dataset:
         "back_iron_fraction": ("back_iron", grid.back_iron),
         "rotor_radius_fraction": ("rotor_radius", grid.rotor),
     }
-    return xr.Dataset(data, {"slots": list(grid.slots), "stator_outer_radius": outer, **shares})
+    counts = {name: ("combination", [getattr(one, name) for one in grid.combinations]) for name in ("slots", "poles")}
+    return xr.Dataset(data, {"stator_outer_radius": outer, **counts, **shares})

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from disk import write_atomically
+from pipeline.artefacts import artefact
 from pipeline.campaign_draft import BENCHES, Designed, Draft
-from pipeline.codec import CodecError
 from pipeline.results import Results, results_of
 from study.errors import StudyError
 from study.read import read_study
@@ -47,18 +47,9 @@ def campaign_from(options: argparse.Namespace) -> None:
 
 def designed(study: Study, results: Results) -> Designed:
     """The design in a results folder. Raises StudyError where a stage has not run or its result was edited."""
-    gears = _artefact(study, results, "gearbox") if study.match.gearbox_stages else None
-    winding, flux_map, outcome = (_artefact(study, results, name) for name in ("winding", "flux_map", "outcome"))
+    gears = artefact(study, results, "gearbox") if study.match.gearbox_stages else None
+    winding, flux_map, outcome = (artefact(study, results, name) for name in ("winding", "flux_map", "outcome"))
     return Designed(study, winding, flux_map, outcome, gears)
-
-
-def _artefact(study: Study, results: Results, name: str) -> Any:
-    try:
-        if results.record(name) is not None:
-            return results.load(name)
-    except CodecError:
-        pass
-    raise StudyError(f"{results.folder} has no usable result of {name}: run `airgap run {study.path}` first.")
 
 
 def write_campaign(folder: Path, draft: Draft, source: str) -> None:

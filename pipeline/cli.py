@@ -25,6 +25,8 @@ COMMANDS = {
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
     "turn": Command("pipeline.turn_command", "add_turn", "turn a machine of any kind at one current"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
+    "take-over": Command("pipeline.take_over_command", "add_take_over",
+                         "make a study of a design that was found over all stages at once"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
     "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",
                              "write the bench campaign of a design, to be measured"),

@@ -94,6 +94,7 @@ from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
 from study.inputs_mechanics import mechanics_inputs
 from study.inputs_package import part_prices
 from study.inputs_tolerances import tolerances as stated_tolerances
+from study.inputs_variables import freedom
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
 from study.schema import Study
 from thermal.errors import ThermalError
@@ -116,8 +117,8 @@ REFUSALS = (
 )  # fmt: skip
 
 _SOURCES = (
-    study_itself, sweep_grid, saturation_limit, match_inputs, stated_demands, whole_search_inputs, flux_map_grid,
-    gear_inputs, output, copper_heat, heat_inputs, mechanics_inputs, part_prices,
+    study_itself, sweep_grid, freedom, saturation_limit, match_inputs, stated_demands, whole_search_inputs,
+    flux_map_grid, gear_inputs, output, copper_heat, heat_inputs, mechanics_inputs, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
     field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
@@ -185,7 +186,7 @@ _MACHINE: tuple[Node, ...] = (
     View(stated_tolerances),
     Stage("tolerances", tolerances_stage, "which one to buy", tolerances.files, remarks=tolerances.remarks),
     Stage("uncertainty", uncertainty_stage, "of the headline numbers", uncertainty.files),
-    Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True),
+    Stage("optimise", optimise_stage, "all stages at once", optimise.files, on_request=True, remarks=optimise.remarks),
 )
 
 

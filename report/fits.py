@@ -9,11 +9,12 @@ import pandas as pd
 from figures.files import File, figure_file, picture_name, table_file
 from figures.fits import fits as fits_figure
 from figures.report import Picture, Remark, Section, Table, heading
-from optimisation.fits import QUANTITIES, SectionFits
+from geometry.family import Combination
+from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
 from optimisation.optima import Optima
 from optimisation.polynomial_fits import PolynomialFit
 from report.sweep import optima_table
-from units import FACTORS, MILLIMETRE
+from units import FACTORS, MILLIMETRE, written
 
 _UNITS = {"back_iron_width": "mm", "rotor_outer_radius": "mm", "half_slot_area": "mm2"}  # the others are torques
 _TORQUE_UNIT = "Nm_per_m"
@@ -24,12 +25,18 @@ def files(fits: SectionFits, optima: Optima) -> Iterator[File]:
     """Coefficients with their quality, and the optima with their curves."""
     table = fits_table(fits)
     yield table_file("fits.csv", table)
-    yield figure_file("fits", fits_figure(optima_table(optima), table))
+    yield figure_file("fits", fits_figure(optima_table(optima), table, _panels(optima)))
+
+
+def _panels(optima: Optima) -> tuple[tuple[str, str, str], ...]:
+    """(column, title, unit) of what was freed."""
+    return tuple((one.key, one.words, written(one.unit) or "1") for one in optima.freedom.further)
 
 
 def section(fits: SectionFits) -> Section:
     """Fits over the stator radius, and which are refused."""
-    columns = ["slots", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual", "held_out"]
+    columns = ["slots", "poles", "quantity", "p2", "p1", "p0", "r_squared", "rms_residual", "largest_residual",
+               "held_out"]  # fmt: skip
     table = fits_table(fits)
     shown = table[columns].assign(quantity=table.quantity.map(heading))
     caption = (
@@ -46,28 +53,37 @@ def section(fits: SectionFits) -> Section:
 
 def remarks(fits: SectionFits) -> Iterator[str]:
     """What the run says at once: fits that are refused."""
-    for one in fits.by_slots:
-        yield from (f"refused: {fit.quantity}: {fit.refused}" for fit in one.fits if fit.refused)
+    for one in fits.each:
+        yield from (f"refused: {fit.quantity}: {fit.refused}" for fit in one.every if fit.refused)
 
 
 def fits_table(fits: SectionFits) -> pd.DataFrame:
     """Coefficients p2, p1, p0 in the unit of the quantity and millimetres of radius, with residuals and range."""
-    return pd.DataFrame([_row(one.slots, quantity, one.of(quantity)) for one in fits.by_slots for quantity in _ORDER])
+    return pd.DataFrame([_row(one.combination, *named) for one in fits.each for named in _named(one)])
 
 
-def _row(slots: int, quantity: str, fit: PolynomialFit) -> dict[str, object]:
-    unit = _UNITS.get(quantity, _TORQUE_UNIT)
-    p2, p1, p0 = (p * MILLIMETRE**power / FACTORS[unit] for p, power in zip(fit.powers, (2, 1, 0)))
+def _named(one: CombinationFits) -> Iterator[tuple[str, str, PolynomialFit]]:
+    """(quantity, unit, polynomial): torques first, what was freed last."""
+    for quantity in _ORDER:
+        yield quantity, _UNITS.get(quantity, _TORQUE_UNIT), one.of(quantity)
+    for further in one.further:
+        yield further.variable.name, further.variable.unit, further.fit
+
+
+def _row(combination: Combination, quantity: str, unit: str, fit: PolynomialFit) -> dict[str, object]:
+    factor = FACTORS.get(unit, 1.0)
+    p2, p1, p0 = (p * MILLIMETRE**power / factor for p, power in zip(fit.powers, (2, 1, 0)))
     return {
-        "slots": slots,
-        "quantity": f"{quantity}_{unit}",
+        "slots": combination.slots,
+        "poles": combination.poles,
+        "quantity": f"{quantity}_{unit}" if unit else quantity,
         "p2": p2,
         "p1": p1,
         "p0": p0,
         "r_squared": fit.r_squared,
-        "rms_residual": fit.rms_residual / FACTORS[unit],
-        "largest_residual": fit.largest_residual / FACTORS[unit],
-        "held_out": fit.scatter.held_out / FACTORS[unit],
+        "rms_residual": fit.rms_residual / factor,
+        "largest_residual": fit.largest_residual / factor,
+        "held_out": fit.scatter.held_out / factor,
         "from_mm": fit.x_range[0] / MILLIMETRE,
         "to_mm": fit.x_range[1] / MILLIMETRE,
         "refused": fit.refused or None,

@@ -13,6 +13,7 @@ from drivetrain.output import Output, in_unit
 from figures.files import File, figure_file, picture_name, table_file
 from figures.match import best_row, match_curves, match_over_radius, radius_table
 from figures.report import Picture, Remark, Section, Table
+from geometry.family import Combination
 from units import FACTORS, MILLIMETRE
 
 TABLE, PARTS = "match.csv", "part_masses.csv"
@@ -23,10 +24,10 @@ def files(found: MatchOutcome, output: Output) -> Iterator[File]:
     chosen, machine, table = found.chosen, found.machine, over_radius(found, output)
     yield table_file(TABLE, table)
     yield table_file(PARTS, parts_table(found.parts))
-    title = f"{machine.slots} slots, Ø {2 * machine.stator_outer_radius / MILLIMETRE:.4g} mm"
+    title = f"{Combination.of(machine).words}, Ø {2 * machine.stator_outer_radius / MILLIMETRE:.4g} mm"
     curves = match_curves(found.curves, chosen, output=output, title=title, length_limit=found.length_limit)
     yield figure_file("match_curves", curves)
-    best = best_row(machine.slots, found.overload.name, machine.stator_outer_radius, chosen, output)
+    best = best_row(Combination.of(machine), found.overload.name, machine.stator_outer_radius, chosen, output)
     yield figure_file("match_over_radius", match_over_radius(table, output, best=best))
 
 
@@ -65,9 +66,9 @@ def remarks(found: MatchOutcome, output: Output) -> Iterator[str]:
 
 
 def over_radius(found: MatchOutcome, output: Output) -> pd.DataFrame:
-    """One row per slot count, overload law and stator radius; NaN where there is no match."""
+    """One row per slot-pole combination, overload law and stator radius; NaN where there is no match."""
     tables = [
-        radius_table(one.slots, one.overload.name, one.over_radius, output)
+        radius_table(one.combination, one.overload.name, one.over_radius, output)
         for one in found.over_radius
         if one.over_radius is not None
     ]
@@ -109,9 +110,9 @@ def _notes(one: NamedMatch, output: Output) -> tuple[str, ...]:
 
 
 def _refusals(found: MatchOutcome, output: Output) -> tuple[Remark, ...]:
-    """Slot counts without a match."""
+    """Slot-pole combinations without a match."""
     said = [(one, one.refusal.words(output)) for one in found.over_radius if one.refusal is not None]
-    return tuple(Remark(f"{one.slots} slots, overload torque {one.overload.name}: {why}.") for one, why in said)
+    return tuple(Remark(f"{one.combination.words}, overload torque {one.overload.name}: {why}.") for one, why in said)
 
 
 def _stated(found: MatchOutcome, output: Output) -> tuple[Table | Remark, ...]:

@@ -11,7 +11,7 @@ from drivetrain.output import Output, in_unit, labelled
 from drivetrain.whole_design import RatedDesign
 from drivetrain.whole_search import Bettered, SolvedDesign, WholeSearch, objective_words
 from figures.files import File, figure_file, table_file, text_file
-from figures.report import Picture, Section, Table, render_report
+from figures.report import Picture, Remark, Section, Table, render_report
 from figures.whole_design import whole_designs
 from units import MILLIMETRE, written
 
@@ -41,14 +41,34 @@ def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Sectio
                 f"{idle_share(found, output)}",
                 Picture(figure, "Every pair of objectives."),
                 Table(solved_table(found, output), solved),
+                *(Remark(f"{said[:1].upper()}{said[1:]}.") for said in bound_hits(found, output)),
             ),
         ),
     )
 
 
+def remarks(found: WholeSearch, output: Output) -> Iterator[str]:
+    """What the run says at once: designs on an end of what could be chosen, and how one is taken over."""
+    yield from bound_hits(found, output)
+    yield "`airgap take-over STUDY --design NUMBER` makes a study of a design of optimise.csv"
+
+
+def bound_hits(found: WholeSearch, output: Output) -> Iterator[str]:
+    """Solved designs on an end of the search, each end with all its designs."""
+    ends: dict[str, list[str]] = {}
+    for number, one in enumerate(found.solved, start=1):
+        for words in found.choices.hits(one.model.design):
+            ends.setdefault(words, []).append(str(number))
+    for words, numbers in ends.items():
+        yield f"design{'s' * (len(numbers) > 1)} {', '.join(numbers)} {_LIE[len(numbers) > 1]} on {words}"
+
+
+_LIE = ("lies", "lie")
+
+
 def _text(output: Output) -> str:
     return (
-        f"Slot count, radius, active length, {output.transmission} are varied together against the design that was "
+        f"Slots, poles, radius, active length, {output.transmission} are varied together against the design that was "
         "found stage by stage. The model is that of the match: fits of the cross-section, masses of the drawn parts, "
         f"scaling laws of the gears. The loss {output.duty} is copper loss of the RMS {output.effort} and idle loss of "
         f"iron and magnets at a {output.speed} that is normally distributed with the RMS value. Copper loss alone "
@@ -59,8 +79,8 @@ def _text(output: Output) -> str:
 
 def solved_table(found: WholeSearch, output: Output) -> pd.DataFrame:
     """Designs solved by the field, in drawing units."""
-    rows = zip(_names(found, output), found.solved, strict=True)
-    return pd.DataFrame([_row(name, one, output) for name, one in rows])
+    rows = enumerate(zip(_names(found, output), found.solved, strict=True), start=1)
+    return pd.DataFrame([{"number": number} | _row(name, one, output) for number, (name, one) in rows])
 
 
 def _names(found: WholeSearch, output: Output) -> list[str]:
@@ -115,7 +135,8 @@ def _row(name: str, one: SolvedDesign, output: Output) -> dict[str, object]:
     damping, loss = (column for column, _ in _columns(output)[2:])
     return {
         "design": name,
-        "slots": design.slots,
+        "slots": design.combination.slots,
+        "poles": design.combination.poles,
         "stator_diameter_mm": 2 * design.stator_outer_radius / MILLIMETRE,
         "active_length_mm": design.active_length / MILLIMETRE,
         **output.ratio_columns(design.transmission_ratio, design.linkage_ratio),
@@ -134,7 +155,8 @@ def _gain(staged: RatedDesign, one: Bettered, output: Output) -> dict[str, objec
         "stage by stage": old,
         "together": new,
         "change_percent": 100 * (new / old - 1),
-        "slots": one.found.design.slots,
+        "slots": one.found.design.combination.slots,
+        "poles": one.found.design.combination.poles,
         "stator_diameter_mm": 2 * one.found.design.stator_outer_radius / MILLIMETRE,
     }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import floor
 
 import pandas as pd
 
@@ -10,6 +11,7 @@ from drivetrain.asked import Check
 from drivetrain.nearest import Move, NearestDesign
 from drivetrain.outcome import Features, Outcome
 from drivetrain.output import Output, in_unit, labelled
+from drivetrain.proof import Impossibility
 from drivetrain.remedies import Remedy
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
@@ -215,8 +217,30 @@ def nearest_in_words(nearest: NearestDesign, output: Output) -> str:
     fails = ", ".join(f"{one.requirement.name(output)} ({100 * one.margin:.0f} %)" for one in short)
     return (
         "No design of this cross-section was found that meets all requirements with these inputs between a third of "
-        f"their values and three times them. The one that comes nearest falls short in {fails}: try another radius."
+        f"their values and three times them. The one that comes nearest falls short in {fails}: try another radius. "
+        f"{_proof_in_words(nearest.impossible, output)}"
     )
+
+
+def _proof_in_words(proof: Impossibility | None, output: Output) -> str:
+    """What is proved, and what was only searched."""
+    if proof is None:
+        return "That there is none was searched for and is not proved."
+    names = ", ".join(one.name(output) for one in proof.requirements)
+    if len(proof.requirements) == 1:
+        what = f"{names} alone stays short by {_percent(proof)} % at least"
+    else:
+        what = f"{names} contradict each other, one of them stays short by {_percent(proof)} % at least"
+    return (
+        f"There is none, by bounds that hold wherever these inputs stand in that range: {what}, whatever field, "
+        "winding and the control make of it. A bound counts the torque of the overload current without a limit on the "
+        "voltage, and the power of bus and current without loss."
+    )
+
+
+def _percent(proof: Impossibility) -> str:
+    """Rounded down, so that what is said stays true."""
+    return f"{floor(1000 * proof.shortfall) / 10:g}"
 
 
 def _move_in_words(move: Move, output: Output) -> str:

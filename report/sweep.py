@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, astuple
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,7 @@ from figures.design_map import design_map, design_maps
 from figures.files import File, figure_file, picture_name, table_file
 from figures.limits import limits as limits_figure
 from figures.report import Picture, Remark, Section, Table
+from geometry.family import Combination
 from magnetostatics.case import FieldCase
 from optimisation.limits import LimitComparison
 from optimisation.optima import Optima, Optimum
@@ -20,14 +21,14 @@ from optimisation.sweep import DesignMaps
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, drawn
 
 _COLUMNS = (
-    "slots", "stator_diameter_mm", "stator_outer_radius_mm", "back_iron_width_mm", "rotor_outer_radius_mm",
+    "slots", "poles", "stator_diameter_mm", "stator_outer_radius_mm", "back_iron_width_mm", "rotor_outer_radius_mm",
     "tooth_width_mm", "half_slot_area_mm2", "torque_nominal_Nm_per_m", "torque_nominal_error_Nm_per_m",
     "torque_nominal_arkkio_Nm_per_m", "torque_overload_Nm_per_m", "torque_overload_error_Nm_per_m",
     "torque_overload_linear_Nm_per_m", "torque_null_Nm_per_m", "limited_T", "limit_T", "limit_binds", "tooth_worst_T",
     "back_iron_worst_T", "reading", "field_solutions", "newton_iterations",
 )  # fmt: skip
 _SHOWN = (
-    "slots", "stator_diameter_mm", "back_iron_width_mm", "rotor_outer_radius_mm", "half_slot_area_mm2",
+    "slots", "poles", "stator_diameter_mm", "back_iron_width_mm", "rotor_outer_radius_mm", "half_slot_area_mm2",
     "torque_nominal_Nm_per_m", "torque_nominal_error_Nm_per_m", "torque_overload_Nm_per_m",
     "torque_overload_error_Nm_per_m", "torque_overload_linear_Nm_per_m", "limited_T", "tooth_worst_T",
 )  # fmt: skip
@@ -38,12 +39,13 @@ _TORQUES = ("torque", "torque_null")
 
 def optima_files(optima: Optima, maps: DesignMaps, case: FieldCase) -> Iterator[File]:
     """Table of the optima and the design maps; the large one is that closest to the machine of the study."""
-    table, shown = optima_table(optima), drawn_maps(maps)
+    table = optima_table(optima)
     yield table_file("optima.csv", table)
-    slots, diameter = _closest(maps, case)
+    combination, diameter = _closest(maps, case)
+    shown, own = drawn_maps(maps, combination), _of(table, combination)
     chosen = maps.limit.reading.name, maps.limit.limit
-    yield figure_file("design_map", design_map(shown, table, slots, diameter, *chosen))
-    yield figure_file("design_maps", design_maps(shown, table, slots, *chosen))
+    yield figure_file("design_map", design_map(shown, own, combination.words, diameter, *chosen))
+    yield figure_file("design_maps", design_maps(shown, own, combination.words, *chosen))
 
 
 def limits_files(limits: LimitComparison) -> Iterator[File]:
@@ -77,7 +79,8 @@ def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComp
             Picture(picture_name("design_maps"), "The same for every stator diameter, as shares of the stator radius."),
             *(Remark(f"{edge.sentence}.") for edge in optima.edges),
             *(Remark(f"{one.reason}.") for one in optima.without),
-            Table(optima_table(optima)[list(_SHOWN)], caption),
+            *_freed(optima),
+            Table(optima_table(optima)[[*_SHOWN, *_freed_columns(optima)]], caption),
             _overload(case, optima),
             *_readings(limits),
         ),
@@ -87,7 +90,7 @@ def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComp
 def optima_table(optima: Optima) -> pd.DataFrame:
     """The optima in drawing units, one row each."""
     rows = [_row(optimum, optima) for optimum in optima.found]
-    return pd.DataFrame(rows, columns=list(_COLUMNS))
+    return pd.DataFrame(rows, columns=[*_COLUMNS, *_freed_columns(optima)])
 
 
 def limits_table(limits: LimitComparison) -> pd.DataFrame:
@@ -106,9 +109,9 @@ def limits_table(limits: LimitComparison) -> pd.DataFrame:
     )
 
 
-def drawn_maps(maps: DesignMaps) -> xr.Dataset:
-    """The maps in drawing units, as ``figures.design_map`` takes them."""
-    data = maps.data
+def drawn_maps(maps: DesignMaps, combination: Combination) -> xr.Dataset:
+    """The maps of one combination in drawing units, as ``figures.design_map`` takes them."""
+    data = maps.one(combination)
     named = {f"{name}_{'Nm_per_m' if name in _TORQUES else 'T'}": data[name] for name in _MAPS}
     lengths = {f"{name}_mm": data[name] / MILLIMETRE for name in ("back_iron_width", "rotor_outer_radius")}
     shown = xr.Dataset(named | lengths, attrs={"reading": maps.limit.reading.name})
@@ -118,30 +121,61 @@ def drawn_maps(maps: DesignMaps) -> xr.Dataset:
 
 
 def _row(optimum: Optimum, optima: Optima) -> dict[str, object]:
-    values = asdict(optimum) | {
-        "stator_diameter": 2 * optimum.stator_outer_radius,
-        "torque_nominal_arkkio": optimum.torque_nominal_ring,
-        "limit": optima.limit.limit,
-        "reading": optima.limit.reading.name,
-    }
-    return drawn(values, _COLUMNS)
-
-
-def _closest(maps: DesignMaps, case: FieldCase) -> tuple[int, float]:
-    """Slot count and stator diameter [mm] of the sweep that are closest to the machine of the study."""
-    own = case.family
-    slots, outer = min(
-        maps.grid.sections, key=lambda one: (abs(one[0] - own.slots), abs(one[1] - own.stator_outer_radius))
+    values = (
+        asdict(optimum)
+        | asdict(optimum.combination)
+        | {
+            "stator_diameter": 2 * optimum.stator_outer_radius,
+            "torque_nominal_arkkio": optimum.torque_nominal_ring,
+            "limit": optima.limit.limit,
+            "reading": optima.limit.reading.name,
+        }
     )
-    return slots, round(2 * outer / MILLIMETRE, 9)
+    further = zip(optima.freedom.further, optimum.further, strict=True)
+    return drawn(values, _COLUMNS) | {variable.key: variable.drawn(value) for variable, value in further}
+
+
+def _freed_columns(optima: Optima) -> list[str]:
+    """Columns of what was freed, without those that stand in the table anyway."""
+    return [variable.key for variable in optima.freedom.further if variable.key not in _COLUMNS]
+
+
+def _of(table: pd.DataFrame, combination: Combination) -> pd.DataFrame:
+    """The rows of one combination."""
+    return table[(table.slots == combination.slots) & (table.poles == combination.poles)]
+
+
+def _closest(maps: DesignMaps, case: FieldCase) -> tuple[Combination, float]:
+    """Slot-pole combination and stator diameter [mm] of the sweep that are closest to the machine of the study."""
+    own = case.family
+
+    def distance(one: tuple[Combination, float]) -> tuple[int, int, float]:
+        (slots, poles), outer = astuple(one[0]), one[1]
+        return abs(slots - own.slots), abs(poles - own.combination.poles), abs(outer - own.stator_outer_radius)
+
+    combination, outer = min(maps.grid.sections, key=distance)
+    return combination, round(2 * outer / MILLIMETRE, 9)
 
 
 def _what(maps: DesignMaps) -> str:
     return (
         "Largest torque per metre, mean over one electrical period with the current on the q axis, with a flux "
         f"density of at most {maps.limit.words}: {maps.grid.back_iron_steps} × {maps.grid.rotor_radius_steps} designs "
-        f"for every slot count and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), then refined "
-        "with further field solutions until the limit is met to 0.02 %."
+        f"for every slot-pole combination and diameter ({maps.designs} in all, {maps.unbuildable} cannot be built), "
+        "then refined with further field solutions until the limit is met to 0.02 %."
+    )
+
+
+def _freed(optima: Optima) -> tuple[str, ...]:
+    """What the optima could choose beside back iron and rotor radius."""
+    if not optima.freedom.further:
+        return ()
+    said = "; ".join(
+        f"{one.words} {one.drawn(one.low):.4g} to {one.amount(one.high)}" for one in optima.freedom.further
+    )
+    return (
+        f"From the optimum over the grid on, the search by gradients was free in more dimensions: {said}. The magnets "
+        "must stand the overload current in the magnetic circuit, and the wire must pass the slot opening.",
     )
 
 

@@ -9,15 +9,15 @@ from study.schema import Study
 def summary(study: Study) -> str:
     """The study in a few lines."""
     machine, sweep = study.machine, study.sweep
-    slots = ", ".join(str(count) for count in sweep.slots)
+    slots, poles = (", ".join(map(str, counts)) for counts in (sweep.slots, sweep.poles or (machine.poles,)))
     diameters = sweep.stator_diameters_mm
     return "\n".join(
         (
             f"{study.path}: {study.study.title}",
             f"  machine     {machine.slots} slots, {machine.poles} poles, stator radius "
             f"{machine.stator_outer_radius_mm:g} mm, steel {study.materials.steel}",
-            f"  sweep       slots {slots}; {len(diameters)} diameters {min(diameters):g} to {max(diameters):g} mm; "
-            f"{sweep.back_iron_steps} x {sweep.rotor_radius_steps} designs each",
+            f"  sweep       slots {slots}; poles {poles}; {len(diameters)} diameters {min(diameters):g} to "
+            f"{max(diameters):g} mm; {sweep.back_iron_steps} x {sweep.rotor_radius_steps} designs each",
             f"  saturation  {study.saturation.reading} below {study.saturation.limit_T:g} T",
             f"  required    {_required(study)}",
             f"  linkage     {_linkage(study)}",

@@ -10,7 +10,7 @@ from magnetostatics.model import MachineMaterials
 from materials.library import load_steel
 from optimisation.states import READINGS
 from optimisation.sweep import SaturationLimit, SweepGrid
-from study.inputs_machine import machine_family, mesh_density
+from study.inputs_machine import combinations, machine_family, mesh_density
 from study.magnet_choice import design_magnet
 from study.schema import Study
 
@@ -44,7 +44,7 @@ def sweep_grid(study: Study) -> SweepGrid:
     """What the cross-section optimisation varies."""
     s = study.sweep
     return SweepGrid(
-        slots=s.slots,
+        combinations=combinations(study),
         stator_outer_radii=tuple(diameter / 2 for diameter in s.si.stator_diameters),
         back_iron_fractions=(s.back_iron_fraction_min, s.back_iron_fraction_max),
         back_iron_steps=s.back_iron_steps,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from geometry.family import MachineFamily
+from itertools import product
+
+from geometry.family import Combination, MachineFamily
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
-from study.schema import MachineSection, MeshSection
+from study.schema import MachineSection, MeshSection, Study
 
 # Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.
 MESH_NAMES = {
@@ -17,7 +19,7 @@ _MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation()
 
 
 def machine_family(section: MachineSection) -> MachineFamily:
-    """The machine of the study and all that differ from it in slots, stator and rotor radius and back iron."""
+    """The machine of the study and all that differ from it in slots, poles and some dimensions."""
     si = section.si
     return MachineFamily(
         slots=si.slots,
@@ -37,6 +39,12 @@ def machine_family(section: MachineSection) -> MachineFamily:
         shoe_d1=si.shoe_d1,
         shoe_d2=si.shoe_d2,
     )
+
+
+def combinations(study: Study) -> tuple[Combination, ...]:
+    """Every slot count of the sweep with every pole count; that of the machine where the sweep names none."""
+    poles = study.sweep.poles or (study.machine.poles,)
+    return tuple(Combination(*one) for one in product(study.sweep.slots, poles))
 
 
 def mesh_density(section: MeshSection) -> MeshDensity:

@@ -19,6 +19,7 @@ from drivetrain.whole_search import WholeSearchInputs
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
 from study.inputs_electrical import winding_resistivity
+from study.inputs_machine import combinations
 from study.magnet_choice import magnet_density
 from study.needed import needed
 from study.schema import MatchSection, Study
@@ -31,7 +32,7 @@ def match_inputs(study: Study) -> MatchInputs:
     """Limits, scales, gears, materials and choices of [match] and of the sections it rests on."""
     section = study.match.si
     return MatchInputs(
-        slots=study.sweep.slots,
+        combinations=combinations(study),
         limits=MatchLimits(section.length_max, section.speed_max),
         scales=CostScales(section.mass_max, largest_equivalent_mass(study), section.radius_limit),
         weights=CostWeights(section.weight_inertia, section.weight_radius),
@@ -97,7 +98,13 @@ def whole_search_inputs(study: Study) -> WholeSearchInputs:
 
 def _by_hand(section: MatchSection) -> ChosenByHand:
     diameter = section.si.chosen_stator_diameter
-    return ChosenByHand(section.chosen_slots, None if diameter is None else diameter / 2)
+    return ChosenByHand(
+        slots=section.chosen_slots,
+        stator_outer_radius=None if diameter is None else diameter / 2,
+        poles=section.chosen_poles,
+        gear_ratio=section.chosen_gear_ratio,
+        active_length=section.si.chosen_active_length,
+    )
 
 
 def _printed(study: Study) -> PrintedMachine | None:

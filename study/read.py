@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
+from geometry.family import Combination
 from geometry.winding import star_of_slots
 from study.chain import check_chain
 from study.errors import StudyError
@@ -42,7 +43,7 @@ def read_study(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Study
     study = _validated(data, path, {(section, key): text for section, key, _, text in changes})
     study._path = path
     origin = _origin(path, overrides)
-    check_winding(study, "machine.slots", study.machine.slots, origin)
+    check_winding(study, machine_family(study.machine).combination, ("machine.slots", "machine.poles"), origin)
     _check_geometry(study, origin)
     _check_sleeve(study, origin)
     check_chain(study, origin)
@@ -128,16 +129,15 @@ def _validated(data: dict[str, Any], path: Path, overridden: dict[Location, str]
 # ------------------------------------------------------------------------- checks by the packages that know
 
 
-def check_winding(study: Study, key: str, slots: int, origin: str) -> None:
-    """StudyError unless this number of slots, which stands under a key, carries a balanced winding."""
-    poles, winding = study.machine.poles, study.winding
+def check_winding(study: Study, combination: Combination, keys: tuple[str, str], origin: str) -> None:
+    """StudyError unless slots and poles, which stand under two keys, carry a balanced winding."""
+    winding = study.winding
     try:
-        star_of_slots(slots, poles // 2, winding.layers, winding.coil_pitch)
+        star_of_slots(combination.slots, combination.pole_pairs, winding.layers, winding.coil_pitch)
     except GeometryError as error:
         pitch = "" if winding.coil_pitch is None else f", winding.coil_pitch = {winding.coil_pitch}"
-        raise StudyError(
-            f"{origin}: {key} = {slots}, machine.poles = {poles}{pitch}: {sentence_part(error)}."
-        ) from error
+        stated = f"{keys[0]} = {combination.slots}, {keys[1]} = {combination.poles}{pitch}"
+        raise StudyError(f"{origin}: {stated}: {sentence_part(error)}.") from error
 
 
 def _check_sleeve(study: Study, origin: str) -> None:

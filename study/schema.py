@@ -80,6 +80,12 @@ class StudySection(Section):
     title: Annotated[str, Field(min_length=1)]
 
 
+def _in_pairs(poles: int) -> int:
+    if poles % 2:
+        raise ValueError("is odd, but magnets come in pairs; give an even number")
+    return poles
+
+
 class MachineSection(Section):
     """Cross-section (thesis Fig. 3.16, Table 3.10)."""
 
@@ -105,9 +111,7 @@ class MachineSection(Section):
     @field_validator("poles", mode="after")
     @classmethod
     def _poles_come_in_pairs(cls, poles: int) -> int:
-        if poles % 2:
-            raise ValueError("is odd, but magnets come in pairs; give an even number")
-        return poles
+        return _in_pairs(poles)
 
 
 class MaterialsSection(Section):
@@ -187,10 +191,34 @@ class FluxMapSection(Section):
     currents: Annotated[int | None, Quantity("currents along either axis", 5, 101)] = None
 
 
+Bounds = Annotated[tuple[float, float] | None, Listed]
+
+
+class VariablesSection(Section):
+    """Dimensions that the optima choose beside back iron and rotor radius: smallest and largest; optional, and what is
+    not named stays as [machine] states it."""
+
+    magnet_length_mm: Annotated[Bounds, Quantity("radial magnet length", 0.3, 50)] = None
+    magnet_arc_fraction: Annotated[Bounds, Quantity("magnet arc over pole pitch", 0.1, 1)] = None
+    airgap_mm: Annotated[Bounds, Quantity("air gap between magnets and teeth", 0.05, 20)] = None
+    tooth_width_mm: Annotated[Bounds, Quantity("tooth width", 0.3, 200)] = None
+    slot_opening_mm: Annotated[Bounds, Quantity("slot opening", 0.1, 50)] = None
+    shoe_d1_mm: Annotated[Bounds, Quantity("depth of the parallel-sided slot opening", 0.05, 50)] = None
+    shoe_d2_mm: Annotated[Bounds, Quantity("depth of the shoe's taper", 0.05, 50)] = None
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _ends_are_in_order(cls, ends: tuple[float, float] | None) -> tuple[float, float] | None:
+        if ends is not None and not ends[0] < ends[1]:
+            raise ValueError(f"goes from {ends[0]:g} to {ends[1]:g}; give the smallest value first, then the largest")
+        return ends
+
+
 class SweepSection(Section):
     """Grid of the cross-section optimisation and its two current densities."""
 
     slots: Annotated[tuple[int, ...], Listed, Field(min_length=1), Quantity("slot counts", 3, 360)]
+    poles: Annotated[tuple[int, ...] | None, Listed, Field(min_length=1), Quantity("pole counts", 2, 360)] = None
     stator_diameters_mm: Annotated[
         tuple[float, ...], Listed, Field(min_length=1), Quantity("stator outer diameters", 10, 2000)
     ]
@@ -210,10 +238,15 @@ class SweepSection(Section):
         _require_order(self, "j_nominal_rms_A_per_mm2", "j_overload_rms_A_per_mm2")
         return self
 
-    @field_validator("slots", "stator_diameters_mm", mode="after")
+    @field_validator("slots", "poles", "stator_diameters_mm", mode="after")
     @classmethod
-    def _named_once(cls, values: tuple[float, ...]) -> tuple[float, ...]:
-        return _each_once(values)
+    def _named_once(cls, values: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
+        return None if values is None else _each_once(values)
+
+    @field_validator("poles", mode="after")
+    @classmethod
+    def _poles_come_in_pairs(cls, counts: tuple[int, ...] | None) -> tuple[int, ...] | None:
+        return counts if counts is None else tuple(_in_pairs(poles) for poles in counts)
 
 
 SaturationReading = Literal["aligned_tooth", "every_tooth", "every_tooth_and_back_iron_over_period"]
@@ -454,7 +487,10 @@ class MatchSection(Section):
     enforce_damping: bool
     # optional: the designer's choice of the machine to go on with; without it the least cost decides
     chosen_slots: Annotated[int | None, Quantity("slot count to go on with", 3, 360)] = None
+    chosen_poles: Annotated[int | None, Quantity("pole count to go on with", 2, 360)] = None
     chosen_stator_diameter_mm: Annotated[float | None, Quantity("stator diameter to go on with", 10, 2000)] = None
+    chosen_gear_ratio: Annotated[float | None, Quantity("linkage ratio over transmission ratio", 1, 1e5)] = None
+    chosen_active_length_mm: Annotated[float | None, Quantity("active length to go on with", 1, 5000)] = None
     steel_density_kg_per_m3: Annotated[float, Quantity("density of gears and shaft", 1000, 20000)]
     gearbox_stages: Annotated[int, Quantity("planetary stages, 0: direct drive", 0, 6)]
     # optional: only with planetary stages
@@ -699,6 +735,7 @@ class Study(Section):
     winding: WindingSection
     mesh: MeshSection = MeshSection()
     sweep: SweepSection
+    variables: VariablesSection = VariablesSection()
     saturation: SaturationSection
     chain: ChainSection | None = None  # without it everything is as stated
     motorcycle: MotorcycleSection | None = None

@@ -13,6 +13,7 @@ from itertools import product
 from drivetrain.four_bar import LinkageError
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
+from geometry.family import Combination
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
 from geometry.mesh_size import check_mesh_size
@@ -23,7 +24,8 @@ from study.chain import drives, searches_linkage
 from study.errors import StudyError
 from study.inputs_electrical import winding_limits, wires
 from study.inputs_linkage import linkage_search, stated_hardpoints
-from study.inputs_machine import machine_family, mesh_density
+from study.inputs_machine import combinations, machine_family, mesh_density
+from study.inputs_variables import freedom
 from study.inputs_vehicle import ride_case
 from study.magnet_choice import design_magnet
 from study.read import check_winding, sentence_part, with_keys
@@ -43,6 +45,7 @@ def check_study(study: Study) -> None:
         check_wires,
         check_steel,
         check_magnets,
+        check_variables,
         check_sweep,
         check_libraries,
     ):
@@ -60,9 +63,10 @@ def check_diameters(study: Study) -> None:
 
 
 def check_windings(study: Study) -> None:
-    """Every slot count of the sweep must have a balanced winding."""
-    for slots in study.sweep.slots:
-        check_winding(study, "sweep.slots", slots, str(study.path))
+    """Every slot count of the sweep must have a balanced winding with every pole count."""
+    poles = "machine.poles" if study.sweep.poles is None else "sweep.poles"
+    for one in combinations(study):
+        check_winding(study, one, ("sweep.slots", poles), str(study.path))
 
 
 def check_steel(study: Study) -> None:
@@ -81,11 +85,16 @@ def check_magnets(study: Study) -> None:
     design_magnet(study)
 
 
+def check_variables(study: Study) -> None:
+    """What the optima may choose must leave machines that can be built."""
+    freedom(study)
+
+
 def check_sweep(study: Study) -> None:
-    """Every slot count and diameter must have a design that can be built and meshed; one of all must take the wire."""
+    """Every combination and diameter must have a design that can be built and meshed; one of all must take the wire."""
     largest = 0.0
-    for slots, diameter in product(study.sweep.slots, study.sweep.stator_diameters_mm):
-        machines, what = _buildable(study, slots, diameter), f"a design of the sweep ({slots} slots, {diameter:g} mm)"
+    for one, diameter in product(combinations(study), study.sweep.stator_diameters_mm):
+        machines, what = _buildable(study, one, diameter), f"a design of the sweep ({one.words}, {diameter:g} mm)"
         for machine in machines:
             check_mesh(study, machine, mesh_density(study.mesh), what)
         largest = max(largest, *(machine.half_slot_area for machine in machines))
@@ -100,10 +109,10 @@ def check_mesh(study: Study, machine: Machine, density: MeshDensity, what: str =
         raise StudyError(f"{study.path}: {what} cannot be meshed, {with_keys(study, error)}.") from error
 
 
-def _buildable(study: Study, slots: int, diameter: float) -> list[Machine]:
-    """The machines of the sweep with these slots and this stator diameter [mm]; StudyError when there is none."""
+def _buildable(study: Study, combination: Combination, diameter: float) -> list[Machine]:
+    """The machines of the sweep with these slots, poles and stator diameter [mm]; StudyError when there is none."""
     found, refused = [], Counter[str]()
-    for machine in _designs(study, slots, diameter * MILLIMETRE / 2):
+    for machine in _designs(study, combination, diameter * MILLIMETRE / 2):
         try:
             check_machine(machine)
             found.append(machine)
@@ -111,9 +120,9 @@ def _buildable(study: Study, slots: int, diameter: float) -> list[Machine]:
             refused[_rule(error)] += 1
     if not found:
         raise StudyError(
-            f"{study.path}: no design of the sweep with sweep.slots = {slots} and sweep.stator_diameters_mm = "
-            f"{diameter:g} can be built, mostly since {refused.most_common(1)[0][0]}; change the ranges "
-            "sweep.back_iron_fraction_* and sweep.rotor_radius_fraction_*, or leave that number out."
+            f"{study.path}: no design of the sweep with sweep.slots = {combination.slots} and "
+            f"sweep.stator_diameters_mm = {diameter:g} can be built, mostly since {refused.most_common(1)[0][0]}; "
+            "change the ranges sweep.back_iron_fraction_* and sweep.rotor_radius_fraction_*, or leave that number out."
         )
     return found
 
@@ -123,13 +132,14 @@ def _rule(error: GeometryError) -> str:
     return str(error).partition(":")[0]
 
 
-def _designs(study: Study, slots: int, radius: float) -> Iterator[Machine]:
-    """Every machine of the sweep with this number of slots and stator radius [m]."""
+def _designs(study: Study, combination: Combination, radius: float) -> Iterator[Machine]:
+    """Every machine of the sweep with these slots, poles and stator radius [m]."""
     s, family = study.sweep, machine_family(study.machine)
     widths = _steps(s.back_iron_fraction_min, s.back_iron_fraction_max, s.back_iron_steps)
     radii = _steps(s.rotor_radius_fraction_min, s.rotor_radius_fraction_max, s.rotor_radius_steps)
     for width, rotor in product(widths, radii):
-        yield family.machine(slots, radius, width * radius, rotor * radius)
+        lengths = {"back_iron_width": width * radius, "rotor_outer_radius": rotor * radius}
+        yield family.machine(combination, stator_outer_radius=radius, **lengths)
 
 
 def _steps(low: float, high: float, count: int) -> list[float]:

@@ -20,6 +20,7 @@ import numpy as np
 from drivetrain.constraints import Constraint
 from drivetrain.match import Infeasible, Match
 from drivetrain.matching import Matcher, OverloadLaw
+from geometry.family import Combination
 from optimisation.fits import QUANTITIES, SectionFits
 from optimisation.polynomial_fits import PolynomialFit
 from tasks import Workers
@@ -62,7 +63,7 @@ class MatchSpread:
     """What the match makes of the draws, None where a draw has no match.
 
     fit, mesh, tolerance: of the chosen slots and radius, moved by one source alone; together: by all three
-    free: radius and slots free, by all three
+    free: radius and combination free, by all three
     """
 
     fit: tuple[DrawnMatch | None, ...]
@@ -74,20 +75,20 @@ class MatchSpread:
 
 @dataclass(frozen=True, eq=False)
 class DrawTask:
-    """Fits to be matched one after the other; chosen: slots and stator radius [m], None where both are free."""
+    """Fits to be matched one after the other; chosen: combination and stator radius [m], None where both are free."""
 
     matcher: Matcher
     fits: tuple[SectionFits, ...]
-    chosen: tuple[int, float] | None
+    chosen: tuple[Combination, float] | None
 
 
 def match_spread(matcher: Matcher, chosen: Match, found: ToleranceOutcome, workers: Workers) -> MatchSpread:
     """Match the draws; chosen: by the fits as they are; found: what mesh and tolerances do to its torques."""
     coarse = replace(matcher, radii=_RADII, ratio_samples=_RATIO_SAMPLES)
-    slots = [one for one in matcher.fits.usable if one in matcher.inputs.slots]
-    usable = SectionFits(tuple(matcher.fits.of(one) for one in slots))
+    kept = [one for one in matcher.fits.usable if one in matcher.inputs.combinations]
+    usable = SectionFits(tuple(matcher.fits.of(one) for one in kept))
     machine = chosen.section.machine
-    own = machine.slots, machine.stator_outer_radius
+    own = Combination.of(machine), machine.stator_outer_radius
     mesh, tolerance = _mesh_factors(found), _tolerance_factors(found)
     sources = {
         "fit": _draws(DRAWS, lambda rng: drawn_fits(usable, rng)),
@@ -112,28 +113,28 @@ def _free_tasks(matcher: Matcher, fits: tuple[SectionFits, ...]) -> dict[str, Dr
     return {f"free, from {k}": DrawTask(matcher, fits[k : k + _TOGETHER], None) for k in firsts}
 
 
-def _attempt(matcher: Matcher, chosen: tuple[int, float] | None) -> DrawnMatch | None:
+def _attempt(matcher: Matcher, chosen: tuple[Combination, float] | None) -> DrawnMatch | None:
     law = matcher.inputs.overload
     found = _best(matcher, law) if chosen is None else _of_section(matcher, law, *chosen)
     return None if found is None else _drawn_match(found, matcher)
 
 
-def _of_section(matcher: Matcher, law: OverloadLaw, slots: int, radius: float) -> Match | None:
+def _of_section(matcher: Matcher, law: OverloadLaw, combination: Combination, radius: float) -> Match | None:
     try:
-        return matcher.match(matcher.section(slots, law, radius))
+        return matcher.match(matcher.section(combination, law, radius))
     except Infeasible:
         return None
 
 
 def _best(matcher: Matcher, law: OverloadLaw) -> Match | None:
-    """The least cost over slots and radii."""
-    tried = (matcher.over_radius(slots, law).over_radius for slots in matcher.fits.slots)
+    """The least cost over combinations and radii."""
+    tried = (matcher.over_radius(one, law).over_radius for one in matcher.fits.combinations)
     return min((one.best for one in tried if one is not None), key=lambda one: one.total_cost, default=None)
 
 
 def _drawn_match(found: Match, matcher: Matcher) -> DrawnMatch:
     machine = found.section.machine
-    radius, ends = machine.stator_outer_radius, matcher.fits.range(machine.slots)
+    radius, ends = machine.stator_outer_radius, matcher.fits.range(Combination.of(machine))
     return DrawnMatch(
         slots=machine.slots,
         stator_outer_radius=radius,
@@ -179,7 +180,7 @@ def _changed(fits: SectionFits, change: Callable[[str, PolynomialFit], Polynomia
     return SectionFits(
         tuple(
             replace(one, fits=tuple(change(name, fit) for name, fit in zip(QUANTITIES, one.fits)))
-            for one in fits.by_slots
+            for one in fits.each
         )
     )
 

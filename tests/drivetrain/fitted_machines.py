@@ -5,7 +5,7 @@ from math import sqrt
 
 import numpy as np
 
-from geometry.family import MachineFamily
+from geometry.family import Combination, MachineFamily
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import ParallelMagnetisation
 from magnetostatics.case import FieldCase
@@ -17,8 +17,9 @@ from optimisation.polynomial_fits import FitRefused
 from units import MILLIMETRE, SQUARE_MILLIMETRE
 
 # p2, p1, p0 over the stator radius in mm: fits of the motorcycle's optima at a limit of 1.2 T in the aligned tooth.
+NINE, TWELVE = Combination(9, 10), Combination(12, 10)
 POLYNOMIALS = {
-    9: {
+    NINE: {
         "torque_nominal": (0.1045025168906, -4.190048760751, 55.28498087695),
         "torque_overload": (0.1360616278844, -2.086689495144, 0.3627691969257),
         "torque_overload_linear": (0.3483417229685, -13.9668292025, 184.2832695898),
@@ -26,7 +27,7 @@ POLYNOMIALS = {
         "rotor_outer_radius": (0.00493255418996, 0.1123861942167, 3.243309009166),
         "half_slot_area": (0.05456489766455, 1.823351669469, -22.9153445777),
     },
-    12: {
+    TWELVE: {
         "torque_nominal": (0.1115522349661, -5.290158373764, 78.80029600023),
         "torque_overload": (0.2047253302608, -9.102123832912, 146.1248561109),
         "torque_overload_linear": (0.3718407832205, -17.63386124588, 262.6676533341),
@@ -39,19 +40,19 @@ POLYNOMIALS = {
 
 @dataclass(frozen=True)
 class MotorcycleFits:
-    """What ``optimisation.fits.SectionFits`` offers; refused: slot counts whose fits are not to be used."""
+    """What ``optimisation.fits.SectionFits`` offers; refused: combinations whose fits are not to be used."""
 
-    refused: tuple[int, ...] = ()
+    refused: tuple[Combination, ...] = ()
 
-    def range(self, slots: int) -> tuple[float, float]:
+    def range(self, combination: Combination) -> tuple[float, float]:
         """Stator radii [m]."""
         return 35 * MILLIMETRE, 57.5 * MILLIMETRE
 
-    def at(self, slots: int, radius: float) -> FittedSection:
+    def at(self, combination: Combination, radius: float) -> FittedSection:
         """The cross-section at a stator radius [m]."""
-        if slots in self.refused:
-            raise FitRefused(f"the fit of {slots} slots is refused: a point is far away from the curve")
-        found = {name: float(np.polyval(row, radius / MILLIMETRE)) for name, row in POLYNOMIALS[slots].items()}
+        if combination in self.refused:
+            raise FitRefused(f"the fit of {combination.words} is refused: a point is far away from the curve")
+        found = {name: float(np.polyval(row, radius / MILLIMETRE)) for name, row in POLYNOMIALS[combination].items()}
         return FittedSection(
             back_iron_width=found["back_iron_width"] * MILLIMETRE,
             rotor_outer_radius=found["rotor_outer_radius"] * MILLIMETRE,

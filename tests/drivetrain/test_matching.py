@@ -35,7 +35,7 @@ from drivetrain.planetary import NITRIDED_STEEL
 from drivetrain.requirements import Linkage, Requirements
 from study.schema import Study
 from study.sentences import section_class
-from tests.drivetrain.fitted_machines import CASE, MotorcycleFits
+from tests.drivetrain.fitted_machines import CASE, NINE, TWELVE, MotorcycleFits
 from units import MILLIMETRE
 
 # What runs of the motorcycle and its front gave for these numbers.
@@ -49,7 +49,7 @@ STATED = StatedDemands(
     replace(REQUIRED, force_rms=300.0, velocity_rms=0.1, velocity_peak=3.4, force_peak=2614.0), Linkage(0.170, 0.175)
 )
 INPUTS = MatchInputs(
-    slots=(9, 12),
+    combinations=(NINE, TWELVE),
     limits=MatchLimits(70 * MILLIMETRE, 2618.0),
     scales=CostScales(4.0, 15.0, 50 * MILLIMETRE),
     weights=CostWeights(0.5, 0.2),
@@ -64,7 +64,7 @@ INPUTS = MatchInputs(
     printed=PrintedMachine("thesis", 50.0, 98.2e-6),
 )
 FREE = replace(INPUTS, by_hand=ChosenByHand())
-TWELVE = replace(INPUTS, slots=(12,))
+ONLY_TWELVE = replace(INPUTS, combinations=(TWELVE,))
 
 
 def stage(inputs=INPUTS, requirements=REQUIRED, stated=None, fits=MotorcycleFits(), output=Wheel()):
@@ -102,7 +102,7 @@ def matcher(inputs=INPUTS, masses=SteelCylinder(7800.0)):
 
 def test_the_cylinder_of_steel_gives_what_it_gave():
     one = matcher()
-    found = one.match(one.section(12, FieldOverload(), 42.5e-3))
+    found = one.match(one.section(TWELVE, FieldOverload(), 42.5e-3))
     assert found.transmission_ratio == pytest.approx(1.7954143004371468e-3, rel=1e-6)
     assert found.active_length == pytest.approx(37.53522753647196e-3, rel=1e-6)
     assert found.cost.total == pytest.approx(0.6155306885007497, rel=1e-9)
@@ -145,8 +145,8 @@ def test_the_reference_machine_has_its_torques_from_the_field():
 def test_the_designer_chooses_and_the_least_cost_is_said(found):
     assert matched_machine(found).machine == found.machine == found.chosen.section.machine
     assert found.machine.stator_outer_radius == pytest.approx(42.5e-3) and found.machine.slots == 12
-    assert "chosen in the study file (12 slots, 85 mm" in found.reason
-    assert "belongs to 12 slots and 70.0 mm" in found.reason
+    assert "chosen in the study file (12 slots, 10 poles, 85 mm" in found.reason
+    assert "belongs to 12 slots, 10 poles and 70.0 mm" in found.reason
     assert "add smaller diameters to sweep.stator_diameters_mm" in found.at_edge
     assert found.at_edge in [note.words(Wheel()) for note in found.notes]
 
@@ -154,20 +154,22 @@ def test_the_designer_chooses_and_the_least_cost_is_said(found):
 def test_without_a_choice_the_least_cost_decides(quick):
     found = stage(FREE)
     costs = [np.nanmin(one.over_radius.cost) for one in found.over_radius if one.overload == FieldOverload()]
-    assert found.chosen.cost.total <= min(costs) and found.reason == "least cost over all radii and slot counts"
+    assert (
+        found.chosen.cost.total <= min(costs) and found.reason == "least cost over all radii and slot-pole combinations"
+    )
     assert found.stated is None
 
 
 def test_every_slot_count_is_matched_with_both_laws(found):
-    assert [(one.slots, one.overload) for one in found.over_radius] == [
-        (9, FieldOverload()), (9, LinearOverload()), (12, FieldOverload()), (12, LinearOverload()),
+    assert [(one.combination, one.overload) for one in found.over_radius] == [
+        (NINE, FieldOverload()), (NINE, LinearOverload()), (TWELVE, FieldOverload()), (TWELVE, LinearOverload()),
     ]  # fmt: skip
     field, linear = found.over_radius[2:]
     assert (linear.over_radius.active_length < field.over_radius.active_length).all()
 
 
 def test_the_choice_rests_on_the_overload_law_of_the_study(quick):
-    linear, field = (stage(replace(TWELVE, overload=law)).chosen for law in (LinearOverload(), FieldOverload()))
+    linear, field = (stage(replace(ONLY_TWELVE, overload=law)).chosen for law in (LinearOverload(), FieldOverload()))
     assert linear.active_length < 0.9 * field.active_length
 
 
@@ -179,9 +181,9 @@ def test_the_stated_demands_stand_beside(found):
 def test_the_curves_pass_through_the_optimum_and_stop_before_the_planets_vanish(found):
     curves, chosen = found.curves, found.chosen
     assert np.interp(chosen.transmission_ratio, curves.ratio, curves.cost) == pytest.approx(chosen.cost.total, rel=1e-3)
-    one = replace(FREE, slots=(12,), gear_stages=6, printed=None)  # vanish at 161 / 64 = 2.5 mm/rad
+    one = replace(FREE, combinations=(TWELVE,), gear_stages=6, printed=None)  # vanish at 161 / 64 = 2.5 mm/rad
     few = Matcher(CASE, MotorcycleFits(), REQUIRED, LINKAGE, one, DrawnParts(INPUTS.masses, 0.3))
-    match = few.match(few.section(12, FieldOverload(), 42.5e-3))
+    match = few.match(few.section(TWELVE, FieldOverload(), 42.5e-3))
     assert few.curves(match).ratio.max() < LINKAGE.ratio_nominal / 2**6
 
 
@@ -214,7 +216,10 @@ def refusal(inputs=FREE, requirements=REQUIRED, **changes):
 
 def test_a_force_that_no_machine_has():
     said = refusal(requirements=replace(REQUIRED, force_peak=99_999.0))
-    assert "no slot count of sweep.slots has a match: 9 slots: " in said and "overload force needs" in said
+    assert (
+        "no slot-pole combination of sweep.slots and sweep.poles has a match: 9 slots, 10 poles: " in said
+        and "overload force needs" in said
+    )
     assert "match.length_max_mm" in said and "match.speed_max_rad_per_s" in said
 
 
@@ -225,9 +230,11 @@ def test_a_torque_that_no_machine_has_is_refused_in_the_words_of_a_shaft():
 
 def test_a_machine_chosen_by_hand_that_has_no_match():
     """3900 N is about what 12 slots reach at 115 mm, but not at 70 mm."""
-    by_hand = replace(TWELVE, by_hand=ChosenByHand(12, 35 * MILLIMETRE), limits=MatchLimits(40 * MILLIMETRE, 2618.0))
+    by_hand = replace(
+        ONLY_TWELVE, by_hand=ChosenByHand(12, 35 * MILLIMETRE), limits=MatchLimits(40 * MILLIMETRE, 2618.0)
+    )
     said = refusal(by_hand, replace(REQUIRED, force_peak=6000.0))
-    assert "the machine chosen in the study file (12 slots, 70 mm) has no match: overload force needs" in said
+    assert "the machine chosen in the study file (12 slots, 10 poles, 70 mm) has no match: overload force needs" in said
 
 
 def test_one_stage_that_cannot_be():
@@ -243,26 +250,26 @@ def test_more_stages_than_the_ratio_has_room_for():
 def test_a_choice_outside_the_sweep():
     said = refusal(replace(FREE, by_hand=ChosenByHand(15)))
     assert "match.chosen_slots = 15 is not among sweep.slots [9, 12]" in said
-    said = refusal(replace(TWELVE, by_hand=ChosenByHand(None, 30e-3)))
+    said = refusal(replace(ONLY_TWELVE, by_hand=ChosenByHand(None, 30e-3)))
     assert "match.chosen_stator_diameter_mm = 60 lies outside the 70 to 115 mm of sweep.stator_diameters_mm" in said
 
 
 def test_a_slot_count_without_usable_fits_leaves_the_others(quick):
-    found = stage(FREE, fits=MotorcycleFits(refused=(9,)))
-    assert found.machine.slots == 12 and "9 slots is refused" in found.over_radius[0].refusal.words(Wheel())
-    assert "9 slots is refused" in refusal(fits=MotorcycleFits(refused=(9, 12)))
+    found = stage(FREE, fits=MotorcycleFits(refused=(NINE,)))
+    assert found.machine.slots == 12 and "9 slots, 10 poles is refused" in found.over_radius[0].refusal.words(Wheel())
+    assert "9 slots, 10 poles is refused" in refusal(fits=MotorcycleFits(refused=(NINE, TWELVE)))
 
 
 def test_stated_demands_that_have_no_match_are_said(quick):
     hard = replace(STATED, requirements=replace(STATED.requirements, force_peak=50_000.0))
-    found = stage(TWELVE, stated=hard)
+    found = stage(ONLY_TWELVE, stated=hard)
     assert found.stated.match is None and "overload force needs" in found.stated.refusal.words(Wheel())
     assert found.reference.match is None and found.chosen is not None
 
 
 @pytest.mark.parametrize("damping", [DampingReported(), DampingEnforced()])
 def test_no_damping_is_asked_for(quick, damping):
-    found = stage(replace(TWELVE, damping=damping), replace(REQUIRED, maximum_damping=0.0))
+    found = stage(replace(ONLY_TWELVE, damping=damping), replace(REQUIRED, maximum_damping=0.0))
     assert found.chosen.binding.name(Wheel()) == "overload force" and found.chosen.notes == ()
     assert "regenerative damping" not in [one.name(Wheel()) for one in found.curves.lengths]
 

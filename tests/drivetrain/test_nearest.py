@@ -58,6 +58,8 @@ def test_where_none_holds_the_shortfall_is_least_and_shared(design):
     others = ActiveLengthLever().moved(TransmissionLever().moved(design, 2e-3 * ratio.ravel()), 0.04 * length.ravel())
     best = np.min([others.effort_peak / asked[0].needed - 1, 1 - others.equivalent_mass / asked[1].needed], axis=0)
     assert min(margins) >= best.max() - 1e-3
+    assert found.impossible.requirements == tuple(asked), "that there is none is proved, by no more than is true"
+    assert 0.9 < found.impossible.shortfall <= -best.max() + 1e-9
 
 
 def test_a_demand_of_nothing_is_no_demand(design):

@@ -21,6 +21,7 @@ from drivetrain.whole_design import (
     spread,
 )
 from losses.iron import FrequencyTerms
+from tests.drivetrain.fitted_machines import TWELVE
 from units import MILLIMETRE
 
 MM = MILLIMETRE
@@ -34,7 +35,9 @@ def constraints_of(thesis, section):
 def problem(thesis):
     machine = thesis.section.machine
 
-    def section_at(slots, radius):  # torque per length grows with the cube of the radius, everything else in proportion
+    def section_at(
+        combination, radius
+    ):  # torque per length grows with the cube of the radius, everything else in proportion
         share = radius / (42.5 * MM)
         lengths = "stator_outer_radius rotor_outer_radius back_iron_width tooth_width shoe_d1 shoe_d2".split()
         grown = replace(machine, **{name: getattr(machine, name) * share for name in lengths})
@@ -47,7 +50,7 @@ def problem(thesis):
         )
 
     return WholeProblem(
-        section_at=section_at, slots=(12,), radii=((35 * MM, 50 * MM),), lengths=(7 * MM, 70 * MM),
+        section_at=section_at, combinations=(TWELVE,), radii=((35 * MM, 50 * MM),), lengths=(7 * MM, 70 * MM),
         linkage_ratios=(0.160, 0.300),
         constraints_of=lambda section: constraints_of(thesis, section),
         gearbox=thesis.gearbox,
@@ -62,7 +65,7 @@ def problem(thesis):
 def staged(thesis):
     chosen = constraints_of(thesis, thesis.section)
     found = match(thesis.section, **vars(chosen), gearbox=thesis.gearbox, model=thesis.model)
-    return found, WholeDesign(12, 42.5 * MM, found.active_length, found.transmission_ratio, 0.170)
+    return found, WholeDesign(TWELVE, 42.5 * MM, found.active_length, found.transmission_ratio, 0.170)
 
 
 def test_the_objectives_are_those_of_the_match(problem, staged):
@@ -88,7 +91,7 @@ def test_without_a_damping_demand_the_optimum_of_the_match_is_feasible(thesis, p
 def test_planets_bound_the_ratio_with_the_linkage_of_the_design(problem):
     """Two stages of three planets reach 14.93^2: with a linkage of 300 mm/rad down to 1.346 mm/rad."""
     short, long = (
-        problem.values(WholeDesign(12, 42.5 * MM, 50 * MM, 1.32 * MM, linkage)).constraints[2]
+        problem.values(WholeDesign(TWELVE, 42.5 * MM, 50 * MM, 1.32 * MM, linkage)).constraints[2]
         for linkage in (0.160, 0.300)
     )
     assert short < 0 < long and long == pytest.approx(0.300 / 14.928**2 / 1.32e-3 - 1, rel=1e-2)
@@ -107,7 +110,7 @@ def test_a_direct_drive_turns_with_its_linkage(problem):
 
 
 def test_the_search_betters_one_thing_and_keeps_the_others(problem):
-    start = WholeDesign(12, 42.5 * MM, 40 * MM, 1.6 * MM, 0.170)
+    start = WholeDesign(TWELVE, 42.5 * MM, 40 * MM, 1.6 * MM, 0.170)
     before = problem.values(start)
     assert before.feasible
     after = improved(problem, start, 0, before.objectives).values
@@ -116,7 +119,7 @@ def test_the_search_betters_one_thing_and_keeps_the_others(problem):
 
 
 def test_no_random_design_betters_the_improved_one(problem):
-    start = WholeDesign(12, 42.5 * MM, 40 * MM, 1.6 * MM, 0.170)
+    start = WholeDesign(TWELVE, 42.5 * MM, 40 * MM, 1.6 * MM, 0.170)
     before = problem.values(start).objectives
     best = improved(problem, start, 0, before).values
     draws = (problem.values(problem.design(x)) for x in np.random.default_rng(0).random((3000, 5)))
@@ -143,7 +146,7 @@ def test_the_front_is_feasible_and_non_dominated(problem, staged):
 
 def test_spread_starts_with_the_best_of_each_objective():
     designs = [
-        RatedDesign(WholeDesign(12, k, 0.0, 0.0, 0.0), Values(objectives, (0.0,)))
+        RatedDesign(WholeDesign(TWELVE, k, 0.0, 0.0, 0.0), Values(objectives, (0.0,)))
         for k, objectives in enumerate([(1, 9, 1, 9), (9, 1, 1, 9), (9, 9, 9, 9), (9, 9, 1, 1), (5, 5, 5, 5)])
     ]
     assert [one.design.stator_outer_radius for one in spread(designs, 5)] == [0, 1, 2, 3, 4]
@@ -158,14 +161,14 @@ def _road(thesis, hysteresis=0.0, eddy=0.0, excess=0.0):
 
 def test_copper_loss_on_the_road_is_the_squared_force_over_the_damping(thesis):
     """A short-circuited winding takes F^2/c: the same copper, torque and ratio."""
-    design = WholeDesign(12, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
+    design = WholeDesign(TWELVE, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
     demand = RoadDemand(300.0, 0.1, thesis.loading)
     damping = damping_constraint(thesis.section, thesis.requirements, thesis.loading).capability(2.3 * MM, 36 * MM)
     assert road_loss(_road(thesis), design, demand) == pytest.approx(300.0**2 / damping, rel=1e-6)
 
 
 def test_idle_loss_is_the_mean_over_a_normally_distributed_speed(thesis):
-    design = WholeDesign(12, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
+    design = WholeDesign(TWELVE, 42.5 * MM, 36 * MM, 2.3 * MM, 0.170)
     demand = RoadDemand(0.0, 0.1, thesis.loading)
     section = _road(thesis, hysteresis=0.4, eddy=2e-3, excess=1e-2)
     x = np.linspace(-8, 8, 100001)  # velocity over its RMS value
@@ -178,5 +181,5 @@ def test_idle_loss_is_the_mean_over_a_normally_distributed_speed(thesis):
 def test_a_faster_rotor_trades_copper_loss_for_idle_loss(thesis):
     """With idle loss the loss is no longer the inverse of the reserve: less ratio, more reserve, and yet more loss."""
     section, demand = _road(thesis, hysteresis=2.0), RoadDemand(300.0, 0.3, thesis.loading)
-    slow, fast = (WholeDesign(12, 42.5 * MM, 36 * MM, ratio * MM, 0.170) for ratio in (2.3, 1.2))
+    slow, fast = (WholeDesign(TWELVE, 42.5 * MM, 36 * MM, ratio * MM, 0.170) for ratio in (2.3, 1.2))
     assert road_loss(section, fast, demand) > road_loss(section, slow, demand)

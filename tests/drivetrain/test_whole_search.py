@@ -25,8 +25,8 @@ from materials.errors import MaterialError
 from materials.iron_loss import iron_loss_law
 from report import optimise as report
 from tasks import InThisProcess
-from tests.drivetrain.fitted_machines import CASE, MotorcycleFits
-from tests.drivetrain.test_matching import LINKAGE, REQUIRED, TWELVE, no_field
+from tests.drivetrain.fitted_machines import CASE, TWELVE, MotorcycleFits
+from tests.drivetrain.test_matching import LINKAGE, ONLY_TWELVE, REQUIRED, no_field
 
 SMALL = WholeSearchInputs("M235-35A", population=16, generations=4, solved=2, idle_radii=3)
 BEFORE = (2.0, 5.0, 48e3, 3.0)
@@ -62,7 +62,7 @@ def test_each_objective_is_asked_for_with_the_others_kept():
 # ---- the stage ------------------------------------------------------------------------------------------------------
 
 
-def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=TWELVE, output=Wheel()):
+def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=ONLY_TWELVE, output=Wheel()):
     coarse = replace(CASE, density=MeshDensity(gap_edges=60, longest_gap_edge=3.0, gap_layers=1, across_iron=1.0))
     with pytest.MonkeyPatch.context() as patch, no_field():
         patch.setattr("drivetrain.whole_design._GENERATIONS", 3)
@@ -89,7 +89,7 @@ def found():
 
 def test_the_staged_design_is_that_of_the_match(found):
     staged = found.staged.design
-    assert staged.linkage_ratio == LINKAGE.ratio_nominal and staged.slots == 12
+    assert staged.linkage_ratio == LINKAGE.ratio_nominal and staged.combination == TWELVE
     assert found.solved[0].model == found.staged
     assert len(found.bettered) == 6 and len(found.solved) >= 1 + 6 + SMALL.solved
 
@@ -142,7 +142,7 @@ def test_no_damping_is_asked_for_and_the_linkage_is_stated():
 
 
 def test_targets_that_nothing_meets():
-    light = replace(TWELVE, scales=replace(TWELVE.scales, mass=0.1))
+    light = replace(ONLY_TWELVE, scales=replace(ONLY_TWELVE.scales, mass=0.1))
     with pytest.raises(MatchError, match="match.mass_max_kg, match.equivalent_mass_max_kg"):
         search(match_inputs=light)
     with pytest.raises(MatchError, match="match.mass_max_kg, drive.inertia_max_kg_m2"):

@@ -56,22 +56,22 @@ def half_machine_as_a_whole():
 
 @pytest.fixture
 def design_space():
-    """Two slot counts, three diameters; the flux density is 0.8 w_bi/R_ro-like and a corner cannot be built."""
-    slots, diameters = [9, 12], [70.0, 85.0, 100.0]
+    """One combination, three diameters; the flux density is 0.8 w_bi/R_ro-like and a corner cannot be built."""
+    diameters = [70.0, 85.0, 100.0]
     widths, radii = np.linspace(0.05, 0.11, 7), np.linspace(0.28, 0.47, 6)
     diameter, width, radius = np.meshgrid(diameters, widths, radii, indexing="ij")
     torque = diameter**2 * radius * (0.6 - radius - width) / 10
     flux = 0.25 * radius / width
     torque = np.where(width > 0.105, np.nan, torque)
     flux = np.where(np.isnan(torque), np.nan, flux)
-    dims = ("slots", "stator_diameter_mm", "back_iron", "rotor_radius")
+    dims = ("stator_diameter_mm", "back_iron", "rotor_radius")
     both = {"torque_Nm_per_m": torque, "tooth_aligned_T": flux}
     both |= {"tooth_worst_T": 1.1 * flux, "back_iron_worst_T": 1.2 * flux}
-    data = {name: (dims, np.stack([values, 0.9 * values])) for name, values in both.items()}
-    data["back_iron_width_mm"] = (dims[1:3], np.outer(diameters, widths) / 2)
-    data["rotor_outer_radius_mm"] = ((dims[1], dims[3]), np.outer(diameters, radii) / 2)
+    data = {name: (dims, values) for name, values in both.items()}
+    data["back_iron_width_mm"] = (dims[:2], np.outer(diameters, widths) / 2)
+    data["rotor_outer_radius_mm"] = ((dims[0], dims[2]), np.outer(diameters, radii) / 2)
     shares = {"back_iron_fraction": ("back_iron", widths), "rotor_radius_fraction": ("rotor_radius", radii)}
-    return xr.Dataset(data, {"slots": slots, "stator_diameter_mm": diameters, **shares})
+    return xr.Dataset(data, {"stator_diameter_mm": diameters, **shares})
 
 
 @pytest.fixture
@@ -81,7 +81,7 @@ def optima():
     for slots in (9, 12):
         for diameter in (70.0, 85.0, 100.0):
             torque = np.nan if (slots, diameter) == (9, 100.0) else diameter**2 / 130
-            row = {"slots": slots, "stator_diameter_mm": diameter, "reading": READING, "limit_T": LIMIT}
+            row = {"slots": slots, "poles": 10, "stator_diameter_mm": diameter, "reading": READING, "limit_T": LIMIT}
             row |= {"back_iron_width_mm": 0.03 * diameter, "rotor_outer_radius_mm": 0.17 * diameter}
             row |= {"torque_nominal_Nm_per_m": torque, "torque_overload_Nm_per_m": 2.6 * torque}
             row |= {"torque_overload_linear_Nm_per_m": 3.33 * torque, "half_slot_area_mm2": diameter**2 / 70}

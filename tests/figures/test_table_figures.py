@@ -17,8 +17,10 @@ from figures.limits import limits
 from figures.match import best_row, match_curves, match_over_radius, radius_table
 from figures.rotation import mean_over_period, probe_columns, rotation
 from figures.winding import RequiredPoint, WheelPoint, force_velocity, torque_speed
+from geometry.family import Combination
 from units import RPM
 
+TWELVE = Combination(12, 10)
 READING, LIMIT = "aligned_tooth", 1.2
 
 
@@ -31,7 +33,7 @@ def words(figure):
 
 
 def test_feasible_is_below_the_limit_and_buildable(design_space):
-    one = design_space.sel(slots=9, stator_diameter_mm=85.0)
+    one = design_space.sel(stator_diameter_mm=85.0)
     design = in_millimetres(one, READING, LIMIT)
     assert design.feasible.shape == (6, 7), "rotor radius upwards, back iron to the right"
     expected = (one.tooth_aligned_T <= LIMIT).transpose("rotor_radius", "back_iron").values
@@ -43,7 +45,7 @@ def test_feasible_is_below_the_limit_and_buildable(design_space):
 
 
 def test_reading_decides_what_is_limited(design_space):
-    one = design_space.sel(slots=9, stator_diameter_mm=85.0)
+    one = design_space.sel(stator_diameter_mm=85.0)
     limited = constrained_flux_density(one, "every_tooth_and_back_iron_over_period")
     assert np.allclose(limited, one.back_iron_worst_T, equal_nan=True)
     assert np.allclose(constrained_flux_density(one, "every_tooth"), one.tooth_worst_T, equal_nan=True)
@@ -53,13 +55,13 @@ def test_reading_decides_what_is_limited(design_space):
 
 def test_limited_map_of_the_sweep_is_used_where_it_fits(design_space):
     one = design_space.assign(limited_T=3 * design_space.tooth_worst_T).assign_attrs(reading="every_tooth")
-    one = one.sel(slots=9, stator_diameter_mm=85.0)
+    one = one.sel(stator_diameter_mm=85.0)
     assert np.allclose(constrained_flux_density(one, "every_tooth"), 3 * one.tooth_worst_T, equal_nan=True)
     assert np.allclose(constrained_flux_density(one, READING), one.tooth_aligned_T, equal_nan=True)
 
 
 def test_design_map_is_complete(design_space, optima, assert_readable):
-    figure = design_map(design_space, optima, 12, 85.0, READING, LIMIT)
+    figure = design_map(design_space, optima[optima.slots == 12], "12 slots, 10 poles", 85.0, READING, LIMIT)
     text = words(figure)
     for part in ("torque per length / (Nm/m)", "mean |B| / T", "back-iron width / mm", "rotor outer radius / mm"):
         assert part in text
@@ -70,16 +72,17 @@ def test_design_map_is_complete(design_space, optima, assert_readable):
 
 
 def test_overview_has_a_panel_for_each_diameter(design_space, optima, assert_readable):
-    figure = design_maps(design_space, optima, 9, READING, LIMIT)
+    figure = design_maps(design_space, optima[optima.slots == 9], "9 slots, 10 poles", READING, LIMIT)
     text = words(figure)
     assert "Ø 70 mm: 37.7 Nm/m" in text and "Ø 100 mm: none feasible" in text
     assert_readable(figure)
 
 
 def test_no_optimum_is_not_invented(optima):
-    assert select_optimum(optima, 9, 100.0, READING, LIMIT) is None
-    assert select_optimum(optima, 9, 85.0, READING, 1.6) is None
-    assert select_optimum(optima, 9, 85.0, READING, LIMIT).back_iron_width_mm == pytest.approx(2.55)
+    optima = optima[optima.slots == 9]
+    assert select_optimum(optima, 100.0, READING, LIMIT) is None
+    assert select_optimum(optima, 85.0, READING, 1.6) is None
+    assert select_optimum(optima, 85.0, READING, LIMIT).back_iron_width_mm == pytest.approx(2.55)
 
 
 # ---- fits and limits ------------------------------------------------------------------------------------------------
@@ -88,7 +91,7 @@ def test_no_optimum_is_not_invented(optima):
 @pytest.fixture
 def polynomials():
     fit = {"p2": 0.01, "p1": 1.0, "p0": 2.0, "r_squared": 0.98765, "rms_residual": 0.123}
-    rows = [{"slots": slots, "quantity": name, **fit} for slots in (9, 12) for name, _, _ in QUANTITIES]
+    rows = [{"slots": slots, "poles": 10, "quantity": name, **fit} for slots in (9, 12) for name, _, _ in QUANTITIES]
     return pd.DataFrame(rows).assign(refused=["R2 below 0.99"] + [np.nan] * (len(rows) - 1))
 
 
@@ -190,11 +193,14 @@ def test_radius_without_a_match_stays_empty(assert_readable):
     numbers = {"transmission_ratio": 2.3e-3, "active_length": 36e-3, "cost": 0.6}
     found = {name: np.array([np.nan, value]) for name, value in numbers.items()}
     result = SimpleNamespace(radii=np.array([35e-3, 42.5e-3]), **found)
-    table = pd.concat([radius_table(12, "field", result, Wheel()), radius_table(12, "linear", result, Wheel())])
+    table = pd.concat([radius_table(TWELVE, law, result, Wheel()) for law in ("field", "linear")])
     assert table.stator_outer_radius_mm.tolist() == [35.0, 42.5] * 2
     assert table.cost.isna().tolist() == [True, False] * 2
-    figure = match_over_radius(table, Wheel(), best=best_row(12, "field", 42.5e-3, MATCHED, Wheel()))
-    assert "12 slots, overload torque scaled linearly" in words(figure) and "chosen" in words(figure)
+    other = radius_table(Combination(9, 14), "linear", result, Wheel())
+    figure = match_over_radius(
+        pd.concat([table, other]), Wheel(), best=best_row(TWELVE, "field", 42.5e-3, MATCHED, Wheel())
+    )
+    assert "12 slots, 10 poles, overload torque scaled linearly" in words(figure) and "chosen" in words(figure)
     assert_readable(figure)
 
 

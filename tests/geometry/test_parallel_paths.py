@@ -6,7 +6,7 @@ from math import pi
 import pytest
 
 from geometry.connections import connections
-from geometry.machine import GeometryError
+from geometry.errors import GeometryError
 from geometry.winding import star_of_slots
 
 

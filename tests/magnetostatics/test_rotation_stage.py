@@ -5,7 +5,7 @@ import pytest
 
 import magnetostatics.rotation_stage as module
 from figures.whole_field import null_field, whole_field
-from geometry.family import MatchedMachine
+from geometry.family import Combination, MatchedMachine
 from magnetostatics.model import OperatingPoint
 from magnetostatics.rotation_stage import STATES, null_points, rotations_stage
 from magnetostatics.torque import arkkio_torque
@@ -22,7 +22,7 @@ def found():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "_STEPS", 12)
         patch.setattr("magnetostatics.arc._TOGETHER", 5)
-        machine = CASE.family.machine(9, 42.5e-3, 2.6e-3, 17e-3)
+        machine = CASE.family.machine(Combination(9, 10), back_iron_width=2.6e-3, rotor_outer_radius=17e-3)
         return rotations_stage(CASE, MatchedMachine(machine), InThisProcess())
 
 

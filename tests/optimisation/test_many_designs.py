@@ -10,12 +10,13 @@ from optimisation.states import AlignedTooth
 from optimisation.torque import MeanTorque, NullTorque
 from study.inputs_field import field_case
 from study.read import read_study
+from tests.optimisation.machines import machine_of
 
 CASE = field_case(read_study("motorcycle"))
 JUDGE = Judge(CASE, AlignedTooth(), CASE.nominal_density, NullTorque())
 OUTER = 42.5e-3
 SHARES = [(width, rotor) for rotor in (0.33, 0.35) for width in (0.05, 0.06, 0.07, 0.1)]
-MACHINES = [CASE.family.machine(12, OUTER, width * OUTER, rotor * OUTER) for width, rotor in SHARES]
+MACHINES = [machine_of(CASE.family, 12, OUTER, width * OUTER, rotor * OUTER) for width, rotor in SHARES]
 IMPOSSIBLE = replace(MACHINES[0], rotor_outer_radius=OUTER)
 
 
@@ -54,7 +55,7 @@ def test_each_is_as_on_a_mesh_of_its_own(designs):
 
 
 def test_the_torque_is_closer_to_that_of_a_fine_mesh_than_the_ring_average():
-    machine = CASE.family.machine(12, 57.5e-3, 0.06 * 57.5e-3, 0.41 * 57.5e-3)
+    machine = machine_of(CASE.family, 12, 57.5e-3, 0.06 * 57.5e-3, 0.41 * 57.5e-3)
     density = replace(CASE.density, longest_gap_edge=0.9)
     coarse = _with_density(density).judge(machine)
     fine = _with_density(replace(density, gap_edges=720, gap_layers=3, across_iron=3.0)).judge(machine)

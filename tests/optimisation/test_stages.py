@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import optimisation.sweep as sweep_module
+from geometry.family import Combination
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.fits import QUANTITIES, fits_stage
+from optimisation.freedom import AS_SWEPT
 from optimisation.limits import limits_stage
 from optimisation.optima import Optima, Optimum, edges_at, optima_stage
 from optimisation.polynomial_fits import FitRefused
@@ -19,11 +22,13 @@ from report.sweep import limits_files
 from study.inputs_field import field_case, saturation_limit, sweep_grid
 from study.read import read_study
 from tasks import InThisProcess
+from tests.optimisation.machines import machine_of
 
+TWELVE = Combination(12, 10)
 STUDY = read_study("motorcycle")
 CASE = field_case(STUDY)
 LIMIT = SaturationLimit(AlignedTooth(), 1.2, (1.2, 3.0))
-GRID = SweepGrid((12,), (42.5e-3,), (0.065, 0.115), 4, (0.30, 0.38), 3)
+GRID = SweepGrid((TWELVE,), (42.5e-3,), (0.065, 0.115), 4, (0.30, 0.38), 3)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +38,7 @@ def maps():
 
 @pytest.fixture(scope="module")
 def optima(maps):
-    return optima_stage(CASE, maps, InThisProcess())
+    return optima_stage(CASE, maps, AS_SWEPT, InThisProcess())
 
 
 # ---- sweep ----------------------------------------------------------------------------------------------------------
@@ -48,9 +53,9 @@ def test_the_study_in_si():
 
 
 def test_the_map_holds_every_design_in_its_place(maps):
-    one = maps.data.sel(slots=12, stator_outer_radius=42.5e-3)
+    one = maps.one(TWELVE).sel(stator_outer_radius=42.5e-3)
     assert set(VARIABLES) < set(maps.data) and maps.designs == 12
-    machine = CASE.family.machine(12, 42.5e-3, float(one.back_iron_width[1]), float(one.rotor_outer_radius[2]))
+    machine = machine_of(CASE.family, 12, 42.5e-3, float(one.back_iron_width[1]), float(one.rotor_outer_radius[2]))
     assert machine.back_iron_width / 42.5e-3 == pytest.approx(GRID.back_iron[1])
     assert machine.rotor_outer_radius / 42.5e-3 == pytest.approx(GRID.rotor[2])
     assert float(one.torque[1, 2]) > float(one.torque[1, 0]), "a larger rotor gives more torque"
@@ -58,9 +63,26 @@ def test_the_map_holds_every_design_in_its_place(maps):
 
 
 def test_what_cannot_be_built_is_not_a_number(maps):
-    one = maps.data.isel(slots=0, stator_outer_radius=0)
+    one = maps.data.isel(combination=0, stator_outer_radius=0)
     assert maps.unbuildable == 3
     assert np.isnan(one.torque[3, 0]) and np.isfinite(one.torque[3, 2])
+
+
+def test_every_slot_count_is_swept_with_every_pole_count(monkeypatch):
+    """Each block stands where its combination says, here by a torque of its slots times its poles."""
+    study = read_study("motorcycle", ["sweep.poles=[10, 14]", "sweep.stator_diameters_mm=[85, 95]"])
+    grid = sweep_grid(study)
+    assert [(one.slots, one.poles) for one in grid.combinations] == [(9, 10), (9, 14), (12, 10), (12, 14)]
+    monkeypatch.setattr(sweep_module, "solve_block", _slots_times_poles)
+    found = sweep_stage(CASE, grid, LIMIT, InThisProcess())
+    for one in grid.combinations:
+        assert (found.map(one, 47.5e-3).torque == one.slots * one.poles).all()
+    assert found.data.poles.values.tolist() == [10, 14, 10, 14]
+
+
+def _slots_times_poles(block):
+    shape = len(block.rotor_outer_radii), len(block.back_iron_widths), len(VARIABLES)
+    return np.full(shape, float(block.combination.slots * block.combination.poles))
 
 
 # ---- optima ---------------------------------------------------------------------------------------------------------
@@ -90,7 +112,7 @@ def test_no_design_below_the_limit_is_a_sentence(maps):
     impossible = DesignMaps(GRID, replace(LIMIT, limit=0.4), maps.data)
     refused = "no design of the sweep holds the limit of 0.4 T.*raise saturation.limit_T"
     with pytest.raises(NoOptimumError, match=refused):
-        optima_stage(CASE, impossible, InThisProcess())
+        optima_stage(CASE, impossible, AS_SWEPT, InThisProcess())
 
 
 def test_one_section_without_an_optimum_leaves_the_others(maps):
@@ -99,9 +121,9 @@ def test_one_section_without_an_optimum_leaves_the_others(maps):
     second = maps.data.assign_coords(stator_outer_radius=[45e-3])
     hot = second.assign(limited=second.limited + 2.0)
     both = DesignMaps(grid, LIMIT, xr.concat([maps.data, hot], "stator_outer_radius", data_vars="minimal"))
-    found = optima_stage(CASE, both, InThisProcess())
+    found = optima_stage(CASE, both, AS_SWEPT, InThisProcess())
     assert [one.stator_outer_radius for one in found.found] == [42.5e-3]
-    assert "12 slots, 90 mm: no design of the sweep holds 1.2 T" in found.without[0].reason
+    assert "12 slots, 10 poles, 90 mm: no design of the sweep holds 1.2 T" in found.without[0].reason
 
 
 # ---- limits ---------------------------------------------------------------------------------------------------------
@@ -126,14 +148,14 @@ def test_limits_differ_in_the_limit_alone():
 # ---- fits, from optima alone ----------------------------------------------------------------------------------------
 
 
-def optima_at(radii, slots=12):
+def optima_at(radii, combination=TWELVE):
     """Optima that follow parabolas of the stator radius."""
-    return Optima(LIMIT, tuple(_optimum(slots, radius) for radius in radii), (), ())
+    return Optima(LIMIT, tuple(_optimum(combination, radius) for radius in radii), (), ())
 
 
-def _optimum(slots, radius):
+def _optimum(combination, radius):
     return Optimum(
-        slots=slots,
+        combination=combination,
         stator_outer_radius=radius,
         back_iron_width=0.07 * radius,
         rotor_outer_radius=0.3 * radius + 0.8 * radius**2,
@@ -160,17 +182,17 @@ RADII = (0.035, 0.040, 0.045, 0.050, 0.055)
 
 def test_fits_give_the_section_at_any_radius():
     fits = fits_stage(optima_at(RADII))
-    section = fits.at(12, 0.0425)
+    section = fits.at(TWELVE, 0.0425)
     assert section.torque_nominal == pytest.approx(3e4 * 0.0425**2)
     assert section.rotor_outer_radius == pytest.approx(0.3 * 0.0425 + 0.8 * 0.0425**2)
-    assert fits.range(12) == (0.035, 0.055)
-    assert fits.usable == (12,) and len(fits.of(12).fits) == len(QUANTITIES)
-    assert fits.of(12).of("torque_nominal").r_squared == pytest.approx(1.0)
+    assert fits.range(TWELVE) == (0.035, 0.055)
+    assert fits.usable == (TWELVE,) and len(fits.of(TWELVE).fits) == len(QUANTITIES)
+    assert fits.of(TWELVE).of("torque_nominal").r_squared == pytest.approx(1.0)
 
 
 def test_fits_do_not_care_about_the_order_of_the_optima():
     shuffled = optima_at((0.05, 0.035, 0.055, 0.04, 0.045))
-    assert fits_stage(shuffled).at(12, 0.0425) == fits_stage(optima_at(RADII)).at(12, 0.0425)
+    assert fits_stage(shuffled).at(TWELVE, 0.0425) == fits_stage(optima_at(RADII)).at(TWELVE, 0.0425)
 
 
 def test_three_diameters_are_refused_with_the_reason():
@@ -179,19 +201,21 @@ def test_three_diameters_are_refused_with_the_reason():
     said = list(remarks(fits))
     assert len(said) == len(QUANTITIES) and all("3 points cannot test" in one for one in said)
     with pytest.raises(FitRefused, match="add to sweep.stator_diameters_mm"):
-        fits.at(12, 0.04)
+        fits.at(TWELVE, 0.04)
 
 
 def test_fits_refuse_what_they_do_not_know():
     fits = fits_stage(optima_at(RADII))
-    with pytest.raises(FitRefused, match="no optima of 9 slots are fitted, but of 12: add 9 to sweep.slots"):
-        fits.at(9, 0.04)
+    with pytest.raises(
+        FitRefused, match="no optima of 9 slots, 10 poles are fitted, but of 12 slots, 10 poles: add 9 to sweep.slots"
+    ):
+        fits.at(Combination(9, 10), 0.04)
     with pytest.raises(FitRefused, match="holds from 35 to 55 mm"):
-        fits.at(12, 0.06)
+        fits.at(TWELVE, 0.06)
 
 
 def test_an_outlier_is_kept_with_its_reason():
     good = optima_at(RADII).found
     bad = Optima(LIMIT, (*good[:2], replace(good[2], torque_nominal=80.0), *good[3:]), (), ())
-    fit = fits_stage(bad).of(12).of("torque_nominal")
+    fit = fits_stage(bad).of(TWELVE).of("torque_nominal")
     assert "45 mm" in fit.refused and np.isfinite(fit.largest_residual)

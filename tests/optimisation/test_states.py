@@ -9,13 +9,14 @@ from magnetostatics.positions import aligned_teeth, null_angle, null_current_ang
 from optimisation.states import READINGS
 from study.inputs_field import machine_family
 from study.read import read_study
+from tests.optimisation.machines import machine_of
 
 DEGREE = pi / 180
 FAMILY = machine_family(read_study("motorcycle").machine)
 
 
 def machine(slots):
-    return FAMILY.machine(slots, 42.5e-3, 3.3e-3, 15.7e-3)
+    return machine_of(FAMILY, slots, 42.5e-3, 3.3e-3, 15.7e-3)
 
 
 def test_null_position_of_12_slots_and_10_poles():

@@ -12,6 +12,7 @@ from optimisation.states import READINGS, AlignedTooth
 from optimisation.torque import MeanTorque, NullTorque, QuickMeanTorque
 from study.inputs_field import field_case
 from study.read import read_study
+from tests.optimisation.machines import machine_of
 
 CASE = field_case(read_study("motorcycle"))
 # (slots, stator radius [m], back iron and rotor radius as shares of it): two optima, a corner of the sweep, a large one
@@ -24,7 +25,7 @@ DESIGNS = (
 
 
 def machine(slots, outer, width, rotor):
-    return CASE.family.machine(slots, outer, width * outer, rotor * outer)
+    return machine_of(CASE.family, slots, outer, width * outer, rotor * outer)
 
 
 def mean_of_many(one, density):

@@ -11,7 +11,7 @@ import numpy as np
 from pool_here import Here
 
 from drivetrain.heat_views import mapped_loss
-from optimisation.fits import QUANTITIES, SectionFits, SlotFits
+from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
 from optimisation.polynomial_fits import fit_polynomial
 from pipeline.graph import Source, Stage, View
 from pipeline.results import Results
@@ -20,7 +20,7 @@ from pipeline.run_command import page_of
 from pipeline.stages import graph_of
 from study.inputs_heat import no_loss_data
 from study.read import STUDIES, read_study
-from tests.drivetrain.fitted_machines import MotorcycleFits
+from tests.drivetrain.fitted_machines import NINE, TWELVE, MotorcycleFits
 
 # Coarse everywhere: a whole run in some ten seconds; numbers are off by per cents and mean nothing.
 COARSE = {
@@ -56,8 +56,8 @@ RADII = np.linspace(35e-3, 57.5e-3, 5)  # m
 
 def fitted_sections() -> SectionFits:
     """Polynomials through the motorcycle's optima, as the stage makes them."""
-    found = {slots: [MotorcycleFits().at(slots, radius) for radius in RADII] for slots in (9, 12)}
-    return SectionFits(tuple(SlotFits(slots, _fits(sections)) for slots, sections in found.items()))
+    found = {one: [MotorcycleFits().at(one, radius) for radius in RADII] for one in (NINE, TWELVE)}
+    return SectionFits(tuple(CombinationFits(one, _fits(sections)) for one, sections in found.items()))
 
 
 def _fits(sections):

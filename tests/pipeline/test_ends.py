@@ -58,7 +58,9 @@ def keys(said):
 
 def test_a_force_that_no_machine_has(ended, capsys):
     text, said = ended("motorcycle", "match", **STATED, requirements__force_peak_N="99999.0")
-    assert "no slot count of sweep.slots has a match" in said and "overload force needs" in said
+    assert (
+        "no slot-pole combination of sweep.slots and sweep.poles has a match" in said and "overload force needs" in said
+    )
     assert {"match.length_max_mm", "match.speed_max_rad_per_s", "sweep.stator_diameters_mm"} <= keys(said)
     assert "This run could not go on" in text and "force peak / N 99,999" in text.replace("99999", "99,999")
     assert f"match: {said}" in " ".join(capsys.readouterr().err.split())

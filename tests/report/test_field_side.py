@@ -9,8 +9,10 @@ import report.fields
 import report.fits
 import report.sweep
 from figures.export import read_vtu
+from geometry.family import Combination
 from magnetostatics.rotation_stage import STATES, rotations_stage
 from optimisation.fits import fits_stage
+from optimisation.freedom import AS_SWEPT
 from optimisation.limits import LimitComparison, LimitPoint
 from optimisation.optima import GridEdge, Optima, Optimum, optima_stage
 from optimisation.states import AlignedTooth
@@ -21,7 +23,7 @@ from tasks import InThisProcess
 
 CASE = field_case(read_study("motorcycle"))
 LIMIT = SaturationLimit(AlignedTooth(), 1.2, (1.2,))
-GRID = SweepGrid((12,), (42.5e-3,), (0.065, 0.085), 4, (0.30, 0.38), 3)
+GRID = SweepGrid((Combination(12, 10),), (42.5e-3,), (0.065, 0.085), 4, (0.30, 0.38), 3)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +33,7 @@ def maps():
 
 @pytest.fixture(scope="module")
 def optima(maps):
-    return optima_stage(CASE, maps, InThisProcess())
+    return optima_stage(CASE, maps, AS_SWEPT, InThisProcess())
 
 
 def written(files, folder):
@@ -59,13 +61,13 @@ def test_optima_and_maps_as_files(maps, optima, tmp_path):
 
 
 def test_maps_in_drawing_units(maps):
-    shown = report.sweep.drawn_maps(maps).sel(slots=12, stator_diameter_mm=85.0)
+    shown = report.sweep.drawn_maps(maps, maps.grid.combinations[0]).sel(stator_diameter_mm=85.0)
     assert float(shown.rotor_outer_radius_mm[0]) == pytest.approx(0.30 * 42.5)
     assert np.array_equal(shown.torque_Nm_per_m, maps.data.torque[0, 0], equal_nan=True)
 
 
 def test_an_edge_is_a_remark_of_the_report(maps, optima):
-    edge = GridEdge(12, 42.5e-3, "sweep.back_iron_fraction_min", 0.065, 0.064)
+    edge = GridEdge(Combination(12, 10), 42.5e-3, "sweep.back_iron_fraction_min", 0.065, 0.064)
     section = report.sweep.section(CASE, maps, Optima(LIMIT, optima.found, (), (edge,)), None)
     assert any("lower sweep.back_iron_fraction_min" in getattr(part, "text", "") for part in section.content)
     assert "linear scaling from 6 A/mm²" in paragraphs(section)
@@ -86,7 +88,7 @@ def parabolas():
     """Optima of four radii with a torque of 0.03 R^2, R in mm."""
     rest = {"tooth_width": 5e-3, "torque_nominal_error": 0.1, "torque_overload_error": 0.1, "torque_null": np.nan}
     rest |= {"limited": 1.2, "limit_binds": True, "tooth_worst": 1.5, "back_iron_worst": 1.4}
-    rest |= {"field_solutions": 20, "newton_iterations": 3, "slots": 12}
+    rest |= {"field_solutions": 20, "newton_iterations": 3, "combination": Combination(12, 10)}
     found = [
         Optimum(
             stator_outer_radius=r,

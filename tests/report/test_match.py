@@ -31,7 +31,8 @@ def test_files(found):
 def test_table_over_the_radius(found):
     table = over_radius(found, Wheel())
     assert list(table.columns) == [
-        "slots", "overload", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm", "cost",
+        "slots", "poles", "overload", "stator_outer_radius_mm", "transmission_ratio_mm_per_rad", "active_length_mm",
+        "cost",
     ]  # fmt: skip
     assert set(table.slots) == {9, 12} and set(table.overload) == {"field", "linear"}
 

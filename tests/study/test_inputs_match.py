@@ -4,6 +4,7 @@ import pytest
 
 from drivetrain.match import DampingEnforced, DampingReported
 from drivetrain.matching import ChosenByHand, FieldOverload, LinearOverload
+from geometry.family import Combination
 from study.errors import StudyError
 from study.inputs_match import match_inputs, part_materials, stated_demands, whole_search_inputs
 from study.read import read_study
@@ -16,7 +17,8 @@ def motorcycle():
 
 def test_inputs_of_the_motorcycle(motorcycle):
     found = match_inputs(motorcycle)
-    assert found.slots == (9, 12) and found.gear_stages == 2 and found.planets == 3
+    assert found.combinations == (Combination(9, 10), Combination(12, 10))
+    assert found.gear_stages == 2 and found.planets == 3
     assert (found.limits.active_length, found.limits.rotor_speed) == pytest.approx((70e-3, 2618.0))
     assert found.scales.stator_radius == pytest.approx(50e-3)
     assert found.by_hand.slots == 12 and found.by_hand.stator_outer_radius == pytest.approx(42.5e-3)

@@ -8,6 +8,7 @@ from typing import get_args
 import pytest
 
 from drivetrain.planetary import NITRIDED_STEEL
+from geometry.family import Combination
 from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
 from study.check import summary
 from study.errors import StudyError
@@ -41,14 +42,16 @@ def test_the_reference_machine_in_metres(motorcycle):
 
 
 def test_one_design_of_the_sweep_derives_its_teeth_anew(motorcycle):
-    machine = machine_family(motorcycle.machine).machine(9, 50e-3, 4e-3, 15.7e-3)
+    machine = machine_family(motorcycle.machine).machine(
+        Combination(9, 10), stator_outer_radius=50e-3, back_iron_width=4e-3
+    )
     assert machine.tooth_width == pytest.approx(2 * 4e-3 / 0.9)
     assert machine.stator_outer_radius == 50e-3 and machine.airgap == pytest.approx(0.5e-3)
 
 
 def test_a_stated_tooth_width_holds_against_the_derived_one():
     study = read_study("motorcycle", ["machine.tooth_width_mm=4.5", "machine.shoe_d2_mm=1"])
-    machine = machine_family(study.machine).machine(12, 42.5e-3, 4e-3, 15.7e-3)
+    machine = machine_family(study.machine).machine(Combination(12, 10), back_iron_width=4e-3)
     assert machine.tooth_width == pytest.approx(4.5e-3) and machine.shoe_d2 == pytest.approx(1e-3)
 
 
@@ -101,7 +104,7 @@ def test_the_study_cannot_be_changed(motorcycle):
 
 def test_the_summary_names_what_will_be_done(motorcycle):
     text = summary(motorcycle)
-    assert "12 slots, 10 poles" in text and "slots 9, 12; 10 diameters 70 to 115 mm" in text
+    assert "12 slots, 10 poles" in text and "slots 9, 12; poles 10; 10 diameters 70 to 115 mm" in text
 
 
 # ------------------------------------------------------------------------- contracts of the schema

@@ -16,11 +16,14 @@ PURE_NUMBERS = set(
     machine.stacking_factor thermal.emissivity tolerances.recoil_permeability
     materials.recoil_permeability winding.layers winding.packing_factor winding.coil_pitch
     mesh.gap_edges_per_revolution mesh.gap_layers mesh.elements_across_tooth
-    sweep.slots sweep.back_iron_fraction_min sweep.back_iron_fraction_max sweep.back_iron_steps
+    variables.magnet_arc_fraction
+    sweep.slots sweep.poles sweep.back_iron_fraction_min sweep.back_iron_fraction_max sweep.back_iron_steps
     sweep.rotor_radius_fraction_min sweep.rotor_radius_fraction_max sweep.rotor_radius_steps
     motorcycle.front_weight_fraction motorcycle.rear_motion_ratio ride.road_seeds
     linkage_search.ratio_weight linkage_search.seeds linkage_search.population linkage_search.generations
-    match.weight_inertia match.weight_radius match.chosen_slots match.gearbox_stages match.gear_ring_diameter_fraction
+    match.weight_inertia match.weight_radius match.chosen_slots match.chosen_poles match.chosen_gear_ratio
+    match.gearbox_stages
+    match.gear_ring_diameter_fraction
     match.gear_overload_factor match.gear_contact_ratio_factor match.gear_poisson_ratio
     prices.lamination prices.magnet prices.copper prices.shaft
     winding_selection.packing_tolerance winding_selection.enamel_grade winding_selection.parallel_paths

@@ -47,6 +47,10 @@ WRONG = {
         ["a design of the sweep", "reduce mesh.elements_across_tooth (now elements_across_tooth = 40.0)"],
     ),
     "very many edges": (["mesh.gap_edges_per_revolution=14400"], ["reduce mesh.gap_edges_per_revolution", "14400"]),
+    "poles without a winding": (
+        ["sweep.poles=[10, 12]"],
+        ["sweep.slots = 12", "sweep.poles = 12", "cannot carry this winding"],
+    ),
     "many slots and poles": (
         ["machine.slots=180", "machine.poles=178", "machine.slot_opening_mm=0.1", "machine.tooth_width_mm=0.3"]
         + ["sweep.slots=[180]"],

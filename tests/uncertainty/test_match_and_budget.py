@@ -9,7 +9,8 @@ import pytest
 from drivetrain.masses import DrawnParts
 from drivetrain.match import DampingReported
 from drivetrain.matching import Matcher
-from optimisation.fits import QUANTITIES, SectionFits, SlotFits
+from geometry.family import Combination
+from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
 from optimisation.polynomial_fits import fit_polynomial
 from tests.drivetrain.fitted_machines import CASE, POLYNOMIALS
 from tests.drivetrain.test_matching import INPUTS, LINKAGE, REQUIRED
@@ -20,15 +21,15 @@ from units import MILLIMETRE
 
 RADII = np.linspace(35.0, 57.5, 8) * MILLIMETRE
 SCALES = {"back_iron_width": 1e-3, "rotor_outer_radius": 1e-3, "half_slot_area": 1e-6}
-CHOSEN = (12, 42.5 * MILLIMETRE)
+CHOSEN = (Combination(12, 10), 42.5 * MILLIMETRE)
 
 
 def fits():
     """The polynomials of the motorcycle as fits, without residual."""
     return SectionFits(
         tuple(
-            SlotFits(
-                slots,
+            CombinationFits(
+                Combination(slots, 10),
                 tuple(
                     fit_polynomial(name, RADII, SCALES.get(name, 1.0) * np.polyval(powers[name], RADII / MILLIMETRE))
                     for name in QUANTITIES
@@ -88,7 +89,8 @@ def test_the_free_choice_takes_the_least_cost_and_says_where_it_ends():
     own = matcher()
     (found,) = match_draws(DrawTask(own, (own.fits,), None))
     best = min(
-        (own.over_radius(slots, INPUTS.overload).over_radius.best for slots in (9, 12)), key=lambda m: m.total_cost
+        (own.over_radius(Combination(slots, 10), INPUTS.overload).over_radius.best for slots in (9, 12)),
+        key=lambda m: m.total_cost,
     )
     assert (found.slots, found.stator_outer_radius) == (
         best.section.machine.slots,
