@@ -60,7 +60,7 @@ def _data_of(folder: Path) -> frozenset[Path]:
     """Files that are no code, in the folder of a module and below."""
     if folder == PROJECT or not folder.is_relative_to(PROJECT):
         return frozenset()
-    files = (path for path in folder.rglob("*") if path.is_file())
+    files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
     return frozenset(path for path in files if path.suffix not in (".py", ".pyc") and not path.name.startswith("."))
 
 

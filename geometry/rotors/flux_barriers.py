@@ -48,6 +48,10 @@ class FluxBarriers(Rotor):
         return 0
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
+        """None of the magnets that there are not [rad], of any shape; position_angle: [rad], of any shape; axis: [rad].
+
+        Raises GeometryError.
+        """
         raise GeometryError("a reluctance rotor has no magnets")
 
     def check(self) -> None:

@@ -116,9 +116,9 @@ def test_the_same_flux_linkage(name, order):
 
 @each
 def test_the_same_torque(name, order):
-    """Relative to the rated torque: cogging is zero at some of these angles."""
+    """Relative to the rated torque where there is less: cogging is zero at some of these angles."""
     weak, fast = both(name, order)
-    assert weak.torque == pytest.approx(arkkio_torque(fast), abs=SAME * 55.5)
+    assert weak.torque == pytest.approx(arkkio_torque(fast), abs=SAME * max(55.5, abs(weak.torque)))
 
 
 def test_the_states_are_not_trivial():

@@ -137,6 +137,18 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
     assert said(capsys)[0] == "squares: code changed"
 
 
+def test_what_compilers_leave_beside_the_code_is_not_code():
+    """It appears while a first run goes on, which is no reason to do everything again."""
+    folder = PROJECT / "actuator" / "__pycache__"
+    folder.mkdir(exist_ok=True)
+    left = folder / "left.nbi"
+    left.write_bytes(b"compiled")
+    try:
+        assert left not in pipeline.closure._data_of.__wrapped__(PROJECT / "actuator")
+    finally:
+        left.unlink()
+
+
 def test_the_closure_finds_what_no_list_names():
     found = pipeline.closure.files_of("magnetostatics.case")
     names = {path.relative_to(pipeline.modules.PROJECT).as_posix() for path in found}

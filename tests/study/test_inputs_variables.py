@@ -23,14 +23,14 @@ def test_bounds_and_rules_in_si():
     assert (magnet.name, magnet.low, magnet.high) == ("magnet_length", 1.5e-3, 3.5e-3)
     assert (gap.low, gap.high) == pytest.approx((0.4e-3, 0.8e-3))
     wire, stands = found.rules
-    assert isinstance(wire, WireEnters) and wire.diameter == pytest.approx(0.588e-3)
+    assert isinstance(wire, WireEnters) and wire.diameter == pytest.approx(0.544e-3)
     assert isinstance(stands, MagnetStands) and stands.remanence > stands.knee
     assert stands.slot_density == pytest.approx(20e6 * 2**0.5 * 0.3)
 
 
 REFUSED = {
     "magnets that touch": (["variables.magnet_arc_fraction=[0.6, 1.0]"], ["variables.magnet_arc_fraction", "0.98"]),
-    "a wire that is too thick": (["variables.slot_opening_mm=[0.3, 3]"], ["slot_opening_mm", "0.588 mm"]),
+    "a wire that is too thick": (["variables.slot_opening_mm=[0.3, 3]"], ["slot_opening_mm", "0.544 mm"]),
     "the wrong order": (["variables.airgap_mm=[0.8, 0.4]"], ["variables.airgap_mm", "smallest value first"]),
     "a gap of nothing": (["variables.airgap_mm=[0.0, 0.4]"], ["variables.airgap_mm", "0.05 to 20 mm"]),
     "an unknown dimension": (["variables.shaft_mm=[1, 2]"], ["variables.shaft_mm", "unknown"]),

@@ -29,13 +29,13 @@ def fits():
     return SectionFits(
         tuple(
             CombinationFits(
-                Combination(slots, 10),
+                combination,
                 tuple(
                     fit_polynomial(name, RADII, SCALES.get(name, 1.0) * np.polyval(powers[name], RADII / MILLIMETRE))
                     for name in QUANTITIES
                 ),
             )
-            for slots, powers in POLYNOMIALS.items()
+            for combination, powers in POLYNOMIALS.items()
         )
     )
 
@@ -88,10 +88,8 @@ def test_a_weaker_machine_is_longer():
 def test_the_free_choice_takes_the_least_cost_and_says_where_it_ends():
     own = matcher()
     (found,) = match_draws(DrawTask(own, (own.fits,), None))
-    best = min(
-        (own.over_radius(Combination(slots, 10), INPUTS.overload).over_radius.best for slots in (9, 12)),
-        key=lambda m: m.total_cost,
-    )
+    tried = (own.over_radius(Combination(slots, 10), INPUTS.overload).over_radius.best for slots in (9, 12))
+    best = min(tried, key=lambda one: one.total_cost)
     assert (found.slots, found.stator_outer_radius) == (
         best.section.machine.slots,
         pytest.approx(best.section.machine.stator_outer_radius, rel=1e-6),
