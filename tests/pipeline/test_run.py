@@ -139,12 +139,12 @@ def test_changed_code_anywhere_behind_a_stage_is_noticed(tmp_path, capsys, monke
 
 def test_what_compilers_leave_beside_the_code_is_not_code():
     """It appears while a first run goes on, which is no reason to do everything again."""
-    folder = PROJECT / "actuator" / "__pycache__"
+    folder = pipeline.modules.PROJECT / "actuator" / "__pycache__"
     folder.mkdir(exist_ok=True)
     left = folder / "left.nbi"
     left.write_bytes(b"compiled")
     try:
-        assert left not in pipeline.closure._data_of.__wrapped__(PROJECT / "actuator")
+        assert left not in pipeline.closure._data_of.__wrapped__(pipeline.modules.PROJECT / "actuator")
     finally:
         left.unlink()
 
