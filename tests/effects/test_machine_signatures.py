@@ -12,11 +12,12 @@ from effects.library import package_effects
 from effects.signature import NOTHING, names
 from tests.effects.contract import SMALL, first, sized, vanishing
 from tests.effects.machine_bench import TURN, machine_bench_case
+from tests.workbench.models.machine_case import drawn
 
 OWN = {
     name: cls
     for name, cls in package_effects().items()
-    if cls.__module__.startswith("effects.machine.") and cls.can_act_on(machine_bench_case().model.design)
+    if cls.__module__.startswith("effects.machine.") and cls.can_act_on(drawn())
 }
 SLOTS, POLES, NATIVE = 12, 10, 60
 

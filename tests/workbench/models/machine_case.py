@@ -42,6 +42,8 @@ def field(density: MeshDensity = COARSE) -> MachineField:
 
 @cache
 def builder() -> SurrogateBuilder:
+    """Only within a test: solved while tests are collected, it costs every process its minute, whatever is run."""
+    assert "PYTEST_CURRENT_TEST" in os.environ, "the machine of the tests is solved in a test, not on import"
     return SurrogateBuilder(drawn(), PLAN, SOLVED)
 
 

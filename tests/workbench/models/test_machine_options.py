@@ -15,8 +15,12 @@ from workbench.models.machine.model import MachineBench
 from workbench.models.machine.options import options
 from workbench.models.model import Model
 
-BENCH = replace(MachineBench(cache=None), surrogate=surrogate(), builder=builder(), about_drawing=surrogate())
 LOADED = STATES[0]
+
+
+@pytest.fixture(scope="module")
+def bench():
+    return replace(MachineBench(cache=None), surrogate=surrogate(), builder=builder(), about_drawing=surrogate())
 
 
 def table(kind: str, conditions: dict, u: dict) -> Table:
@@ -40,12 +44,12 @@ def by_kind(tables) -> dict:
     return {option.kind: option for option in options(tables)}
 
 
-def test_the_bench_answers_every_option():
+def test_the_bench_answers_every_option(bench):
     """All columns that the kind registers, a finite value and an uncertainty for every row."""
     found = by_kind(ALL)
     assert set(found) == {"drag", "cogging", "back_emf", "phase_resistance", "locked_rotor", "short_circuit"}
     for option in found.values():
-        answer = BENCH.respond(drawn(), option.kind, option.conditions)
+        answer = bench.respond(drawn(), option.kind, option.conditions)
         assert set(option.random) <= set(answer)
         for name, u in option.random.items():
             assert KINDS[option.kind].is_response(name)
@@ -72,9 +76,9 @@ def test_loaded_points_are_those_that_were_measured_once_each_and_never_without_
     assert "locked_rotor" not in by_kind((idle, COGGING))
 
 
-def test_drag_tells_dry_from_viscous_friction_which_cogging_cannot():
+def test_drag_tells_dry_from_viscous_friction_which_cogging_cannot(bench):
     """Cogging at one slow speed sees a level only; over speeds the cosine of both laws is sum v / sqrt(n sum v^2)."""
-    model = Model(BENCH, drawn())
+    model = Model(bench, drawn())
     dry, viscous = BearingFriction(level=0.01), BearingViscous(slope=2e-5)
     change = {}
     for option in (by_kind(ALL)[kind] for kind in ("cogging", "drag")):
