@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cmath import exp, rect
+from cmath import exp
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
@@ -72,7 +72,7 @@ def _points(curve: Curve) -> Iterable[complex]:
     if not isinstance(curve, Arc):
         return (curve.start,)
     chords = max(2, int(abs(curve.sweep) / _CHORD))
-    return (rect(curve.radius, curve.first + curve.sweep * step / chords) for step in range(chords))
+    return (curve.part(step / chords, 1 / chords).start for step in range(chords))
 
 
 # ---- dimensions -----------------------------------------------------------------------------------------------------

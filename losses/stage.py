@@ -10,7 +10,7 @@ import xarray as xr
 from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
 from electrical.plane import plane_dataset, plane_record
 from electrical.winding_stage import WindingInputs, WindingOutcome
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from losses.magnet import NDFEB_RESISTIVITY
 from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
 from magnetostatics.case import FieldCase
@@ -90,7 +90,7 @@ class LossTask:
     """
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     direct: float
     quadrature: float
     law: IronLossLaw

@@ -16,7 +16,7 @@ import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from geometry.family import MatchedMachine
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import (
     CurrentGrid,
@@ -93,7 +93,7 @@ class AngleTask:
     """All currents of a grid at one rotor angle [rad]."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angle: float
     grid: CurrentGrid
 
@@ -103,7 +103,7 @@ class PointTask:
     """One rotor angle [rad] and current [A of one coil, peak]."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angle: float
     i_d: float
     i_q: float
@@ -179,7 +179,7 @@ def best_current(data: xr.Dataset, current: float) -> tuple[float, float]:
     return float(i_d[best]), float(i_q[best])
 
 
-def kept_model(case: FieldCase, machine: Machine) -> FieldModel:
+def kept_model(case: FieldCase, machine: DrawnMachine) -> FieldModel:
     """Field model of a machine on the mesh of the sweep; the last one is kept in this process.
 
     A case holds arrays and travels by pickling, so that it is known again by its pickled bytes.

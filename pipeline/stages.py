@@ -33,6 +33,7 @@ from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.errors import GeometryError
 from losses.stage import LossError, loss_law, losses_stage
+from magnetostatics.case import field_case, stated_machine
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
 from magnetostatics.gap_stress_stage import gap_stress_stage
@@ -121,7 +122,8 @@ _SOURCES = (
     flux_map_grid, gear_inputs, output, copper_heat, heat_inputs, mechanics_inputs, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
-    field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
+    field_case_as_learned, field_case, stated_machine, winding_inputs_as_learned, loss_inputs_as_learned,
+    outcome_inputs_as_learned,
     demand_as_learned,
 )  # fmt: skip
 _VEHICLE: tuple[Node, ...] = (

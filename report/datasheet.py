@@ -151,7 +151,7 @@ def section(sheet: DataSheet) -> Section:
 
 def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Iterator[Row]:
     """What is bought and cut."""
-    machine, envelope, magnet = wound.machine, machine_envelope(wound), case.materials.magnet
+    machine, envelope, magnet = wound.dimensions, machine_envelope(wound), case.materials.magnet
     yield row("slots", machine.slots, "")
     yield row("poles", machine.poles, "")
     yield row("stator outer diameter", 2 * machine.stator_outer_radius, "mm")

@@ -31,8 +31,8 @@ class OutwardTeeth(Stator):
         return self.outer_radius
 
     @property
-    def grounded_radius(self) -> None:
-        return None
+    def slot_radii(self) -> tuple[float, float]:
+        return self.slot_bottom_radius, self.flank_radius
 
     @property
     def tooth_probe(self) -> Segment:

@@ -15,8 +15,8 @@ from units import MILLIMETRE, MILLIOHM, SQUARE_MILLIMETRE
 
 SLOT = dict(
     slots=12,
-    shoe_top_radius=(15.7 + 0.5 + 2 * 1.43) * MILLIMETRE,
-    slot_bottom_radius=(42.5 - 3.3) * MILLIMETRE,
+    slot_inner_radius=(15.7 + 0.5 + 2 * 1.43) * MILLIMETRE,
+    slot_outer_radius=(42.5 - 3.3) * MILLIMETRE,
     tooth_width=5.5 * MILLIMETRE,
 )
 TOOTH_COIL = SLOT | {"coil_pitch": 1}
