@@ -23,6 +23,7 @@ from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
 from electrical.braking_stage import braking_stage
 from electrical.drive_stage import drive_stage
+from electrical.driven_machine import driven_machine
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.magnets_stage import magnets_stage
 from electrical.winding_selection import WindingError
@@ -175,6 +176,7 @@ _MACHINE: tuple[Node, ...] = (
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
     Stage("winding", winding_stage, "wires, turns, connection, length", winding.files, remarks=winding.remarks),
+    View(driven_machine),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from figures.losses import loss_maps
 from figures.style import png_bytes
@@ -41,7 +42,7 @@ def winding():
 
 @pytest.fixture(scope="module")
 def found(winding):
-    return losses_stage(CASE, MAP, winding, INPUTS, LOSSES, Computed())
+    return losses_stage(CASE, MAP, driven_machine(winding, INPUTS), LOSSES, Computed())
 
 
 @pytest.mark.parametrize("grade", [None, "", "35PN270"])
