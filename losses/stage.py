@@ -12,7 +12,7 @@ from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
 from geometry.parts import DrawnMachine
 from losses.magnet import NDFEB_RESISTIVITY
-from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
+from losses.map import FieldLosses, LossGrid, PowerLosses, current_point, field_losses, power_losses
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from materials.errors import MaterialError
@@ -109,14 +109,14 @@ def losses_stage(
     Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
     """
     law, wound = loss_law(inputs), driven.wound
-    largest = _LARGEST * wound.equivalent_turns * driven.limits.current_peak
+    grid = LossGrid.of(wound.machine.rotor, _LARGEST * wound.equivalent_turns * driven.limits.current_peak)
     resistivity = inputs.magnet_resistivity
     tasks = {
-        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid(largest)
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid.points
     }
     found = workers.map("losses", losses_at_current, tasks)
     operating = both_senses(flux_map, driven)
-    losses = power_losses(operating, wound, table_of(largest, list(found.values())), flux_map.data)
+    losses = power_losses(operating, wound, grid.table(list(found.values())), flux_map.data)
     return LossMap(
         plane_dataset(losses),
         law,

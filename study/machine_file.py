@@ -9,6 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
+from electrical.winding_connection import CLOSINGS, WindingConnection
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
@@ -29,23 +30,49 @@ _MAGNETISATIONS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetis
 # Sections and keys beside those of the two parts; those with a value may be left out.
 _OTHERS: dict[str, dict[str, Any]] = {
     "machine": {"title": "", "active_length_mm": None},
-    "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None},
-    "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05},
+    "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None, "parallel_paths": 1, "connection": "star",
+                "wires_in_hand": 1, "wire_diameter_mm": None},
+    "drive": {"dc_bus_voltage_V": None, "line_current_peak_A": None, "speed_max_rpm": None,
+              "winding_temperature_degC": 20.0},
+    "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05,
+                  "loss_grade": None},
     "mesh": {"gap_edges_per_revolution": 720, "gap_layers": 2, "elements_across_iron": 2.0},
 }
 
 
 @dataclass(frozen=True, eq=False)
 class MachineFile:
-    """title; turns: of every coil, all coils of a phase in series, dimensionless; active_length [m]"""
+    """A machine as it is drawn and wound, and what stands beside it in the file.
 
+    turns: of every coil, dimensionless; active_length [m]
+    conductors, supply: what is stated of the wires and of the drive, by key with unit; None where a key is left out
+    steel: of the stator, as the file names it; loss_grade: whose loss data stand for it, None without
+    """
+
+    path: Path
     title: str
     machine: ComposedMachine
     layout: WindingLayout
+    connection: WindingConnection
     turns: float
     active_length: float
     materials: MachineMaterials
     density: MeshDensity
+    conductors: Mapping[str, Any]
+    supply: Mapping[str, Any]
+    steel: str
+    loss_grade: str | None
+
+    @property
+    def equivalent_turns(self) -> float:
+        """Of a coil of the equivalent star, all coils of a phase in series."""
+        return float(self.connection.equivalent_turns(self.turns))
+
+    def number(self, section: str, key: str) -> float:
+        """What [winding] or [drive] states, in SI. Raises StudyError where it is left out or no number."""
+        stated = self.supply if section == "drive" else self.conductors
+        found = _number(_Table(self.path, {}), section, key, stated[key])
+        return to_si(key, found)[1]
 
 
 def read_machine(path_or_name: str | Path) -> MachineFile:
@@ -86,16 +113,31 @@ def _machine(table: _Table) -> MachineFile:
     check_machine(machine)
     winding, mesh = values["winding"], values["mesh"]
     return MachineFile(
+        table.path,
         values["machine"]["title"],
         machine,
         star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"]),
+        _connection(table, winding),
         _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
         _materials(table, values["materials"], machine.rotor.magnets_per_pole),
         MeshDensity(
             mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
         ),
+        winding,
+        values["drive"],
+        values["materials"]["stator_steel"],
+        values["materials"]["loss_grade"],
     )
+
+
+def _connection(table: _Table, stated: Mapping[str, Any]) -> WindingConnection:
+    if stated["connection"] not in CLOSINGS:
+        raise table.wrong("winding", f"connection = {stated['connection']!r} is unknown; take {' or '.join(CLOSINGS)}")
+    paths = _number(table, "winding", "parallel_paths", stated["parallel_paths"])
+    if paths < 1 or paths != int(paths):
+        raise table.wrong("winding", f"parallel_paths = {paths:g} is not a whole number of one or more")
+    return WindingConnection(int(paths), CLOSINGS[stated["connection"]])
 
 
 def _values(table: _Table, name: str) -> dict[str, Any]:
@@ -151,9 +193,13 @@ def _part(table: _Table, section: str, kinds: Kinds) -> Part:
 
 def part_keys(cls: type[Part]) -> dict[str, str]:
     """Keys of a part in a file by the names of its fields: the unit is the end of the key, none for a pure number."""
+    return {name: f"{name}_{unit}" if unit else name for name, unit in part_units(cls).items()}
+
+
+def part_units(cls: type[Part]) -> dict[str, str]:
+    """Drawing units of the fields of a part by their names, empty for a pure number."""
     hints = get_type_hints(cls, include_extras=True)
-    units = {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
-    return {name: f"{name}_{unit}" if unit else name for name, unit in units.items()}
+    return {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
 
 
 def _must_be_stated(one: Field[Any]) -> bool:

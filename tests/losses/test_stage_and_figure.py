@@ -10,7 +10,7 @@ from electrical.winding_stage import winding_stage
 from figures.losses import loss_maps
 from figures.style import png_bytes
 from losses.iron import FrequencyTerms
-from losses.map import FieldLosses, grid
+from losses.map import DIRECT, QUADRATURE, FieldLosses
 from losses.stage import LossError, LossInputs, loss_law, losses_stage, torques_of
 from report.losses import dataset, files, section
 from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
@@ -24,7 +24,7 @@ class Computed:
     """Workers whose field losses are given: in proportion to the currents, without a solve."""
 
     def map(self, what, function, tasks):
-        assert what == "losses" and len(tasks) == len(grid(1.0))
+        assert what == "losses" and len(tasks) == len(DIRECT) * len(QUADRATURE)
         return {name: self.losses(task) for name, task in tasks.items()}
 
     @staticmethod
