@@ -64,17 +64,21 @@ def stated_machine(read: MachineFile) -> MatchedMachine:
 
 @dataclass(frozen=True, eq=False)
 class Solving:
-    """What the field of a stated machine is solved with beside its drive."""
+    """What the field of a stated machine is solved with beside its drive.
+
+    layers, coil_pitch [slots]: of the winding; map_points: angles and currents of the flux map
+    """
 
     layers: int
     coil_pitch: int
+    map_points: tuple[int, int]
     materials: MachineMaterials
     density: MeshDensity
 
 
 def solving(read: MachineFile) -> Solving:
     """Of a file."""
-    return Solving(read.layout.layers, read.layout.coil_pitch, read.materials, read.density)
+    return Solving(read.layout.layers, read.layout.coil_pitch, read.map_points, read.materials, read.density)
 
 
 def field_case(read: Solving, driven: DrivenMachine) -> FieldCase:
@@ -86,9 +90,9 @@ def field_case(read: Solving, driven: DrivenMachine) -> FieldCase:
     )  # fmt: skip
 
 
-def flux_map_grid(driven: DrivenMachine) -> FluxMapGrid:
+def flux_map_grid(read: Solving, driven: DrivenMachine) -> FluxMapGrid:
     """Up to the full current."""
-    return FluxMapGrid(copper_share(driven), overload_density(driven))
+    return FluxMapGrid(copper_share(driven), overload_density(driven), *read.map_points)
 
 
 def copper_share(driven: DrivenMachine) -> float:

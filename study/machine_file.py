@@ -17,6 +17,7 @@ from geometry.kinds import ROTORS, STATORS, Kinds
 from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
 from geometry.parts import ComposedMachine, Part
 from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.flux_map_stage import ANGLES, CURRENTS
 from magnetostatics.model import MachineMaterials
 from materials.errors import MaterialError
 from materials.library import load_steel
@@ -34,6 +35,7 @@ _OTHERS: dict[str, dict[str, Any]] = {
                 "wires_in_hand": 1, "wire_diameter_mm": None},
     "drive": {"dc_bus_voltage_V": None, "line_current_peak_A": None, "speed_max_rpm": None,
               "winding_temperature_degC": 20.0},
+    "flux_map": {"angles": ANGLES, "currents": CURRENTS},
     "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05,
                   "loss_grade": None},
     "mesh": {"gap_edges_per_revolution": 720, "gap_layers": 2, "elements_across_iron": 2.0},
@@ -46,6 +48,7 @@ class MachineFile:
 
     turns: of every coil, dimensionless; active_length [m]
     conductors, supply: what is stated of the wires and of the drive, by key with unit; None where a key is left out
+    map_points: angles over 60 electrical degrees and currents along an axis of the flux map
     steel: of the stator, as the file names it; loss_grade: whose loss data stand for it, None without
     """
 
@@ -60,6 +63,7 @@ class MachineFile:
     density: MeshDensity
     conductors: Mapping[str, Any]
     supply: Mapping[str, Any]
+    map_points: tuple[int, int]
     steel: str
     loss_grade: str | None
 
@@ -126,6 +130,7 @@ def _machine(table: _Table) -> MachineFile:
         ),
         winding,
         values["drive"],
+        (_count(table, "flux_map", values, "angles", 1), _count(table, "flux_map", values, "currents", 4)),
         values["materials"]["stator_steel"],
         values["materials"]["loss_grade"],
     )
@@ -134,10 +139,16 @@ def _machine(table: _Table) -> MachineFile:
 def _connection(table: _Table, stated: Mapping[str, Any]) -> WindingConnection:
     if stated["connection"] not in CLOSINGS:
         raise table.wrong("winding", f"connection = {stated['connection']!r} is unknown; take {' or '.join(CLOSINGS)}")
-    paths = _number(table, "winding", "parallel_paths", stated["parallel_paths"])
-    if paths < 1 or paths != int(paths):
-        raise table.wrong("winding", f"parallel_paths = {paths:g} is not a whole number of one or more")
-    return WindingConnection(int(paths), CLOSINGS[stated["connection"]])
+    return WindingConnection(
+        _count(table, "winding", {"winding": stated}, "parallel_paths", 1), CLOSINGS[stated["connection"]]
+    )
+
+
+def _count(table: _Table, section: str, values: Mapping[str, Any], key: str, least: int) -> int:
+    number = _number(table, section, key, values[section][key])
+    if number < least or number != int(number):
+        raise table.wrong(section, f"{key} = {number:g} is not a whole number of {least} or more")
+    return int(number)
 
 
 def _values(table: _Table, name: str) -> dict[str, Any]:
