@@ -12,6 +12,7 @@ import pandas as pd
 
 from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
 from electrical.driven_machine import DrivenMachine
+from electrical.kind_search import KindDesign, KindOutcome
 from electrical.performance import Performance
 from electrical.turning_stage import TurningMachine, full_supply
 from export.dxf import laminations, write_dxf
@@ -20,9 +21,10 @@ from figures.files import File, figure_file, picture_name, table_file
 from figures.flux_map import envelope_over_speed, flux_maps
 from figures.lamination import outline_picture
 from figures.losses import loss_maps
-from figures.report import Picture, Section
+from figures.report import Picture, Section, Table
 from figures.rotation import rotation
 from figures.whole_field import whole_field
+from geometry.moves import Move
 from geometry.outline import outline_of
 from geometry.parts import Part
 from losses.stage import LossMap
@@ -31,13 +33,14 @@ from magnetostatics.flux_map_stage import FluxMap, kept_model
 from report.datasheet import DataSheet, Group, Row, group_tables, row
 from study.inputs_stated_machine import CopperTemperature
 from study.machine_file import part_units
-from units import DEGREE, RPM
+from units import DEGREE, FACTORS, RPM
 
-SHEET, TURN, ENVELOPE = "sheet.csv", "turn.csv", "envelope.csv"
+SHEET, TURN, ENVELOPE, DESIGNS = "sheet.csv", "turn.csv", "envelope.csv", "designs.csv"
 DRAWING, FIELD, MAP, OVER_SPEED, LOSSES, TURNING = (
     "drawing", "field_full_current", "flux_map", "envelope", "losses", "turn",
 )  # fmt: skip
 _THOUSAND_RPM = 1000 * RPM
+_OFF_LIMIT = 0.9  # of full torque and base speed: the map is read inside its limits
 # Usual values where the file of a machine states none: sheet EN 10106, NdFeB 7400 to 7600 in data sheets, copper
 # IEC 60028, shaft of plain steel; stacking of sheet of 0.35 mm. Estimates for a machine that was not weighed.
 _PARTS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
@@ -77,6 +80,53 @@ def machine_sheet(
     return MachineSheet(DataSheet(tuple(group for group in groups if group.rows)), masses)
 
 
+def search_files(found: KindOutcome) -> Iterator[File]:
+    """Every design that was sampled, and the best."""
+    yield table_file(DESIGNS, designs_table(found))
+
+
+def search_section(found: KindOutcome | None) -> Section | None:
+    """What the dimensions became; none where nothing may vary."""
+    if found is None:
+        return None
+    best, drawn = found.best, found.drawn
+    text = (
+        f"{found.search.samples} designs between the bounds, {found.unbuildable} of them not buildable; the best two "
+        f"bettered further. At the same full ampere-turns the motor constant rises from {drawn.motor_constant:.4g} "
+        f"(as drawn) to {best.motor_constant:.4g} Nm/√W, the torque goes from {drawn.torque:.4g} to {best.torque:.4g} "
+        f"Nm; {best.tooth:.3g} T in the teeth and {best.back_iron:.3g} T in the back iron, where "
+        f"{found.search.limit:g} T is allowed (as drawn {drawn.tooth:.3g} and {drawn.back_iron:.3g} T). Wire fills the "
+        "slots as far as it did; its diameter need not be one that is sold."
+    )
+    rows = [
+        {"variable": move.name, "moves": ", ".join(".".join(one) for one in move.dimensions),
+         "change": move.amount(amount), "from": move.amount(move.low), "to": move.amount(move.high),
+         "on its bound": "yes" if _on_bound(move, amount) else ""}
+        for move, amount in zip(found.search.moves, best.amounts, strict=True)
+    ]  # fmt: skip
+    return Section("Best dimensions", (text, Table(pd.DataFrame(rows), f"What moved; all designs are in {DESIGNS}.")))
+
+
+def designs_table(found: KindOutcome) -> pd.DataFrame:
+    """A design a row, the best first."""
+    return pd.DataFrame([_design_row(found, one) for one in (found.best, *found.samples)])
+
+
+def _design_row(found: KindOutcome, one: KindDesign) -> dict[str, object]:
+    moved: dict[str, object] = {
+        f"{move.name} ({move.unit})" if move.unit else move.name: amount / FACTORS[move.unit] if move.unit else amount
+        for move, amount in zip(found.search.moves, one.amounts, strict=True)
+    }
+    return moved | {
+        "current_angle_deg": one.current_angle / DEGREE, "torque_Nm": one.torque,
+        "motor_constant_Nm_per_sqrtW": one.motor_constant, "tooth_T": one.tooth, "back_iron_T": one.back_iron,
+    }  # fmt: skip
+
+
+def _on_bound(move: Move, amount: float) -> bool:
+    return min(amount - move.low, move.high - amount) < 1e-3 * (move.high - move.low)
+
+
 def flux_map_files(
     flux_map: FluxMap, driven: DrivenMachine, performance: Performance, case: FieldCase
 ) -> Iterator[File]:
@@ -93,7 +143,7 @@ def flux_map_files(
 def turning_files(turning: TurningMachine, driven: DrivenMachine) -> Iterator[File]:
     """Torque and probes over the angle."""
     yield table_file(TURN, turn_table(turning, driven))
-    yield figure_file(TURNING, rotation(turn_table(turning, driven)))
+    yield figure_file(TURNING, rotation(turn_table(turning, driven), current="full"))
 
 
 def losses_files(losses: LossMap) -> Iterator[File]:
@@ -262,7 +312,7 @@ def _losses(found: Performance, losses: LossMap | None) -> Iterator[Row]:
     if losses is None:
         return
     map_, full = losses.losses, found.full
-    one = map_.at(min(full.torque, float(map_.torque[-1, 0])), min(full.base_speed, float(map_.speed[0, -1])))
+    one = map_.at(_OFF_LIMIT * full.torque, min(_OFF_LIMIT * full.base_speed, float(map_.speed[0, -1])))
     at = f"{float(one.torque):.4g} Nm at {float(one.speed) / RPM:.0f} rpm"
     yield row("power", one.mechanical, "W", f"mechanical, {at}")
     yield row("copper loss", one.copper, "W", f"{losses.winding_temperature:g} °C")

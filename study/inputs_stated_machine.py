@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from electrical.dq import DriveLimits
 from electrical.driven_machine import DrivenMachine
+from electrical.kind_search import KindSearch, StatedDesign
 from electrical.winding_design import WindingDesign
 from electrical.wire import Wire
 from electrical.wound_machine import WoundMachine
@@ -35,7 +36,7 @@ def copper_temperature(read: MachineFile) -> CopperTemperature:
     return CopperTemperature(read.number("drive", "winding_temperature_degC"))
 
 
-def driven_machine(read: MachineFile) -> DrivenMachine:
+def stated_design(read: MachineFile) -> StatedDesign:
     """The machine with the winding and within the limits that its file states.
 
     Raises StudyError for what is left out, MaterialError for a wire that is not sold.
@@ -47,7 +48,14 @@ def driven_machine(read: MachineFile) -> DrivenMachine:
     design = WindingDesign(read.turns, strands, wire(read), read.connection)
     layout = read.layout
     wound = WoundMachine(read.machine, layout.coils_in_series, layout.coil_pitch, design, read.active_length)
-    return DrivenMachine(wound, limits, read.number("drive", "speed_max_rpm"))
+    driven = DrivenMachine(wound, limits, read.number("drive", "speed_max_rpm"))
+    return StatedDesign(field_case(solving(read), driven), driven)
+
+
+def kind_search(read: MachineFile) -> KindSearch:
+    """What [[variables]] and [search] ask for; without variables nothing is looked for."""
+    assert read.search is not None  # the graph asks only then
+    return read.search
 
 
 def wire(read: MachineFile) -> Wire:
@@ -57,9 +65,9 @@ def wire(read: MachineFile) -> Wire:
     return Wire(size.copper_diameter, size.outer_diameter, resistivity)
 
 
-def stated_machine(read: MachineFile) -> MatchedMachine:
+def stated_machine(driven: DrivenMachine) -> MatchedMachine:
     """The cross-section."""
-    return MatchedMachine(read.machine)
+    return MatchedMachine(driven.wound.machine)
 
 
 @dataclass(frozen=True, eq=False)

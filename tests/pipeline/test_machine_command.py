@@ -70,6 +70,51 @@ def test_a_reluctance_machine_runs_on_its_magnetising_current(tmp_path, quick):
     assert value(rows, "peak torque") > 10 and not (tmp_path / "out" / "magnets.dxf").exists()
 
 
+VARIABLES = """
+[search]
+flux_density_max_T = 1.3
+samples = 8
+
+[[variables]]
+name = "teeth"
+moves = ["stator.tooth_width"]
+by_mm = [-0.5, 0.3]
+"""
+
+
+@pytest.mark.slow
+def test_dimensions_are_bettered_until_the_iron_is_as_saturated_as_it_may_be(tmp_path):
+    """Thinner teeth leave more room for copper; the limit of the flux density ends that."""
+    path = coarse("outrunner_9_12", tmp_path)
+    path.write_text(path.read_text(encoding="utf-8") + VARIABLES, encoding="utf-8")
+    done = airgap("machine", path, "--out", tmp_path / "out", "--to", "search", "--jobs", 1)
+    assert done.returncode == 0, done.stderr
+    with open(tmp_path / "out" / "designs.csv", encoding="utf-8") as file:
+        best, *sampled = csv.DictReader(file)
+    held = [float(one["motor_constant_Nm_per_sqrtW"]) for one in sampled if max(iron(one)) <= 1.3]
+    assert float(best["motor_constant_Nm_per_sqrtW"]) >= max(held)
+    assert max(iron(best)) == pytest.approx(1.3, rel=5e-3) and max(iron(best)) <= 1.3
+    assert -0.5 < float(best["teeth (mm)"]) < -0.1
+
+
+def iron(row):
+    return float(row["tooth_T"]), float(row["back_iron_T"])
+
+
+WRONG = {
+    "stator.tooth_widht": "is no dimension in mm; take of stator.bore_radius",
+    "rotor.arc_fraction": "is no dimension in mm",
+}
+
+
+@pytest.mark.parametrize("dimension", WRONG)
+def test_a_dimension_that_is_not_there_is_said(tmp_path, dimension):
+    path = coarse("outrunner_9_12", tmp_path)
+    path.write_text(path.read_text() + VARIABLES.replace("stator.tooth_width", dimension), encoding="utf-8")
+    done = airgap("machine", path, "--out", tmp_path / "out")
+    assert done.returncode == 2 and WRONG[dimension] in done.stdout + done.stderr
+
+
 def test_a_file_without_a_drive_is_told_the_key_that_lacks(tmp_path):
     path = coarse("outrunner_9_12", tmp_path)
     path.write_text(path.read_text().replace("dc_bus_voltage_V = 12.0\n", ""))
