@@ -21,3 +21,10 @@ class DrivenMachine:
 def driven_machine(winding: WindingOutcome, inputs: WindingInputs) -> DrivenMachine:
     """The machine with the winding that was chosen."""
     return DrivenMachine(winding.wound, winding.limits, inputs.limits.maximum_speed)
+
+
+@dataclass(frozen=True)
+class CopperTemperature:
+    """That the resistance of a winding is stated at. value: [degC]"""
+
+    value: float

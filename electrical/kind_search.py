@@ -175,7 +175,7 @@ def _merit(design: KindDesign, limit: float) -> float:
 
 
 def machine_of(driven: DrivenMachine, moves: Sequence[Move], amounts: Sequence[float]) -> ComposedMachine:
-    """The stated machine with its dimensions moved [m, rad or 1]. Raises GeometryError where it cannot be built."""
+    """The stated machine moved; amounts: of the moves [m, rad or 1]. Raises GeometryError where it cannot be built."""
     machine = driven.wound.machine
     if not isinstance(machine, ComposedMachine):
         raise GeometryError("dimensions are moved of a machine that a file puts together from a stator and a rotor")

@@ -50,7 +50,7 @@ class TurnTask:
 
 @dataclass(frozen=True, eq=False)
 class ProbedTurn:
-    """turned, and flux densities of the probes by name [T], (angles, probes)."""
+    """turned; probes: names; flux_density: of them [T], (angles, probes)"""
 
     turned: Turned
     probes: tuple[str, ...]

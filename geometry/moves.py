@@ -26,7 +26,7 @@ class Move:
     high: float
 
     def amount(self, value: float) -> str:
-        """A change [unit inside the project] as people read it."""
+        """As people read it; value: of a change [m or rad, or 1 where the unit is empty]"""
         return f"{value / FACTORS[self.unit] if self.unit else value:+.4g} {written(self.unit)}".rstrip()
 
 

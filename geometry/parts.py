@@ -6,9 +6,9 @@ probes and defects ask for what is declared here. Angles count from the axis of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import gcd, hypot, pi
-from typing import Annotated, Protocol
+from typing import Annotated, Protocol, get_args, get_type_hints
 
 import numpy as np
 
@@ -250,3 +250,9 @@ class ComposedMachine(Pitches):
     def mid_gap_radius(self) -> float:
         """Of the sliding circle [m]."""
         return (self.stator.rim_radius + self.rotor.rim_radius) / 2
+
+
+def part_units(cls: type[Part]) -> dict[str, str]:
+    """Drawing units of the fields of a part by their names, empty for a pure number."""
+    hints = get_type_hints(cls, include_extras=True)
+    return {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]

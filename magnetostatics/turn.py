@@ -72,12 +72,12 @@ class Supply:
 
 
 def turned(model: FieldModel, supply: Supply, active_length: float, angles: Iterable[float]) -> Turned:
-    """Solve the field at every rotor angle [rad], each from the one before; active_length [m]."""
+    """Solve the field at rotor angles, each from the one before; active_length [m]; angles [rad]"""
     return read_turn(solved_turn(model, supply, angles), supply.turns, active_length)
 
 
 def solved_turn(model: FieldModel, supply: Supply, angles: Iterable[float]) -> list[FieldSolution]:
-    """The field at every rotor angle [rad], each solved from the one before."""
+    """The field at rotor angles, each solved from the one before; angles [rad]"""
     solutions: list[FieldSolution] = []
     for angle in angles:
         solutions.append(model.solve(supply.at(angle, model), solutions[-1] if solutions else None))

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
-from electrical.driven_machine import DrivenMachine
+from electrical.driven_machine import CopperTemperature, DrivenMachine
 from electrical.kind_search import KindDesign, KindOutcome
 from electrical.performance import Performance
 from electrical.turning_stage import TurningMachine, full_supply
@@ -26,13 +26,11 @@ from figures.rotation import rotation
 from figures.whole_field import whole_field
 from geometry.moves import Move
 from geometry.outline import outline_of
-from geometry.parts import Part
+from geometry.parts import Part, part_units
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from report.datasheet import DataSheet, Group, Row, group_tables, row
-from study.inputs_stated_machine import CopperTemperature
-from study.machine_file import part_units
 from units import DEGREE, FACTORS, RPM
 
 SHEET, TURN, ENVELOPE, DESIGNS = "sheet.csv", "turn.csv", "envelope.csv", "designs.csv"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from electrical.dq import DriveLimits
-from electrical.driven_machine import DrivenMachine
+from electrical.driven_machine import CopperTemperature, DrivenMachine
 from electrical.kind_search import KindSearch, StatedDesign
 from electrical.winding_design import WindingDesign
 from electrical.wire import Wire
@@ -22,13 +22,6 @@ from materials.enamelled_wire import gauge
 from study.machine_file import MachineFile
 
 _GRADE = 1  # of the enamel
-
-
-@dataclass(frozen=True)
-class CopperTemperature:
-    """Of the winding [degC]."""
-
-    value: float
 
 
 def copper_temperature(read: MachineFile) -> CopperTemperature:

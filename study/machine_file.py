@@ -7,7 +7,7 @@ from dataclasses import MISSING, Field, dataclass, fields
 from difflib import get_close_matches
 from math import isfinite
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any
 
 from electrical.kind_search import KindSearch
 from electrical.winding_connection import CLOSINGS, WindingConnection
@@ -17,7 +17,7 @@ from geometry.half_cell import MeshDensity
 from geometry.kinds import ROTORS, STATORS, Kinds
 from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
 from geometry.moves import Move
-from geometry.parts import ComposedMachine, Part
+from geometry.parts import ComposedMachine, Part, part_units
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.flux_map_stage import ANGLES, CURRENTS
 from magnetostatics.model import MachineMaterials
@@ -257,12 +257,6 @@ def _part(table: _Table, section: str, kinds: Kinds) -> Part:
 def part_keys(cls: type[Part]) -> dict[str, str]:
     """Keys of a part in a file by the names of its fields: the unit is the end of the key, none for a pure number."""
     return {name: f"{name}_{unit}" if unit else name for name, unit in part_units(cls).items()}
-
-
-def part_units(cls: type[Part]) -> dict[str, str]:
-    """Drawing units of the fields of a part by their names, empty for a pure number."""
-    hints = get_type_hints(cls, include_extras=True)
-    return {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
 
 
 def _must_be_stated(one: Field[Any]) -> bool:

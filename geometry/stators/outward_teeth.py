@@ -32,6 +32,7 @@ class OutwardTeeth(Stator):
 
     @property
     def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
         return self.slot_bottom_radius, self.flank_radius
 
     @property

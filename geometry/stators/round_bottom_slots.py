@@ -41,6 +41,7 @@ class RoundBottomSlots(Stator):
 
     @property
     def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
         return self._top, self._bottom
 
     @property

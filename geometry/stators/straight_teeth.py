@@ -40,6 +40,7 @@ class StraightTeeth(Stator):
 
     @property
     def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
         return self.shoe_top_radius, self.slot_bottom_radius
 
     @property
