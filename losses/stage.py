@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
+from electrical.dq import OperatingMap, operating_map, peak_torque, torque_speed_envelope
+from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
-from electrical.winding_stage import WindingInputs, WindingOutcome
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from losses.magnet import NDFEB_RESISTIVITY
-from losses.map import FieldLosses, PowerLosses, current_point, field_losses, grid, power_losses, table_of
+from losses.map import FieldLosses, LossGrid, PowerLosses, current_point, field_losses, power_losses
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from materials.errors import MaterialError
@@ -90,7 +90,7 @@ class LossTask:
     """
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     direct: float
     quadrature: float
     law: IronLossLaw
@@ -100,8 +100,7 @@ class LossTask:
 def losses_stage(
     case: FieldCase,
     flux_map: FluxMap,
-    winding: WindingOutcome,
-    windings: WindingInputs,
+    driven: DrivenMachine,
     inputs: LossInputs,
     workers: Workers,
 ) -> LossMap:
@@ -109,15 +108,15 @@ def losses_stage(
 
     Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
     """
-    law, wound = loss_law(inputs), winding.wound
-    largest = _LARGEST * wound.equivalent_turns * winding.limits.current_peak
+    law, wound = loss_law(inputs), driven.wound
+    grid = LossGrid.of(wound.machine.rotor, _LARGEST * wound.equivalent_turns * driven.limits.current_peak)
     resistivity = inputs.magnet_resistivity
     tasks = {
-        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid(largest)
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid.points
     }
     found = workers.map("losses", losses_at_current, tasks)
-    operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
-    losses = power_losses(operating, wound, table_of(largest, list(found.values())), flux_map.data)
+    operating = both_senses(flux_map, driven)
+    losses = power_losses(operating, wound, grid.table(list(found.values())), flux_map.data)
     return LossMap(
         plane_dataset(losses),
         law,
@@ -144,16 +143,13 @@ def losses_at_current(task: LossTask) -> FieldLosses:
     return field_losses(model, point, task.law, resistivity=task.resistivity)
 
 
-def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> OperatingMap:
-    """Least currents on the flux map over torques from generating to motoring and speeds up to the last one reached.
-
-    fastest: [rad/s]
-    """
-    machine = winding.wound.on_map(flux_map.data)
-    envelope = torque_speed_envelope(machine, winding.limits, np.linspace(0.0, fastest, _SPEEDS))
+def both_senses(flux_map: FluxMap, driven: DrivenMachine) -> OperatingMap:
+    """Least currents on the flux map over torques from generating to motoring and speeds up to the last one reached."""
+    machine, limits = driven.wound.on_map(flux_map.data), driven.limits
+    envelope = torque_speed_envelope(machine, limits, np.linspace(0.0, driven.fastest, _SPEEDS))
     top = float(envelope.speed[np.flatnonzero(np.isfinite(envelope.torque))[-1]])
-    torque = torques_of(winding.peak_torque)
-    return operating_map(machine, winding.limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
+    torque = torques_of(float(peak_torque(machine, limits)))
+    return operating_map(machine, limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
 
 
 def torques_of(peak: float) -> np.ndarray:

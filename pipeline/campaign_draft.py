@@ -164,7 +164,7 @@ class MachineBench(Bench):
 
     def draft(self, designed: Designed) -> Draft:
         wound = designed.winding.wound
-        tooth_coils = wound.coil_pitch == 1 and 3 * wound.coils_in_series == wound.machine.slots
+        tooth_coils = wound.coil_pitch == 1 and 3 * wound.coils_in_series == wound.dimensions.slots
         if not tooth_coils or wound.design.connection != SERIES_STAR:
             raise StudyError(
                 "the machine bench knows a coil on every tooth, all of a phase in series and in star; this is "
@@ -262,7 +262,7 @@ _DIMENSIONS = (
 
 def _machine_device(designed: Designed) -> tuple[Entry, ...]:
     wound, magnet = designed.winding.wound, design_magnet(designed.study)
-    machine = wound.machine
+    machine = wound.dimensions
     pattern = "radial" if isinstance(machine.magnetisation, RadialMagnetisation) else "parallel"
     return (
         Entry("model", '"machine"'),

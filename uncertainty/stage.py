@@ -9,7 +9,7 @@ from drivetrain.matching import Matcher, MatchInputs, MatchOutcome
 from drivetrain.outcome import Outcome
 from drivetrain.requirements import Linkage, Requirements
 from electrical.winding_stage import WindingOutcome
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from optimisation.fits import SectionFits
 from tasks import Workers
 from thermal.stage import HeatOutcome
@@ -28,7 +28,7 @@ class Uncertainty:
 
 def uncertainty_stage(
     found: ToleranceOutcome,
-    case: FieldCase,
+    case: FamilyCase,
     fits: SectionFits,
     matched: MatchOutcome,
     requirements: Requirements,
