@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from math import gcd, hypot, pi
-from typing import Annotated, Protocol, get_args, get_type_hints
+from typing import Annotated, ClassVar, Protocol, get_args, get_type_hints
 
 import numpy as np
 
@@ -138,13 +138,19 @@ class Rotor(Part):
 
 
 class MagnetOnAxis(Rotor):
-    """One magnet on the axis of every pole, as it is magnetised."""
+    """One magnet on the axis of every pole, as it is magnetised.
+
+    gap_outside: whether the gap lies outside of the magnets
+    """
 
     magnetisation: Magnetisation
+    gap_outside: ClassVar[bool] = True
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int = 0) -> np.ndarray:
         """Of the pattern [rad], of the shape of position_angle [rad], any shape; axis: of the pole [rad]"""
-        return self.magnetisation.direction_angle(position_angle, axis)
+        return self.magnetisation.direction_angle(
+            position_angle, axis, self.pitch if self.gap_outside else -self.pitch
+        )
 
 
 class DrawnMachine(Protocol):

@@ -19,7 +19,7 @@ from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_connection import SERIES_STAR
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
-from geometry.magnetisation import RadialMagnetisation
+from geometry.magnetisation import PATTERNS
 from magnetostatics.flux_map_stage import FluxMap
 from materials.conductor import Conductor
 from study.errors import StudyError
@@ -263,7 +263,7 @@ _DIMENSIONS = (
 def _machine_device(designed: Designed) -> tuple[Entry, ...]:
     wound, magnet = designed.winding.wound, design_magnet(designed.study)
     machine = wound.dimensions
-    pattern = "radial" if isinstance(machine.magnetisation, RadialMagnetisation) else "parallel"
+    pattern = next(name for name, one in PATTERNS.items() if one == machine.magnetisation)
     return (
         Entry("model", '"machine"'),
         Entry("slots", str(machine.slots)),

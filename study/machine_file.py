@@ -15,7 +15,7 @@ from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
 from geometry.kinds import ROTORS, STATORS, Kinds
-from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import PATTERNS, Magnetisation
 from geometry.moves import Move
 from geometry.parts import ComposedMachine, Part, part_units
 from geometry.winding import WindingLayout, star_of_slots
@@ -30,7 +30,6 @@ from units import to_si
 
 VARIABLES = "variables"
 MACHINES = Path(__file__).resolve().parent.parent / "machines"
-_MAGNETISATIONS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 # Sections and keys beside those of the two parts; those with a value may be left out.
 _OTHERS: dict[str, dict[str, Any]] = {
     "machine": {"title": "", "active_length_mm": None},
@@ -278,6 +277,6 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
 
 
 def _magnetisation(table: _Table, section: str, name: object) -> Magnetisation:
-    if name not in _MAGNETISATIONS:
-        raise table.wrong(section, f"magnetisation = {name!r} is unknown; take {' or '.join(_MAGNETISATIONS)}")
-    return _MAGNETISATIONS[str(name)]
+    if name not in PATTERNS:
+        raise table.wrong(section, f"magnetisation = {name!r} is unknown; take {' or '.join(PATTERNS)}")
+    return PATTERNS[str(name)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from geometry.errors import GeometryError, in_mm
 from geometry.magnetisation import PARALLEL, Magnetisation
@@ -25,6 +26,7 @@ class OuterMagnets(MagnetOnAxis):
     air_radius: Length
     arc_fraction: Share  # of the pole pitch, below 1
     magnetisation: Magnetisation = PARALLEL
+    gap_outside: ClassVar[bool] = False
 
     @property
     def cup_radius(self) -> float:
