@@ -95,7 +95,7 @@ def search_section(found: KindOutcome | None) -> Section | None:
         f"Nm; {best.tooth:.3g} T in the teeth and {best.back_iron:.3g} T in the back iron, where "
         f"{found.search.limit:g} T is allowed (as drawn {drawn.tooth:.3g} and {drawn.back_iron:.3g} T), at a current "
         f"angle of {best.current_angle / DEGREE:.0f}°; at the angle of the largest torque, which the sheet is for, the "
-        "iron may be further saturated. Wire fills the slots as far as it did; its diameter need not be one that is sold."
+        "iron may be further saturated. Wire fills the slots as far as it did, of a diameter that need not be sold."
     )
     rows = [
         {"variable": move.name, "moves": ", ".join(".".join(one) for one in move.dimensions),
