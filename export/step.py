@@ -96,7 +96,7 @@ def _pieces(curve: Curve) -> list[Curve]:
     if isinstance(curve, Line):
         return [curve]
     count = ceil(abs(curve.sweep) / _LONGEST_ARC)
-    return [curve.part(k / count, 1 / count) for k in range(count)]
+    return [curve.part(k / count, (k + 1) / count) for k in range(count)]
 
 
 def _point(place: complex) -> int:

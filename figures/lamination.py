@@ -86,7 +86,7 @@ def _points(curve: Curve) -> Iterable[complex]:
     if not isinstance(curve, Arc):
         return (curve.start,)
     chords = max(2, int(abs(curve.sweep) / _CHORD))
-    return (curve.part(step / chords, 1 / chords).start for step in range(chords))
+    return (curve.at(step / chords) for step in range(chords))
 
 
 # ---- dimensions -----------------------------------------------------------------------------------------------------

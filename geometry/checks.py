@@ -26,7 +26,8 @@ def check_machine(machine: DrawnMachine) -> None:
 
 
 def _check_numbers(part: Any) -> None:
-    lengths = {name: value for name, value in vars(part).items() if isinstance(value, float)}
+    free: frozenset[str] = getattr(part, "of_any_sign", frozenset())
+    lengths = {name: value for name, value in vars(part).items() if isinstance(value, float) and name not in free}
     for name, value in lengths.items():
         if not isfinite(value) or value <= 0:
             raise GeometryError(f"{name} must be a positive finite number, found {value}: correct {name}")

@@ -32,6 +32,28 @@ class Line:
     end: complex
 
     @property
+    def length(self) -> float:
+        """[m]"""
+        return abs(self.end - self.start)
+
+    def at(self, share: float) -> complex:
+        """A place on it x + jy [m]; share: 0 at its start, 1 at its end, dimensionless"""
+        return self.start + share * (self.end - self.start)
+
+    def part(self, first: float, last: float) -> Line:
+        """From one place on it to another; first, last: shares, dimensionless, falling to run backwards"""
+        return Line(self.at(first), self.at(last))
+
+    def turned(self, angle: float) -> Line:
+        """About the axis by an angle [rad]."""
+        return Line(self.start * rect(1.0, angle), self.end * rect(1.0, angle))
+
+    @property
+    def mirrored(self) -> Line:
+        """At the x axis."""
+        return Line(self.start.conjugate(), self.end.conjugate())
+
+    @property
     def swept(self) -> float:
         """Area that the ray from the axis sweeps [m^2], positive counter-clockwise."""
         return (self.start.conjugate() * self.end).imag / 2
@@ -66,12 +88,34 @@ class Arc:
     @property
     def start(self) -> complex:
         """First point x + jy [m]."""
-        return self.centre + rect(self.radius, self.first)
+        return self.at(0.0)
 
     @property
     def end(self) -> complex:
         """Last point x + jy [m]."""
-        return self.centre + rect(self.radius, self.first + self.sweep)
+        return self.at(1.0)
+
+    @property
+    def length(self) -> float:
+        """[m]"""
+        return abs(self.radius * self.sweep)
+
+    def at(self, share: float) -> complex:
+        """A place on it x + jy [m]; share: 0 at its start, 1 at its end, dimensionless"""
+        return self.centre + rect(self.radius, self.first + share * self.sweep)
+
+    def part(self, first: float, last: float) -> Arc:
+        """From one place on it to another; first, last: shares, dimensionless, falling to run backwards"""
+        return replace(self, first=self.first + first * self.sweep, sweep=(last - first) * self.sweep)
+
+    def turned(self, angle: float) -> Arc:
+        """About the axis by an angle [rad]."""
+        return replace(self, first=self.first + angle, centre=self.centre * rect(1.0, angle))
+
+    @property
+    def mirrored(self) -> Arc:
+        """At the x axis."""
+        return Arc(self.radius, -self.first, -self.sweep, self.centre.conjugate())
 
     @property
     def is_circle(self) -> bool:
@@ -98,10 +142,6 @@ class Arc:
         sum_of_squares = radius**2 + distance**2
         constant = radius * sum_of_squares * self.sweep + distance * (sum_of_squares + 2 * radius**2) * cosine
         return radius / 4 * (constant + 2 * radius * distance**2 * square)
-
-    def part(self, start: float, share: float) -> Arc:
-        """The arc of a share of it from a place on it, 0 at its start and 1 at its end, dimensionless."""
-        return replace(self, first=self.first + start * self.sweep, sweep=share * self.sweep)
 
     def joined(self, other: Curve) -> Curve | None:
         """One arc in the place of this and the next, None where they make a corner."""
@@ -219,7 +259,7 @@ class _Ring:
 def _loop(drawing: Drawing, corners: tuple[str, ...]) -> list[Curve]:
     """Curves of a region, counter-clockwise."""
     curves = [_curve(drawing, start, end) for start, end in zip(corners, corners[1:] + corners[:1])]
-    return curves if Contour(tuple(curves)).area > 0 else [_backwards(one) for one in reversed(curves)]
+    return curves if Contour(tuple(curves)).area > 0 else [one.part(1.0, 0.0) for one in reversed(curves)]
 
 
 def _curve(drawing: Drawing, start: str, end: str) -> Curve:
@@ -234,27 +274,10 @@ def _arc(start: complex, end: complex, centre: complex) -> Arc:
     return Arc(abs(spoke), phase(spoke), phase((end - centre) / spoke), centre)
 
 
-def _backwards(curve: Curve) -> Curve:
-    if isinstance(curve, Line):
-        return Line(curve.end, curve.start)
-    return replace(curve, first=curve.first + curve.sweep, sweep=-curve.sweep)
-
-
 def _placed(curve: Curve, copy: int, pitch: float) -> Curve:
     """A curve of the half cell in one copy; even ones are mirrored at the axis, and so run backwards."""
-    turned = copy // 2 * pitch
-    if copy % 2 == 0:
-        curve = _mirrored(_backwards(curve))
-    turn = rect(1.0, turned)
-    if isinstance(curve, Line):
-        return Line(curve.start * turn, curve.end * turn)
-    return replace(curve, first=curve.first + turned, centre=curve.centre * turn)
-
-
-def _mirrored(curve: Curve) -> Curve:
-    if isinstance(curve, Line):
-        return Line(curve.start.conjugate(), curve.end.conjugate())
-    return Arc(curve.radius, -curve.first, -curve.sweep, curve.centre.conjugate())
+    drawn = curve.part(1.0, 0.0).mirrored if copy % 2 == 0 else curve
+    return drawn.turned(copy // 2 * pitch)
 
 
 def _outer(curves: list[Curve]) -> Iterator[Curve]:

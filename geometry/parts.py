@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from math import gcd, hypot, pi
-from typing import Annotated, ClassVar, Protocol, get_args, get_type_hints
+from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -35,7 +35,12 @@ class Rim:
 
 
 class Part:
-    """Stator or rotor, a ring of equal pitches, each symmetric about its axis."""
+    """Stator or rotor, a ring of equal pitches, each symmetric about its axis.
+
+    of_any_sign: names of its numbers that need not be positive
+    """
+
+    of_any_sign: ClassVar[frozenset[str]] = frozenset()
 
     @property
     def pitch(self) -> float:
@@ -261,4 +266,8 @@ class ComposedMachine(Pitches):
 def part_units(cls: type[Part]) -> dict[str, str]:
     """Drawing units of the fields of a part by their names, empty for a pure number."""
     hints = get_type_hints(cls, include_extras=True)
-    return {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
+    return {one.name: _unit(hints[one.name]) for one in fields(cls)}  # type: ignore[arg-type]  # a part is a dataclass
+
+
+def _unit(hint: Any) -> str:
+    return str(get_args(hint)[1]) if get_origin(hint) is Annotated else ""

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from materials.errors import MaterialError
 from units import MILLIMETRE
 
@@ -49,3 +51,14 @@ def gauge(copper_diameter: float, grade: int) -> Gauge:
     raise MaterialError(
         f"no wire of {copper_diameter / MILLIMETRE:g} mm is in the table of IEC 60317-0-1, 0.1 to 2 mm; take {sold} mm"
     )
+
+
+def any_gauge(copper_diameter: float, grade: int) -> Gauge:
+    """The wire of a bare diameter [m] of a machine that is there, enamel between that of its neighbours in the table.
+
+    Raises MaterialError outside the table.
+    """
+    overall = tuple(gauge(one, grade).outer_diameter for one in DIAMETERS)
+    if not DIAMETERS[0] <= copper_diameter <= DIAMETERS[-1]:
+        return gauge(copper_diameter, grade)  # says what there is
+    return Gauge(copper_diameter, float(np.interp(copper_diameter, DIAMETERS, overall)))

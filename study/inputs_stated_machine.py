@@ -18,7 +18,7 @@ from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMapGrid
 from magnetostatics.model import MachineMaterials
 from materials.conductor import COPPER
-from materials.enamelled_wire import gauge
+from materials.enamelled_wire import any_gauge
 from study.machine_file import MachineFile
 
 _GRADE = 1  # of the enamel
@@ -53,7 +53,7 @@ def kind_search(read: MachineFile) -> KindSearch:
 
 def wire(read: MachineFile) -> Wire:
     """Of the winding, its copper at the temperature that the file states."""
-    size = gauge(read.number("winding", "wire_diameter_mm"), _GRADE)
+    size = any_gauge(read.number("winding", "wire_diameter_mm"), _GRADE)
     resistivity = float(COPPER.resistivity(read.number("drive", "winding_temperature_degC")))
     return Wire(size.copper_diameter, size.outer_diameter, resistivity)
 

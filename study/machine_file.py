@@ -17,6 +17,8 @@ from geometry.half_cell import MeshDensity
 from geometry.kinds import ROTORS, STATORS, Kinds
 from geometry.magnetisation import PATTERNS, Magnetisation
 from geometry.moves import Move
+from geometry.outline import Curve
+from geometry.outline_file import read_outline
 from geometry.parts import ComposedMachine, Part, part_units
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.flux_map_stage import ANGLES, CURRENTS
@@ -268,12 +270,22 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
     value = stated[key]
     if one.name == "magnetisation":
         return _magnetisation(table, section, value)
+    if one.name == "outline":
+        return _outline(table, section, value)
     number = _number(table, section, key, value)
     if one.type == "int":
         if number != int(number):
             raise table.wrong(section, f"{key} = {value!r} is not a whole number")
         return int(number)
     return to_si(key, number)[1]
+
+
+def _outline(table: _Table, section: str, stated: object) -> tuple[Curve, ...]:
+    """Of a DXF file, ``"rotor.dxf"`` or one layer, ``"rotor.dxf:cut"``; its path counts from the machine's file."""
+    if not isinstance(stated, str):
+        raise table.wrong(section, f'outline = {stated!r} is no file; write outline = "rotor.dxf" or "rotor.dxf:layer"')
+    name, _, layer = stated.partition(":")
+    return read_outline(table.path.parent / name, layer or None)
 
 
 def _magnetisation(table: _Table, section: str, name: object) -> Magnetisation:

@@ -61,7 +61,7 @@ WRONG = {
     "text": ("magnet_length_mm = 1.287", 'magnet_length_mm = "thin"', "magnet_length_mm = 'thin' is not a number"),
     "not finite": ("magnet_length_mm = 1.287", "magnet_length_mm = nan", "is not a number"),
     "half a pole": ("poles = 12", "poles = 12.5", "poles = 12.5 is not a whole number"),
-    "magnetisation": ('"parallel"', '"halbach"', "take parallel or radial"),
+    "magnetisation": ('"parallel"', '"axial"', "take parallel or radial or halbach"),
     "section": ("[mesh]", "[mash]", "did you mean mesh"),
     "turns": ("turns_per_coil = 8\n", "", "[winding] lacks turns_per_coil; add it"),
     "steel": ('"curves/M400-50A_bh.csv"', '"M1"', "unknown steel 'M1'"),
