@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from actuator.compiled import MASS, VELOCITY
 from actuator.linear import require_stable
 from actuator.model import IDEAL, Actuator
 from actuator.parts import RigidMount
@@ -19,7 +20,7 @@ from vehicle.damping import DamperCurve
 from vehicle.equations import equations, largest_step, require_stable_law, stored_energy
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 from vehicle.models import Vehicle
-from vehicle.motion import MASS, SEEN, VELOCITY, WORK, WORKS, Equations, follow
+from vehicle.motion import SEEN, WORK, WORKS, Equations, follow
 from vehicle.road import FlatRoad, Road
 
 Kept = TypeVar("Kept")
