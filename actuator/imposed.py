@@ -9,7 +9,7 @@ import numpy as np
 from actuator.compiled import MASS, TORQUE, VELOCITY, ActuatorNumbers, compiled
 from actuator.errors import ActuatorError
 from actuator.model import Actuator
-from actuator.step import LOST, STATES, Imposed, carry, parts_of, rates
+from actuator.step import LOST, STATES, Imposed, carry, pieces, rates, stable_step
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def imposed_motion(
     columns = [np.ascontiguousarray(one, dtype=float) for one in (time, stroke, velocity, torque)]
     _require_alike(*columns)
     step = float(columns[0][1] - columns[0][0])
-    parts = parts_of(actuator, step, finest)
+    parts = pieces(step, stable_step(actuator) if finest is None else finest)
     states, answers = _impose(actuator.numbers, step, parts, *columns[1:])
     if not np.isfinite(states).all():
         raise ActuatorError(f"the actuator's motion has no bounds with steps of {step / parts:g} s; give finer ones")

@@ -91,10 +91,14 @@ def carry(actuator: ActuatorNumbers, step: Imposed, parts: int, state: np.ndarra
     return rates(actuator, step, 1.0, state, slopes[0])
 
 
-def parts_of(actuator: Actuator, duration: float, finest: float | None = None) -> int:
-    """Pieces that a step is integrated in; duration [s]; finest: largest piece [s], None: what stays stable."""
-    largest = _STABLE / fastest_rate(actuator) if finest is None else finest
-    return max(ceil(duration / largest), 1)
+def stable_step(actuator: Actuator) -> float:
+    """Largest step that the integration stays stable with [s]."""
+    return _STABLE / fastest_rate(actuator)
+
+
+def pieces(duration: float, finest: float) -> int:
+    """Into how many equal pieces a step [s] is divided; finest: largest piece [s]."""
+    return max(ceil(duration / finest), 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,16 +123,13 @@ class Moment:
 class SteppedActuator:
     """An actuator that is asked step by step, velocity and motor force held over each.
 
-    step: between two instants [s]; the integration divides it where the actuator is faster
     With the velocity held the stroke goes straight, so that the answer comes near that to a smooth motion as the step
     does. Raises ActuatorError for a rigid mount with a mass behind it, which a jump of the velocity asks too much of.
     """
 
     actuator: Actuator
-    step: float
 
     def __post_init__(self) -> None:
-        require_positive("stepped actuator", step=self.step)
         if isinstance(self.actuator.mount, RigidMount) and self.actuator.equivalent_mass > 0:
             raise ActuatorError(
                 "stepped actuator: expected a compliant mount in front of the equivalent mass, found a rigid one, "
@@ -140,8 +141,8 @@ class SteppedActuator:
         return self.actuator.numbers
 
     @cached_property
-    def _parts(self) -> int:
-        return parts_of(self.actuator, self.step)
+    def _finest(self) -> float:
+        return stable_step(self.actuator)
 
     def at_rest(self, stroke: float = 0.0) -> Moment:
         """Nothing moves and nothing pulls; stroke: of output and equivalent mass [m]."""
@@ -149,16 +150,18 @@ class SteppedActuator:
         state[MASS] = stroke
         return Moment(state, stroke, 0.0, Answer(0.0, 0.0, 0.0))
 
-    def after(self, moment: Moment, velocity: float, force: float) -> Moment:
+    def after(self, moment: Moment, velocity: float, force: float, duration: float) -> Moment:
         """One step on.
 
         velocity: of the output over the step [m/s]; force: asked of the motor over the step, at the wheel [N]
-        The force becomes a torque with the ratio at the beginning. Raises ActuatorError where either is not a number.
+        duration: of the step [s]; the integration divides it where the actuator is faster
+        The force becomes a torque with the ratio at the beginning. Raises ActuatorError where an input is not a number.
         """
+        require_positive("stepped actuator", duration=duration)
         torque = force * float(self.actuator.ratio.at(moment.mass_stroke))
-        end, state = moment.stroke + self.step * velocity, moment.state.copy()
-        imposed = Imposed(self.step, moment.stroke, end, velocity, velocity, torque, torque)
-        answer = carry(self._numbers, imposed, self._parts, state)
+        end, state = moment.stroke + duration * velocity, moment.state.copy()
+        imposed = Imposed(duration, moment.stroke, end, velocity, velocity, torque, torque)
+        answer = carry(self._numbers, imposed, pieces(duration, self._finest), state)
         if not np.isfinite(state).all():
             raise ActuatorError(
                 f"stepped actuator: expected a finite velocity and force, found {velocity:g} m/s and {force:g} N that "

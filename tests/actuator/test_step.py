@@ -10,7 +10,7 @@ from actuator.errors import ActuatorError
 from actuator.imposed import imposed_motion
 from actuator.model import Actuator
 from actuator.parts import RIGID, CompliantMount, MechanicalLoss, fixed_ratio
-from actuator.step import Imposed, SteppedActuator, carry, parts_of
+from actuator.step import Imposed, SteppedActuator, carry, pieces, stable_step
 from tests.actuator.test_imposed import ROUGH, sine
 from tests.actuator.thesis import RATIO, prototype
 
@@ -19,10 +19,10 @@ pytestmark = pytest.mark.physics
 
 def stepped(actuator, step, velocity, force):
     """Moments after each held velocity and force."""
-    one = SteppedActuator(actuator, step)
+    one = SteppedActuator(actuator)
     moments = [one.at_rest()]
     for v, f in zip(velocity, force):
-        moments.append(one.after(moments[-1], v, f))
+        moments.append(one.after(moments[-1], v, f, step))
     return moments[1:]
 
 
@@ -58,7 +58,7 @@ def test_step_by_step_is_the_whole_record(actuator):
     force = [whole.force[0]]
     for k in range(1, time.size):
         imposed = Imposed(step, x[k - 1], x[k], v[k - 1], v[k], torque[k - 1], torque[k])
-        force.append(carry(actuator.numbers, imposed, parts_of(actuator, step), state).force)
+        force.append(carry(actuator.numbers, imposed, pieces(step, stable_step(actuator)), state).force)
     assert (np.array(force) == whole.force).all()
     assert state[3:] == pytest.approx([whole.mount_work[-1], whole.gear_work[-1], whole.friction_work[-1],
                                        whole.motor_work[-1]], rel=1e-12)  # fmt: skip
@@ -79,10 +79,10 @@ def test_held_inputs_come_near_the_smooth_motion_with_the_step():
 
 
 def test_senseless_steps_are_refused():
-    device = SteppedActuator(prototype(), 1e-3)
+    device = SteppedActuator(prototype())
     with pytest.raises(ActuatorError, match="expected a finite velocity and force, found nan m/s"):
-        device.after(device.at_rest(), float("nan"), 0.0)
-    with pytest.raises(ActuatorError, match="step must be above zero"):
-        SteppedActuator(prototype(), 0.0)
+        device.after(device.at_rest(), float("nan"), 0.0, 1e-3)
+    with pytest.raises(ActuatorError, match="duration must be above zero"):
+        device.after(device.at_rest(), 0.0, 0.0, 0.0)
     with pytest.raises(ActuatorError, match="expected a compliant mount"):
-        SteppedActuator(replace(prototype(), mount=RIGID), 1e-3)
+        SteppedActuator(replace(prototype(), mount=RIGID))
