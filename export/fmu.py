@@ -6,13 +6,12 @@ Linux and Windows on 64 bits; the tool that loads it needs a Python with numpy, 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from shutil import copytree, ignore_patterns
 from tempfile import TemporaryDirectory
-
-import sys
 
 from pythonfmu.builder import FmuBuilder
 
@@ -37,7 +36,7 @@ def write_fmu(path: Path, actuator: Actuator, terminals: Terminals) -> None:
         description = Path(folder) / _DESCRIPTION
         description.write_text(text, encoding="utf-8")
         rooms = [copytree(_ROOT / room, Path(folder) / room, ignore=ignore_patterns("__pycache__")) for room in _ROOMS]
-        FmuBuilder.build_FMU(_SLAVE, path, project_files=[description, *rooms], needsExecutionTool=True)
+        FmuBuilder.build_FMU(_SLAVE, path, project_files=[description, *rooms])
 
 
 @contextmanager

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
 from actuator.errors import ActuatorError
@@ -33,7 +35,7 @@ class AirgapActuator(Fmi2Slave):
     author = "Airgap"
     description = "Electromechanical suspension actuator: mapped motor, gears, linkage, friction, mount with play"
 
-    def __init__(self, **given):
+    def __init__(self, **given: Any) -> None:
         super().__init__(**given)
         device, self.terminals = actuator_of((Path(self.resources) / DESCRIPTION).read_text(encoding="utf-8"))
         self.stepped = SteppedActuator(device)
@@ -55,12 +57,19 @@ class AirgapActuator(Fmi2Slave):
                 )
             )
         stroke = "stroke in which it rests at the beginning [m]"
-        parameter = {"causality": Fmi2Causality.parameter, "variability": Fmi2Variability.fixed}
-        self.register_variable(Real("initial_stroke", description=stroke, start=0.0, **parameter))
+        parameter, fixed = Fmi2Causality.parameter, Fmi2Variability.fixed
+        self.register_variable(
+            Real("initial_stroke", causality=parameter, variability=fixed, description=stroke, start=0.0)
+        )
         for name, (unit, words) in OUTPUTS.items():
-            said = f"{words} [{unit}]"
-            getter = lambda name=name: seen(self, self.moment)[name]  # noqa: E731
-            self.register_variable(Real(name, causality=Fmi2Causality.output, description=said, getter=getter))
+            self.register_variable(
+                Real(
+                    name,
+                    causality=Fmi2Causality.output,
+                    description=f"{words} [{unit}]",
+                    getter=lambda name=name: seen(self, self.moment)[name],
+                )
+            )
 
     def exit_initialization_mode(self) -> None:
         """At rest in the initial stroke."""
@@ -73,8 +82,10 @@ class AirgapActuator(Fmi2Slave):
             velocity, force = self.inputs["velocity"], self.inputs["force_demand"]
             self.moment = self.stepped.after(self.moment, velocity, force, step_size)
         except ActuatorError as wrong:
-            self.log(f"at {current_time:g} s: {wrong}", Fmi2Status.error)
-            return False
+            sentence = f"at {current_time:g} s: {wrong}"
+            self.log(sentence, Fmi2Status.error)  # many tools show the log only when they are asked to
+            print(sentence, file=sys.stderr)
+            raise
         return True
 
     def _require_inputs(self) -> None:
