@@ -43,7 +43,10 @@ def export_fmu(options: argparse.Namespace) -> None:
 def designed_unit(study: Study, results: Results) -> tuple[Actuator, Terminals]:
     """The actuator of a study that has been run. Raises StudyError where it has none, or no result of it."""
     if not drives(study):
-        raise StudyError(f"{study.path.name}: an actuator is exported for a vehicle, found none; give [vehicle].")
+        raise StudyError(
+            f"{study.path.name}: an actuator is exported where a vehicle is driven, here none is; "
+            'set chain.requirements = "vehicle".'
+        )
     energy: EnergyOutcome = artefact(study, results, "energy")
     winding, flux_map = (artefact(study, results, name) for name in ("winding", "flux_map"))
     return energy.own.actuator, designed_terminals(winding, flux_map)

@@ -222,7 +222,7 @@ def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.
     follow(e, state, road[:1], step, parts, states[:1], seen[:1])
     for k in range(0, len(road) - 1, every):
         here = slice(k, k + every + 1)
-        e.held[0] = run.command.law(_felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
+        e.held[0] = run.command.law(felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
         follow(e, state, road[here], step, parts, states[here], seen[here])
     return states, seen
 
@@ -237,7 +237,8 @@ def _samples_between(controller: Controller, step: float) -> int:
     return every
 
 
-def _felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
+def felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
+    """What a controller is told; time [s]; state, seen: of the compiled motion [SI], (size,) and (seen,); count: axles."""
     of_axles = seen[len(SEEN) :].reshape(4, count)
     stroke, moving = of_axles[1, -1], of_axles[2, -1]
     wheel, wheel_rate = state[1 + count], state[3 + 2 * count]
