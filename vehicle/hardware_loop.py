@@ -212,5 +212,6 @@ class _Model:
         return felt(sample * self.step, self.state, self.seen[1], self.axles)
 
     def move(self, road: np.ndarray, force: float) -> None:
+        """One sample on; road: heights at its ends [m], (2, n); force: on the suspension [N]."""
         self.equations.held[0] = force
         follow(self.equations, self.state, road, self.step, self.parts, self.states, self.seen)
