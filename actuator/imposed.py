@@ -89,9 +89,7 @@ def _impose(
     state[MASS], state[VELOCITY], state[TORQUE] = stroke[0], velocity[0], torque[0]
     for k in range(stroke.size):
         to = max(k, 1)
-        ends = Imposed(
-            step, stroke[to - 1], stroke[to], velocity[to - 1], velocity[to], torque[to - 1], torque[to]
-        )
+        ends = Imposed(step, stroke[to - 1], stroke[to], velocity[to - 1], velocity[to], torque[to - 1], torque[to])
         found = rates(actuator, ends, 0.0, state, change) if k == 0 else carry(actuator, ends, parts, state)
         states[k] = state
         answers[k, 0], answers[k, 1], answers[k, 2] = found.force, found.torque, found.speed

@@ -34,9 +34,9 @@ class Terminals:
             )
 
     def current_at(self, torque: float | np.ndarray) -> np.ndarray:
-        """Peak phase current, signed as the torque [A], of that shape; torque: [Nm], any shape."""
+        """Peak phase current [A], of that shape, negative where the torque is; torque: [Nm], any shape."""
         return np.asarray(np.sign(torque) * np.interp(np.abs(torque), self.torque, self.current))
 
     def torque_of(self, current: float | np.ndarray) -> np.ndarray:
-        """Torque of a signed peak phase current [Nm], of that shape; current: [A], any shape."""
+        """Torque of the rotor [Nm], of that shape; current: signed peak of a phase [A], any shape."""
         return np.asarray(np.sign(current) * np.interp(np.abs(current), self.current, self.torque))

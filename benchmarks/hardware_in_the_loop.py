@@ -5,8 +5,7 @@ with one around the load cell, and with one around the observer, each at the 100
 Where FMPy is installed (extra ``fmi``) the exported unit takes the place of the bench as well, after its checks.
 
 Writes results/reference/benchmarks/hardware_in_the_loop.csv (and .png): force errors, step times, jitter, missed
-deadlines. The times are those of a process of Linux without guarantees; its nice value and the load of the machine
-stand beside them.
+deadlines. The times are those of an ordinary Linux; scheduling and load of the machine stand beside them.
 """
 
 from __future__ import annotations
@@ -48,7 +47,7 @@ from vehicle.hardware_loop import (
     run_loop,
 )
 from vehicle.indices import rms
-from vehicle.real_time import Pace
+from vehicle.real_time import Pace, first_in_line
 from vehicle.road import IsoRoad, roughness_of_class
 
 FOLDER = PROJECT / "results" / "reference" / "benchmarks"
@@ -81,8 +80,8 @@ class Case:
     bench: str = "stepped actuator"
 
 
-def driven(case: Case, device: Device) -> LoopRun:
-    """One paced run."""
+def driven(case: Case, device: Device) -> tuple[LoopRun, str]:
+    """One paced run, and how it was scheduled."""
     time = np.arange(0.0, DURATION + SAMPLE, SAMPLE)
     road = IsoRoad(roughness_of_class("B"), 0).heights(time, CRUISE_SPEED)[:, None]
     platform = Platform(
@@ -92,10 +91,11 @@ def driven(case: Case, device: Device) -> LoopRun:
         SAMPLE,
     )
     run_loop(platform, device, HydraulicAxis(AXIS), 0 * road[:20])  # compiles, at rest
-    return run_loop(platform, device, HydraulicAxis(AXIS), road, Pace(SAMPLE))
+    with first_in_line() as scheduling:
+        return run_loop(platform, device, HydraulicAxis(AXIS), road, Pace(SAMPLE)), scheduling
 
 
-def row(case: Case, run: LoopRun) -> dict[str, object]:
+def row(case: Case, run: LoopRun, scheduling: str) -> dict[str, object]:
     """Of the table."""
     found: dict[str, object] = {
         "bench": case.bench, "low_level": case.low_level, "damping_Ns_per_m": case.damping,
@@ -103,19 +103,19 @@ def row(case: Case, run: LoopRun) -> dict[str, object]:
         "force_peak_N": float(np.abs(run.force).max()),
         "comfort_g": rms(weighted_acceleration(run.acceleration, SAMPLE)) / GRAVITY,
     }  # fmt: skip
-    machine = {"nice": os.nice(0), "load": os.getloadavg()[0], "cores": os.cpu_count()}
+    machine = {"scheduling": scheduling, "load": os.getloadavg()[0], "cores": os.cpu_count()}
     return found | (run.timing.row() if run.timing is not None else {}) | machine
 
 
-def simulated() -> Iterator[tuple[Case, LoopRun]]:
+def simulated() -> Iterator[tuple[Case, LoopRun, str]]:
     """Every low-level control at every damping."""
     for damping in DAMPINGS:
         for kind in (NONE, CELL, OBSERVED):
             case = Case(kind, damping)
-            yield case, driven(case, SimulatedDevice(DEVICE, SAMPLE, ENCODER))
+            yield case, *driven(case, SimulatedDevice(DEVICE, SAMPLE, ENCODER))
 
 
-def exported() -> Iterator[tuple[Case, LoopRun]]:
+def exported() -> Iterator[tuple[Case, LoopRun, str]]:
     """The same bench as an exported unit, checked and run by FMPy."""
     if find_spec("fmpy") is None:
         print("FMPy is not installed: the exported unit is left out; .venv/bin/pip install -e '.[fmi]' adds it")
@@ -124,7 +124,7 @@ def exported() -> Iterator[tuple[Case, LoopRun]]:
         path = Path(folder) / "actuator.fmu"
         write_fmu(path, DEVICE, TERMINALS)
         case = Case(CELL, DAMPINGS[0], "exported unit in FMPy")
-        yield case, driven(case, UnitDevice(path, Path(folder) / "unit"))
+        yield case, *driven(case, UnitDevice(path, Path(folder) / "unit"))
 
 
 class UnitDevice:
@@ -166,7 +166,7 @@ def main() -> None:
     table = pd.DataFrame([row(*one) for one in runs])
     FOLDER.mkdir(parents=True, exist_ok=True)
     table.to_csv(FOLDER / "hardware_in_the_loop.csv", index=False, float_format="%.6g")
-    draw({(case.low_level, case.damping): run for case, run in runs if case.bench == "stepped actuator"},
+    draw({(case.low_level, case.damping): run for case, run, _ in runs if case.bench == "stepped actuator"},
          FOLDER / "hardware_in_the_loop.png")  # fmt: skip
     print(table.to_string(index=False))
     if len(runs) > 2 * 3:

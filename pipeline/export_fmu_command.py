@@ -37,7 +37,7 @@ def export_fmu(options: argparse.Namespace) -> None:
         raise StudyError(f"{path}: exists already; it is not overwritten, name another file with --out.")
     actuator, terminals = designed_unit(study, results)
     write_atomically(path, partial(write_fmu, actuator=actuator, terminals=terminals))
-    print(f"wrote {path}: velocity [m/s] and force_demand [N] in, force on the suspension and electrical quantities out")
+    print(f"wrote {path}: velocity [m/s] and force_demand [N] in, force and electrical quantities out")
 
 
 def designed_unit(study: Study, results: Results) -> tuple[Actuator, Terminals]:

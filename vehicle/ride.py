@@ -238,7 +238,7 @@ def _samples_between(controller: Controller, step: float) -> int:
 
 
 def felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
-    """What a controller is told; time [s]; state, seen: of the compiled motion [SI], (size,) and (seen,); count: axles."""
+    """What a controller is told; time [s]; state [SI], (size,), seen [SI], (seen,): of the motion; count: of axles."""
     of_axles = seen[len(SEEN) :].reshape(4, count)
     stroke, moving = of_axles[1, -1], of_axles[2, -1]
     wheel, wheel_rate = state[1 + count], state[3 + 2 * count]

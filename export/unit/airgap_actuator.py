@@ -1,4 +1,4 @@
-"""The actuator as a co-simulation slave of FMI 2: this file goes into the exported unit, with ``actuator/`` beside it."""
+"""The actuator as a co-simulation slave of FMI 2: this file goes into the exported unit, ``actuator/`` beside it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
+from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+from pythonfmu.enums import Fmi2Status
+
 from actuator.errors import ActuatorError
 from actuator.step import Moment, SteppedActuator
 from actuator.text import actuator_of
-from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
-from pythonfmu.enums import Fmi2Status
 
 DESCRIPTION = "actuator.json"
 INPUTS = {
@@ -95,7 +96,7 @@ class AirgapActuator(Fmi2Slave):
             raise ActuatorError(f"actuator: expected a value for {' and '.join(missing)}, found none; connect it")
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
-        """The description of pythonfmu with what it leaves out: units, and that outputs are known from the beginning."""
+        """The description of pythonfmu with what it leaves out: units, and the outputs as known from the beginning."""
         root = super().to_xml(model_options or {})
         units = {**INPUTS, **OUTPUTS, "initial_stroke": ("m", "")}
         definitions = Element("UnitDefinitions")
