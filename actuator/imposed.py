@@ -66,7 +66,10 @@ def imposed_motion(
     if not np.isfinite(states).all():
         raise ActuatorError(f"the actuator's motion has no bounds with steps of {step / parts:g} s; give finer ones")
     force, drawn, speed = answers.T
-    return ImposedHistory(*columns[:3], force, states[:, MASS], states[:, VELOCITY], speed, drawn, *states[:, LOST:].T)
+    time, stroke, velocity, _ = columns
+    mount, gears, friction, motor = states[:, LOST:].T
+    x, v = states[:, MASS], states[:, VELOCITY]
+    return ImposedHistory(time, stroke, velocity, force, x, v, speed, drawn, mount, gears, friction, motor)
 
 
 def _require_alike(time: np.ndarray, *others: np.ndarray) -> None:

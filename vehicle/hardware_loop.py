@@ -193,7 +193,9 @@ def run_loop(
             pace.done()
         if lost := not abs(signals.force) < _UNBOUNDED:
             break
-    return LoopRun(*np.array(rows).T, None if pace is None else pace.timing, lost)
+    time, stroke, moved, wanted_forces, force, motor, acceleration = np.array(rows).T
+    timing = None if pace is None else pace.timing
+    return LoopRun(time, stroke, moved, wanted_forces, force, motor, acceleration, timing, lost)
 
 
 class _Model:

@@ -10,6 +10,8 @@ from xml.etree.ElementTree import Element, SubElement
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Status
 
+import numpy as np
+
 from actuator.errors import ActuatorError
 from actuator.step import Moment, SteppedActuator
 from actuator.text import actuator_of
@@ -114,7 +116,7 @@ class AirgapActuator(Fmi2Slave):
 def seen(slave: AirgapActuator, moment: Moment) -> dict[str, float]:
     """The outputs at a moment, by name."""
     force, torque, speed = moment.answer
-    power = torque * speed - float(slave.stepped.actuator.drive.loss.at(torque, speed))
+    power = torque * speed - float(slave.stepped.actuator.drive.loss.at(np.array(torque), np.array(speed)))
     return {
         "force": force,
         "stroke": moment.stroke,
