@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
+import numpy as np
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Status
-
-import numpy as np
 
 from actuator.errors import ActuatorError
 from actuator.step import Moment, SteppedActuator
