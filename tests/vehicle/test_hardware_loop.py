@@ -1,5 +1,6 @@
 """The actuator on a bench in a loop with the vehicle: as one simulation, unstable and cured, and paced by the clock."""
 
+from functools import cache
 from time import perf_counter
 
 import numpy as np
@@ -30,11 +31,15 @@ from vehicle.road import IsoRoad, roughness_of_class
 
 pytestmark = pytest.mark.physics
 SAMPLE, DEVICE, ROAD = 5e-4, prototype(), IsoRoad(roughness_of_class("B"), 0)
-LOOP = loop_for(tangent_plant(DEVICE, 300.0), 100.0, np.radians(50.0))
+
+
+@cache
+def force_loop():
+    return loop_for(tangent_plant(DEVICE, 300.0), 100.0, np.radians(50.0))
 
 
 def low_level(kind):
-    loop = SampledLoop(LOOP, SAMPLE, PEAK_TORQUE / RATIO)
+    loop = SampledLoop(force_loop(), SAMPLE, PEAK_TORQUE / RATIO)
     if kind is NoLoop:
         return NoLoop()
     return kind(loop) if kind is LoadCellLoop else kind(loop, ForceObserver(DEVICE, SAMPLE, 200.0))
