@@ -16,10 +16,12 @@ from numba import config, njit
 Record = Any  # of numpy, whose fields the compiled code reads as attributes
 
 # numba keeps compiled code beside its source and asks whether that one file has changed, not those that it calls. All
-# of them are therefore asked for here: their folder bears the hash of every file with compiled code.
-SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "vehicle/motion.py")
+# of them are therefore asked for here, as far as they are there (an exported actuator comes without a vehicle): their
+# folder bears the hash of every file with compiled code.
+SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "actuator/step.py", "vehicle/motion.py")
 _PROJECT = Path(__file__).resolve().parent.parent
-_HASH = sha256(b"".join((_PROJECT / source).read_bytes() for source in SOURCES)).hexdigest()[:16]
+_THERE = [_PROJECT / source for source in SOURCES if (_PROJECT / source).is_file()]
+_HASH = sha256(b"".join(source.read_bytes() for source in _THERE)).hexdigest()[:16]
 _FOLDER = _PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}"
 config.CACHE_DIR = str(_FOLDER)  # type: ignore[attr-defined]  # numba has no annotations
 # A division by zero gives inf, as in numpy, which makes the code smaller and faster.
@@ -32,18 +34,19 @@ _NAMES = (
     "driven", "driving", "nominal_ratio", "time_constant",
 )  # fmt: skip
 NUMBERS = np.dtype([("rigid", np.bool_), ("passive", np.bool_), *((name, np.float64) for name in _NAMES)])
+MASS, VELOCITY, TORQUE = range(3)  # of a state: where the equivalent mass is, how fast, and the torque of the rotor
 
 
 class ActuatorNumbers(NamedTuple):
     """An actuator for the compiled equations.
 
     numbers: record of the type ``NUMBERS``
-    ratio: strokes [m] and tau_t [m/rad], (2, n); torque: speeds [rad/s], driving and braking torques [Nm], (3, m)
+    ratio: strokes [m] and tau_t [m/rad], (2, n); limit: speeds [rad/s], driving and braking torques [Nm], (3, m)
     """
 
     numbers: Record
     ratio: np.ndarray
-    torque: np.ndarray
+    limit: np.ndarray
 
 
 class Inside(NamedTuple):
@@ -172,7 +175,55 @@ def inside(part: Record, ratio: np.ndarray, stroke: float, rate: float, x: float
     return Inside(force, acceleration, 0.0, damper * (rate - v), gears * v, friction * v, motor * v)
 
 
+class Inner(NamedTuple):
+    """Where the equivalent mass is [m], its velocity [m/s], and the ratio tau_t there [m/rad]."""
+
+    stroke: float
+    velocity: float
+    ratio: float
+
+
 @compiled
-def rotor_speed(ratio: np.ndarray, x: float, v: float) -> float:
-    """[rad/s] with the equivalent mass at x [m] and v [m/s]; ratio: as in ``ActuatorNumbers`` [m, m/rad], (2, n)."""
-    return v / at(x, ratio, 1)
+def inner_motion(part: Record, ratio: np.ndarray, own: np.ndarray, stroke: float, rate: float) -> Inner:
+    """Of the state of an actuator at a stroke [m] and its rate [m/s]; a rigid mount leaves it to them.
+
+    ratio: as in ``ActuatorNumbers`` [m, m/rad], (2, n); own: the state [SI], (3,) at least
+    """
+    x, v = (stroke, rate) if part.rigid else (own[MASS], own[VELOCITY])
+    return Inner(x, v, at(x, ratio, 1))
+
+
+class Response(NamedTuple):
+    """What an actuator does at one instant.
+
+    inside: its forces and powers; torque: of the rotor [Nm]; aimed: torque that the drive goes to [Nm]
+    """
+
+    inside: Inside
+    torque: float
+    aimed: float
+
+
+@compiled
+def respond(
+    part: Record,
+    ratio: np.ndarray,
+    limit: np.ndarray,
+    inner: Inner,
+    stroke: float,
+    rate: float,
+    command: float,
+    own: np.ndarray,
+    change: np.ndarray,
+) -> Response:
+    """What an actuator does with the motion of its output and a torque command: the equations of ``actuator.model``.
+
+    ratio, limit: as in ``ActuatorNumbers`` [m, m/rad], (2, n), and [rad/s, Nm], (3, m); stroke [m], rate: of it [m/s]
+    command: for the rotor [Nm]; own, change: a state and its rates [SI], (3,) at least
+    """
+    aimed, lags = limited_torque(part, limit, inner.velocity / inner.ratio, command), part.time_constant > 0
+    torque = own[TORQUE] if lags else aimed
+    change[TORQUE] = (aimed - torque) / part.time_constant if lags else 0.0
+    found = inside(part, ratio, stroke, rate, inner.stroke, inner.velocity, torque)
+    change[MASS], change[VELOCITY] = (0.0, 0.0) if part.rigid else (inner.velocity, found.acceleration)
+    return Response(found, torque, aimed)

@@ -42,6 +42,16 @@ class Ratio:
         """tau_t [m/rad], of that shape; stroke: [m], any shape."""
         return np.asarray(np.interp(stroke, self.stroke, self.value))
 
+    def angle(self, stroke: float) -> float:
+        """Of the rotor from static equilibrium [rad], the integral of dz / tau_t(z), exact; stroke: [m]."""
+        low, high = sorted((0.0, stroke))
+        z = np.array([low, *(knot for knot in self.stroke if low < knot < high), high])
+        tau = self.at(z)
+        rise = np.diff(np.log(tau))
+        level = np.where(rise == 0, 1.0, rise)
+        mean = np.where(rise == 0, tau[1:], np.diff(tau) / level)  # logarithmic mean of a ratio that goes straight
+        return float(np.copysign(np.sum(np.diff(z) / mean), stroke))
+
 
 def fixed_ratio(value: float) -> Ratio:
     """The same ratio over the whole stroke; value: tau_t [m/rad]."""

@@ -134,6 +134,7 @@ def identify_loops(
     """
 
     def answers(values: Mapping[str, float]) -> list[np.ndarray]:
+        """Forces of all loops with these parameters [N], (m,) each."""
         device = actuator_of(values, ratio)
         return [_answer(device, values[TORQUE_CONSTANT], loop) for loop in loops]
 

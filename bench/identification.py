@@ -136,6 +136,7 @@ def identify(
     target = np.concatenate(list(measured))
 
     def missing(logarithms: np.ndarray) -> np.ndarray:
+        """Weighted residuals of all records at these logarithms of the unknowns, dimensionless, (readings,)."""
         return (target - np.concatenate(list(model(_values(unknowns, logarithms))))) * weights
 
     bounds = np.log([[u.smallest for u in unknowns], [u.largest for u in unknowns]])

@@ -89,6 +89,7 @@ def _frequency(record: Record, stroke: np.ndarray) -> float:
     _require_resolved(record, start)
 
     def left(frequency: float) -> float:
+        """Squares of the stroke that a sine of this frequency [Hz] leaves [m^2]."""
         return float(np.sum(np.square(_harmonics(stroke, frequency, record.step)[1])))
 
     return float(

@@ -34,6 +34,7 @@ def fit_lumped(start: LumpedActuator, points: Sequence[ImpedancePoint]) -> tuple
     )
 
     def answers(values: Mapping[str, float]) -> list[np.ndarray]:
+        """Logarithms of the impedances with these parameters, of Ns/m, (points,)."""
         device = lumped_with(start, values)
         return [np.log(np.abs(device.impedance(frequency, shunt, 2 * pi * frequency * amplitude)))]
 

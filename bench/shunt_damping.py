@@ -163,9 +163,11 @@ class _FreeLaw:
 
     @property
     def can_be_fitted(self) -> bool:
+        """Whether there is a point for each free number."""
         return len(self.start) <= len(self.to.shunt)
 
     def judged(self, points: ShuntPoints) -> JudgedLaw:
+        """The law, fitted to its own points, at these."""
         values = _fitted(self.build, tuple(self.start.values()), self.to)
         predicted = np.asarray(self.build(*values).static_damping(points.shunt))
         words = "all points" if self.to is points else "points with a resistance"
@@ -196,6 +198,7 @@ def _fitted(build: Callable[..., LumpedActuator], start: tuple[float, ...], poin
     """Least squares of the logarithm; the free numbers are above zero, so their logarithms are what is free."""
 
     def missing(logarithms: np.ndarray) -> np.ndarray:
+        """Logarithms of predicted over measured damping, dimensionless, (points,)."""
         return np.log(build(*np.exp(logarithms)).static_damping(points.shunt) / points.damping)
 
     return tuple(np.exp(least_squares(missing, np.log(start), xtol=1e-12, ftol=1e-12).x).tolist())

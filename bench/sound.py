@@ -49,6 +49,7 @@ def a_weighting(frequency: np.ndarray) -> np.ndarray:
     poles = [-low, -low, -second, -third, -high, -high]
 
     def answer(at: np.ndarray) -> np.ndarray:
+        """Response before it is made 1 at 1 kHz, complex, (n,); at: [Hz], (n,)."""
         return freqs_zpk([0.0] * 4, poles, 1.0, 2 * pi * np.atleast_1d(at))[1]
 
     return (answer(np.asarray(frequency).ravel()) / np.abs(answer(np.array([1000.0])))).reshape(np.shape(frequency))

@@ -29,6 +29,8 @@ COMMANDS = {
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
     "take-over": Command("pipeline.take_over_command", "add_take_over",
                          "make a study of a design that was found over all stages at once"),
+    "export-fmu": Command("pipeline.export_fmu_command", "add_export_fmu",
+                          "write the actuator of a study for other simulation tools (FMI 2, co-simulation)"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
     "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",
                              "write the bench campaign of a design, to be measured"),

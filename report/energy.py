@@ -19,6 +19,7 @@ from figures.files import File, figure_file, picture_name, table_file
 from figures.report import Picture, Remark, Section, Table
 from units import FACTORS, GRAVITY
 from vehicle.demands import RideCase
+from vehicle.designed import PROTOTYPE_LAG, PROTOTYPE_LOOP, PROTOTYPE_MOUNT
 from vehicle.energy import Scatter, scatter
 from vehicle.energy_stage import (
     QUASI_IDEAL,
@@ -56,6 +57,7 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
         "Energy on the road",
         (
             _text(found),
+            *_stand_ins(found),
             *(Remark(line) for line in remarks(found)),
             Table(power_table(found), f"Mean powers over the random road; ± over the roads. All of it is in {TABLE}."),
             Picture(
@@ -71,6 +73,18 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
             *_printed(case),
         ),
     )
+
+
+def _stand_ins(found: EnergyOutcome) -> Iterator[str]:
+    """Which parts of the actuator are another's, because the study states none of its own."""
+    own = found.own
+    taken = {"mount": own.actuator.mount == PROTOTYPE_MOUNT, "force loop": own.loop == PROTOTYPE_LOOP,
+             "torque lag": own.actuator.drive.time_constant == PROTOTYPE_LAG}  # fmt: skip
+    if names := [name for name, same in taken.items() if same]:
+        yield (
+            f"The numbers of {', '.join(names)} are those of the thesis's automotive prototype (Tables 4.2 and 4.5), "
+            "stand-ins until this actuator is measured; [actuator] in the study states its own."
+        )
 
 
 def remarks(found: EnergyOutcome) -> Iterator[str]:

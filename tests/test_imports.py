@@ -33,7 +33,7 @@ ALLOWED = {
     "bench": {"electrical", "actuator", "vehicle", "workbench", "figures"},
     "study": _DESIGN,
     "figures": _DESIGN - {"optimisation", "materials"},
-    "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain"},
+    "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain", "actuator"},
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
 from actuator.drive import MappedLoss, MappedMotor, TorqueLimit
 from actuator.model import Actuator
 from actuator.parts import CompliantMount, GearEfficiency, MechanicalLoss, Ratio, fixed_ratio
+from actuator.terminals import Terminals
 from control.force_loop import ForceLoop
 from drivetrain.linkage_stage import LinkageFront
 from drivetrain.outcome import Outcome
 from electrical.braking import strongest_braking
-from electrical.dq import torque_speed_envelope
+from electrical.dq import mtpa_currents, torque_speed_envelope
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
 from losses.stage import LossMap
@@ -30,6 +32,7 @@ PROTOTYPE_MOUNT = CompliantMount(
 )
 PROTOTYPE_LOOP = ForceLoop(proportional=7.4, integral=1000.0, derivative=5.9e-3, filter=6283.0)
 PROTOTYPE_LAG = 1e-3  # s
+_CURRENTS = 40  # of the table of the terminals
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,15 @@ def designed_actuator(
         gears=GearEfficiency(*gears.train.efficiency),
     )
     return DesignedActuator(actuator, inputs.loop)
+
+
+def designed_terminals(winding: WindingOutcome, flux_map: FluxMap) -> Terminals:
+    """Bus voltage, and the phase current of each torque at the least current, up to the overload."""
+    machine, limits = winding.wound.on_map(flux_map.data), winding.limits
+    current = np.linspace(0.0, float(limits.current_peak), _CURRENTS + 1)
+    torque = machine.torque(*mtpa_currents(machine, current[1:]))
+    bus = sqrt(3) * float(limits.voltage_peak)  # ``DriveLimits.from_dc_bus``
+    return Terminals(bus, (0.0, *np.asarray(torque).tolist()), tuple(current.tolist()))
 
 
 def ratio_over_stroke(front: LinkageFront, gears: GearboxOutcome) -> Ratio:

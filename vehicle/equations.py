@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from actuator.compiled import Record
+from actuator.compiled import MASS, VELOCITY, Record
 from actuator.model import IDEAL, Actuator
 from actuator.parts import CompliantMount
 from control.force_loop import ForceLoop
@@ -15,7 +15,7 @@ from vehicle.commands import Command, Feedback
 from vehicle.damping import DamperCurve
 from vehicle.errors import VehicleError
 from vehicle.models import Vehicle
-from vehicle.motion import AXLE, BODY, CONTROL, FEEDS_BACK, FOLLOWS_CURVE, HELD, MASS, VELOCITY, Equations, jacobian
+from vehicle.motion import AXLE, BODY, CONTROL, FEEDS_BACK, FOLLOWS_CURVE, HELD, Equations, jacobian
 
 _STABLE = 2.0  # step times the fastest rate; the limit of the Runge-Kutta rule is 2.78 when damped, 2.83 when not
 # Largest step with an actuator that has states of its own [s]: its contact and its limits come and go within some

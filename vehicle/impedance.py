@@ -94,6 +94,7 @@ class LumpedActuator:
             return driver
 
         def missing(logarithm: np.ndarray) -> np.ndarray:
+            """Logarithm of the velocity that follows from a velocity [m/s], over the latter's."""
             inner = self._inner(frequency, shunt, np.exp(logarithm))
             return np.log(driver / np.abs(1 + inner / mount)) - logarithm
 

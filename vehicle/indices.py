@@ -69,6 +69,7 @@ def summary(history: RideHistory) -> RideSummary:
     felt, holding = history.weighted_acceleration, history.road_holding
 
     def point(k: int) -> WorkingPoint:
+        """Force and velocity at a sample."""
         return WorkingPoint(float(force[k]), float(velocity[k]))
 
     return RideSummary(

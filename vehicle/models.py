@@ -193,10 +193,12 @@ class Motorcycle(Vehicle):
 
     @cached_property
     def axles(self) -> tuple[Axle, ...]:
+        """Front and rear."""
         return self.front, self.rear
 
     @property
     def passive_dampers(self) -> tuple[DamperCurve, ...]:
+        """Of the fork."""
         return (self.front_damper,)
 
     @property
@@ -246,11 +248,13 @@ class QuarterCar(Vehicle):
 
     @cached_property
     def axles(self) -> tuple[Axle, ...]:
+        """The only one, under the body."""
         tyre = Tyre(self.tyre_stiffness)
         return (Axle(0.0, self.sprung_mass, self.unsprung_mass, self.spring_stiffness, tyre, self.stops),)
 
     @property
     def passive_dampers(self) -> tuple[DamperCurve, ...]:
+        """None: the only axle is the actuated one."""
         return ()
 
     @property

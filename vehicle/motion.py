@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actuator.compiled import Record, at, compiled, inside, limited_torque
+from actuator.compiled import TORQUE, Inner, Record, Response, compiled, inner_motion, inside, respond
 
 BODY = np.dtype([(name, np.float64) for name in ("mass", "pitch_inertia", "cog_height", "propulsion")])
 _AXLE = ("position", "unsprung_mass", "spring", "bump", "rebound", "stop", "tyre", "load")
@@ -18,9 +18,9 @@ FOLLOWS_CURVE, FEEDS_BACK, HELD = 0, 1, 2  # where the wanted force comes from
 _GAINS = ("proportional", "integral", "derivative", "filter")
 CONTROL = np.dtype([("source", np.int64), ("closed", np.bool_), *((name, np.float64) for name in _GAINS)])
 
-# Behind the coordinates and their rates a state holds these, from ``own`` on: equivalent mass, its rate, torque of the
-# rotor, integrated and filtered error of the force loop; then works since the start.
-MASS, VELOCITY, TORQUE, INTEGRAL, FILTERED = range(5)
+# Behind the coordinates and their rates a state holds these, from ``own`` on: those of the actuator, the integrated and
+# the filtered error of the force loop, then works since the start.
+INTEGRAL, FILTERED = TORQUE + 1, TORQUE + 2
 WORKS = ("road", "propulsion", "passive", "shaft", "mount", "gears", "friction", "motor")
 WORK = 5
 OWN = WORK + len(WORKS)
@@ -149,31 +149,64 @@ def loop_output(control: Record, error: float, own: np.ndarray) -> float:
 
 
 @compiled
+def force_error(e: Equations, inner: Inner, wanted: float, stroke: float, moving: float, torque: float) -> float:
+    """What the force at the suspension lacks of the wanted one [N], for the loop; 0 without one.
+
+    stroke [m], moving: its rate [m/s]; torque: of the rotor [Nm]
+    """
+    if not e.control.closed:
+        return 0.0
+    return wanted - inside(e.part, e.ratio, stroke, moving, inner.stroke, inner.velocity, torque).force
+
+
+@compiled
+def loop_moves(control: Record, error: float, rests: bool, own: np.ndarray, change: np.ndarray) -> None:
+    """Rates of the loop's states; error [N]; rests: whether the integral does; own, change: [SI], (own,).
+
+    Conditional integration with dynamic saturation (section 4.2.1): it rests while the loop asks for too much.
+    """
+    change[INTEGRAL] = 0.0 if rests else error
+    change[FILTERED] = control.filter * (error - own[FILTERED])
+
+
+@compiled
 def act(e: Equations, state: np.ndarray, change: np.ndarray, seen: np.ndarray) -> None:
     """What the actuator does with a state, after ``ride``; state, change: [SI], (size,); seen: [SI], (seen,)."""
-    count, part = e.axles.size, e.part
+    count, first = e.axles.size, 2 * (2 + e.axles.size)
     stroke, moving = seen[len(SEEN) + 2 * count - 1], seen[len(SEEN) + 3 * count - 1]
-    first = 2 * (2 + count)
     own, own_change = state[first:], change[first:]
-    x, v = (stroke, moving) if part.rigid else (own[MASS], own[VELOCITY])
-    tau, lags = at(x, e.ratio, 1), part.time_constant > 0
+    inner = inner_motion(e.part, e.ratio, own, stroke, moving)
     wanted = wanted_force(e, state, stroke, moving)
-    asked, error = wanted, 0.0
-    if e.control.closed:
-        error = wanted - inside(part, e.ratio, stroke, moving, x, v, own[TORQUE]).force
-        asked = loop_output(e.control, error, own)
-    aimed = limited_torque(part, e.limit, v / tau, tau * asked)
-    # Conditional integration with dynamic saturation (section 4.2.1): it rests while the loop asks for too much.
-    own_change[INTEGRAL] = 0.0 if aimed != tau * asked and asked * error > 0 else error
-    own_change[FILTERED] = e.control.filter * (error - own[FILTERED])
-    torque = own[TORQUE] if lags else aimed
-    own_change[TORQUE] = (aimed - own[TORQUE]) / part.time_constant if lags else 0.0
-    found = inside(part, e.ratio, stroke, moving, x, v, torque)
-    force = push(e, found.force, found.inertia, state, change)
-    own_change[MASS], own_change[VELOCITY] = (0.0, 0.0) if part.rigid else (v, found.acceleration)
-    for k, power in enumerate((force * moving, found.mount, found.gears, found.friction, found.motor)):
-        own_change[WORK + 3 + k] = power
-    for k, value in enumerate((change[2 + count], force, wanted, torque / tau, v / tau, torque)):
+    error = force_error(e, inner, wanted, stroke, moving, own[TORQUE])
+    asked = loop_output(e.control, error, own) if e.control.closed else wanted
+    command = inner.ratio * asked
+    found = respond(e.part, e.ratio, e.limit, inner, stroke, moving, command, own, own_change)
+    loop_moves(e.control, error, found.aimed != command and asked * error > 0, own, own_change)
+    force = push(e, found.inside.force, found.inside.inertia, state, change)
+    show(found, inner, force, moving, wanted, change[2 + count], own_change, seen)
+
+
+@compiled
+def show(
+    found: Response,
+    inner: Inner,
+    force: float,
+    moving: float,
+    wanted: float,
+    acceleration: float,
+    change: np.ndarray,
+    seen: np.ndarray,
+) -> None:
+    """Write down the powers as rates of the works, and what is seen of the moment.
+
+    force: at the suspension [N]; moving: rate of the stroke [m/s]; wanted: force [N]; acceleration: of the body [m/s^2]
+    change: of the actuator's state [SI], (own,); seen: [SI], (seen,)
+    """
+    inside = found.inside
+    for k, power in enumerate((force * moving, inside.mount, inside.gears, inside.friction, inside.motor)):
+        change[WORK + 3 + k] = power
+    motor_force, speed = found.torque / inner.ratio, inner.velocity / inner.ratio
+    for k, value in enumerate((acceleration, force, wanted, motor_force, speed, found.torque)):
         seen[k] = value
 
 

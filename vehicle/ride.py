@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from actuator.compiled import MASS, VELOCITY
 from actuator.linear import require_stable
 from actuator.model import IDEAL, Actuator
 from actuator.parts import RigidMount
@@ -19,7 +20,7 @@ from vehicle.damping import DamperCurve
 from vehicle.equations import equations, largest_step, require_stable_law, stored_energy
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 from vehicle.models import Vehicle
-from vehicle.motion import MASS, SEEN, VELOCITY, WORK, WORKS, Equations, follow
+from vehicle.motion import SEEN, WORK, WORKS, Equations, follow
 from vehicle.road import FlatRoad, Road
 
 Kept = TypeVar("Kept")
@@ -221,7 +222,7 @@ def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.
     follow(e, state, road[:1], step, parts, states[:1], seen[:1])
     for k in range(0, len(road) - 1, every):
         here = slice(k, k + every + 1)
-        e.held[0] = run.command.law(_felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
+        e.held[0] = run.command.law(felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
         follow(e, state, road[here], step, parts, states[here], seen[here])
     return states, seen
 
@@ -236,7 +237,8 @@ def _samples_between(controller: Controller, step: float) -> int:
     return every
 
 
-def _felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
+def felt(time: float, state: np.ndarray, seen: np.ndarray, count: int) -> Felt:
+    """What a controller is told; time [s]; state [SI], (size,), seen [SI], (seen,): of the motion; count: of axles."""
     of_axles = seen[len(SEEN) :].reshape(4, count)
     stroke, moving = of_axles[1, -1], of_axles[2, -1]
     wheel, wheel_rate = state[1 + count], state[3 + 2 * count]

@@ -78,6 +78,7 @@ class IsoRoad(Road):
 
     @property
     def random_seed(self) -> int:
+        """The seed."""
         return self.seed
 
     def cutoff(self, speed: float) -> float:

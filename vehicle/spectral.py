@@ -97,6 +97,7 @@ def _covariance_of_step(ride: LinearRide, step: float) -> np.ndarray:
 
 def _indices(ride: LinearRide, covariance: np.ndarray) -> RideIndices:
     def root(row: np.ndarray) -> float:
+        """RMS of an output [its unit]; row: over the states [SI], (8,)."""
         return sqrt(max(row @ covariance @ row, 0.0))
 
     return RideIndices(

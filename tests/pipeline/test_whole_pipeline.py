@@ -4,11 +4,13 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 
 import pandas as pd
 import pytest
 from small_studies import MOTORCYCLE, small
 
+from actuator.text import actuator_of
 from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.stages import graph_of
@@ -108,6 +110,20 @@ def test_what_was_designed_goes_back_into_the_vehicle(results):
     assert all(abs(one.closure) < 0.01 for case in energy.cases if not case.swings for one in case.energies)
     assert all(one.copper[0] < one.copper[-1] < 155 for one in energy.temperatures) and energy.temperatures
     assert energy.own.actuator.equivalent_mass == outcome.limits.equivalent_mass
+
+
+def test_the_actuator_is_exported_and_answers_as_the_study_says(study, results, tmp_path):
+    path = tmp_path / "actuator.fmu"
+    done = airgap("export-fmu", study, "--out", path)
+    assert done.returncode == 0 and f"wrote {path}" in done.stdout, done.stderr
+    with zipfile.ZipFile(path) as unit:
+        actuator, terminals = actuator_of(unit.read("resources/actuator.json").decode())
+    own, winding = results.load("energy").own.actuator, results.load("winding")
+    assert (actuator.ratio, actuator.mount, actuator.drive.limit) == (own.ratio, own.mount, own.drive.limit)
+    assert terminals.torque_of(winding.limits.current_peak) == pytest.approx(winding.peak_torque, rel=0.02)
+    assert terminals.bus_voltage == pytest.approx(90.0)
+    again = airgap("export-fmu", study, "--out", path)
+    assert again.returncode == 2 and "exists already" in again.stderr + again.stdout
 
 
 def test_the_length_makes_up_for_whole_turns_and_teeth(results):
