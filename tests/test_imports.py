@@ -29,7 +29,7 @@ ALLOWED = {
     "actuator": {"control"},
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "effects": {"materials", "geometry"},
-    "workbench": {"effects", *_FIELD, "figures"},
+    "workbench": {"effects", *_FIELD, "losses", "study", "figures"},
     "bench": {"electrical", "actuator", "vehicle", "workbench", "figures"},
     "study": _DESIGN,
     "figures": _DESIGN - {"optimisation", "materials"},
