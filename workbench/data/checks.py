@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from workbench.data.column_units import factor, split_unit
 from workbench.data.repeats import matched_rows
 from workbench.data.table import Campaign, Response, Table
 
@@ -11,6 +12,9 @@ LOUD = 4.0  # standard errors from which a check speaks
 COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
 FREQUENCIES = 8  # of a sweep that says something about causality
 NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
+MIRRORED_ROWS = 6  # on either side, of a torque over angle
+UNLIKE = np.deg2rad(0.6)  # rad, by which its branches may differ
+SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
 CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
 
 
@@ -20,7 +24,7 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     for table in campaign.tables:
         for check in _OF_A_TABLE:
             found += check(table)
-    return tuple(found + _constants(campaign))
+    return tuple(found + _constants(campaign) + _between_lines(campaign) + _positions(campaign))
 
 
 def _repeats_agree(table: Table) -> list[str]:
@@ -58,6 +62,8 @@ def _phase_sum(table: Table) -> list[str]:
     """Three open-circuit phase voltages of a balanced winding add up to a wave of multiples of three only."""
     if not (table.kind == "back_emf" and {"v_a", "v_b", "v_c"} <= set(table.responses)):
         return []
+    if "angle_mech" not in table.conditions:
+        return []  # RMS
     a, b, c = (table.responses[name] for name in ("v_a", "v_b", "v_c"))
     sizes = [np.sqrt(np.mean(r.values**2)) for r in (a, b, c)]
     spread = (max(sizes) - min(sizes)) / np.mean(sizes)
@@ -220,6 +226,84 @@ def _constants(campaign: Campaign) -> list[str]:
     return []
 
 
+def _mirrored(table: Table) -> list[str]:
+    """A rotor that is turned by hand about the angle of no torque, at one direct current, pulls back alike both ways:
+    T(zero + x) = -T(zero - x)."""
+    if table.kind != "locked_rotor" or "torque" not in table.responses or "angle_mech" not in table.conditions:
+        return []
+    currents = [np.round(v, 9) for n, v in table.conditions.items() if n.startswith("i_")]
+    level = np.unique(np.column_stack([np.zeros(table.rows), *currents]), axis=0, return_inverse=True)[1].ravel()
+    found = []
+    for value in range(level.max() + 1):
+        shift = _unlike_branches(table, np.flatnonzero(level == value))
+        if shift is not None:
+            found.append(
+                f"{table.file}: at one current the torque beyond zero is that before it {np.rad2deg(shift):+.1f} deg on, "
+                "though both are zero in one place: a branch of the angle was shifted"
+            )
+    return found
+
+
+def _unlike_branches(table: Table, rows: np.ndarray) -> float | None:
+    """By how much the branch of positive angles lies further from the place without torque than the other one [rad],
+    at the same sizes of torque; None where both are alike or too little is there."""
+    order = rows[np.argsort(table.conditions["angle_mech"][rows])]
+    angle, torque = table.conditions["angle_mech"][order], table.responses["torque"].values[order]
+    torque = torque * np.sign(angle @ torque)
+    up, down = (np.flatnonzero(side) for side in (torque > 0.3 * torque.max(), torque < 0.3 * torque.min()))
+    if min(len(up), len(down)) < MIRRORED_ROWS:
+        return None
+    middle = np.abs(torque) < 0.3 * np.abs(torque).max()
+    zero = float(np.polyfit(torque[middle], angle[middle], 1)[1])
+    ahead = angle[up] - zero - np.interp(torque[up], -torque[down][::-1], zero - angle[down][::-1])
+    shift, scatter = float(np.median(ahead)), float(1.5 * np.median(np.abs(ahead - np.median(ahead))))
+    return shift if abs(shift) > max(LOUD * scatter / np.sqrt(len(up)), UNLIKE) else None
+
+
+def _between_lines(campaign: Campaign) -> list[str]:
+    """Two phases in series have twice the resistance of one."""
+    declared = next((v for k, v in campaign.device.items() if k.startswith("phase_resistance")), None)
+    key = next((k for k in campaign.device if k.startswith("phase_resistance")), "")
+    found = []
+    for table in campaign.tables if isinstance(declared, (int, float)) and declared > 0 else ():
+        readings = [r for n, r in table.responses.items() if n in ("r_ab", "r_bc", "r_ca")]
+        for r in readings[:1] if table.kind == "phase_resistance" else ():
+            phase = declared * factor(split_unit(key.replace("_20degC", ""))[1] or "ohm", key)
+            ratio = float(np.mean([np.mean(one.values) for one in readings])) / phase
+            if abs(ratio - 1) < SAME_RESISTANCE:
+                found.append(
+                    f"{table.file}: between two lines there are {ratio:.2f} times the phase resistance of [device], two "
+                    f"phases in series have twice as much: {key} is that between lines"
+                )
+    return found
+
+
+def _positions(campaign: Campaign) -> list[str]:
+    """The inductance between two lines repeats once a pole."""
+    poles = campaign.device.get("poles")
+    found = []
+    for table in campaign.tables if isinstance(poles, int) and poles > 2 else ():
+        for r in table.responses.values():
+            if table.kind == "inductance" and len(r.name) == 4 and "angle_mech" in table.conditions:
+                order = _strongest(table.conditions["angle_mech"], r.values, 2 * poles)
+                if order is not None and order != poles:
+                    found.append(
+                        f"{table.file}: {r.name} repeats after {360 / order:.3g} deg, the field of {poles} poles after "
+                        f"{360 / poles:.3g} deg: mechanical and electrical angles are exchanged, or the poles are others"
+                    )
+    return found
+
+
+def _strongest(angle: np.ndarray, values: np.ndarray, most: int) -> int | None:
+    """Order of the wave that takes most of the variance, None where none takes half of it."""
+    rest = values - values.mean()
+    left = []
+    for order in range(1, most + 1):
+        waves = np.column_stack([np.cos(order * angle), np.sin(order * angle), np.ones(len(angle))])
+        left.append(float(np.sum((rest - waves @ np.linalg.lstsq(waves, rest, rcond=1e-10)[0]) ** 2)))
+    return 1 + int(np.argmin(left)) if min(left) < 0.5 * float(rest @ rest) else None
+
+
 _OF_A_TABLE = (
-    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
+    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop, _mirrored,
 )  # fmt: skip

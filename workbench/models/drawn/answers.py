@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -10,20 +11,21 @@ import numpy as np
 
 from effects.base import Columns
 from effects.drawn_design import DrawnAsBuilt
-from losses.iron import FrequencyTerms, iron_loss
-from losses.loci import rotor_loci, solve_part, stator_loci
+from losses.iron import FrequencyTerms
 from magnetostatics.flux_linkage import park
-from magnetostatics.model import OperatingPoint
 from materials.conductor import COPPER
 from workbench.models.drawn.expansion import Expansion
 from workbench.models.drawn.field import State
 
-_ORDERS = 36  # least number of angles of an electrical period that a voltage is made of, a multiple of six
+_ORDERS = 36  # angles of an electrical period that a voltage is made of, where the grid has as many
 _POINTS = 6  # of the grid of angles that a value between them is made of
 _SAME = 1e-3  # relative, of currents that are those of an anchor
 _NEAR = 0.3  # relative, of currents that are read off an anchor
 _SCALES = (0.9, 1.0, 1.1)  # of an anchor, that what its size does is taken from
-_LOSS_STEPS = 48  # of an electrical period, for iron loss
+_APART = 4  # steps of the grid between angles at which changes of the drawing are taken: they are small and smooth
+
+
+Triple = tuple[float, float, float]
 
 
 class Anchors:
@@ -32,7 +34,7 @@ class Anchors:
     def __init__(self) -> None:
         self._known: list[np.ndarray] = []
 
-    def of(self, ampere_turns: np.ndarray) -> tuple[tuple[float, float, float], float]:
+    def of(self, ampere_turns: np.ndarray) -> tuple[Triple, float]:
         """The anchor of some ampere-turns (3,) [A], and how many times it they are [1]."""
         for anchor in self._known:
             scale = float(ampere_turns @ anchor / (anchor @ anchor))
@@ -43,7 +45,7 @@ class Anchors:
         return _triple(anchor), 1.0
 
 
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
+def _triple(values: np.ndarray) -> Triple:
     a, b, c = values.tolist()
     return a, b, c
 
@@ -92,16 +94,18 @@ class Answers:
         return found
 
     def _at_currents(self, angle: np.ndarray, ampere_turns: np.ndarray) -> np.ndarray:
+        anchor, scale = self.anchors.of(ampere_turns) if ampere_turns.any() else ((0.0, 0.0, 0.0), 1.0)
+        exact = self._between(angle, anchor, 1, lambda states: self._in_size(states, scale))
+        change = self._between(angle, anchor, _APART, lambda states: self.expansion.change(self.design, states))
+        return exact + scale * change
+
+    def _between(self, angle: np.ndarray, anchor: Triple, apart: int, values: Callable[[list[State]], np.ndarray]):
+        """Values (states, 4) at every ``apart``th angle of the grid made into those at angles (n, 4)."""
         samples = self.expansion.samples
-        if not ampere_turns.any():
-            anchor, scale, period = (0.0, 0.0, 0.0), 1.0, samples.period
-        else:
-            (anchor, scale), period = self.anchors.of(ampere_turns), samples.period
-        places, weights = _around(angle / samples.step)
-        steps, inverse = np.unique(places % period, return_inverse=True)
-        states = [State(int(step), anchor) for step in steps]
-        values = self._in_size(states, scale) + scale * self.expansion.change(self.design, states)
-        return np.einsum("nk,nkq->nq", weights, values[inverse.reshape(places.shape)])
+        places, weights = _around(angle / (apart * samples.step))
+        steps, inverse = np.unique(apart * places % samples.period, return_inverse=True)
+        found = values([State(int(step), anchor) for step in steps])
+        return np.einsum("nk,nkq->nq", weights, found[inverse.reshape(places.shape)])
 
     def _in_size(self, states: list[State], scale: float) -> np.ndarray:
         """Samples at the centre with ``scale`` times the currents of the states (states, 4)."""
@@ -124,7 +128,8 @@ class Answers:
         """
         samples, pairs = self.expansion.samples, self.design.machine.pole_pairs
         period = samples.steps // pairs
-        stride = max(d for d in range(1, period // 6 + 1) if period % (6 * d) == 0 and period // d >= _ORDERS)
+        strides = (d for d in range(2, period // 6 + 1) if period % (6 * d) == 0 and period // d >= _ORDERS)
+        stride = max(strides, default=1)
         states = [State(k * stride, (0.0, 0.0, 0.0)) for k in range(period // stride // 6)]
         sixth = (self.expansion.at_centre(states) + self.expansion.change(self.design, states))[:, 1:]
         whole = _unfolded(sixth)
@@ -141,14 +146,12 @@ class Answers:
 
     @cached_property
     def iron_loss(self) -> FrequencyTerms:
-        """Of stator and rotor at no load over the electrical frequency [W, W s, ...], from the loci of every element
-        of the drawing, in proportion to the square of the fundamental."""
+        """Of stator and rotor at no load over the electrical frequency [W, ...]: of the drawing, in proportion to
+        the square of the fundamental."""
         law = self.design.iron_loss
         if law is None:
             return FrequencyTerms(0.0, 0.0, 0.0)
-        drawn = self.expansion.drawn
-        part = solve_part(self.expansion.samples.model(drawn), OperatingPoint(0.0), _LOSS_STEPS)
-        total = iron_loss(stator_loci(part), law).total + iron_loss(rotor_loci(part), law).total
+        drawn, total = self.expansion.drawn, self.expansion.samples.iron_loss(law)
         as_drawn = Answers(self.expansion.about(drawn), self.anchors, drawn)
         flux = abs(self.waves[1] / self.design.turns / self.design.length / as_drawn.waves[1]) ** 2
         size = float(self.design.length * self.design.stacking_factor * self.design.iron_loss_factor * flux)
@@ -167,7 +170,7 @@ class Answers:
 
     def mean_dq(self, i_d: np.ndarray, i_q: np.ndarray, positions: int = 3) -> np.ndarray:
         """psi_d, psi_q (n, 2) [Wb] at currents along both axes [A] (n,): means over a sixth of an electrical period,
-        without sixth and twelfth orders where three positions make them."""
+        of three positions without sixth and twelfth orders."""
         layout, pairs = self.design.drawing.layout, self.design.machine.pole_pairs
         step = self.expansion.samples.steps // pairs / 6 / positions
         found = np.zeros((len(i_d), 2))

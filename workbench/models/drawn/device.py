@@ -4,6 +4,8 @@ Needed: machine_file, in quotes: a name in ``machines/`` or the path of a file l
 
     phase_resistance_mohm         of a phase at 20 degC
     largest_current_A             of a phase, peak, that is on the bench: flux linkages are mapped up to it
+    slots, poles                  of the file once more, where angles are to be checked
+    remanence_T                   of the magnets where it is not that of the file
     stacking_factor               of steel over the length (1)
     remanence_reference_degC      at which the remanence of the file is stated (20)
     remanence_coefficient_percent_per_K   (-0.11)
@@ -17,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import pi
 
 from effects.drawn_design import Drawing, DrawnAsBuilt
 from geometry.errors import GeometryError
@@ -28,11 +31,12 @@ from study.machine_file import MachineFile, read_machine
 from workbench.data.column_units import split_unit
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.device import numbers
+from workbench.models.device import numbers, without_unit_traps
 
 FILE = "machine_file"
+_COUNTS = ("slots", "poles")
 _OPTIONAL = (
-    "phase_resistance", "largest_current", "stacking_factor", "remanence_reference", "remanence_coefficient",
+    *_COUNTS, "remanence", "phase_resistance", "largest_current", "stacking_factor", "remanence_reference", "remanence_coefficient",
     "magnet_temperature", "end_winding_inductance", "wire_diameter", "wires_in_hand",
 )  # fmt: skip
 _ROOM = 20.0  # degC, where makers state a remanence
@@ -42,10 +46,11 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
     """The machine as drawn. Raises WorkbenchError where file or table cannot be used."""
     try:
         found = read_machine(str(device[FILE]))
-        values = numbers(device, (), _OPTIONAL)
+        values = numbers(without_unit_traps(device), (), _OPTIONAL)
         law = iron_loss_law(str(device["iron_loss_grade"])) if "iron_loss_grade" in device else None
     except (StudyError, GeometryError, MaterialError) as error:
         raise WorkbenchError(f"[device]: {error}") from None
+    _check_counts(found, values)
     drawing = Drawing(
         found.machine, found.layout, found.materials.stator_steel, found.materials.rotor_steel, found.density
     )  # type: ignore[arg-type]
@@ -64,14 +69,21 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
     )
 
 
+def _check_counts(found: MachineFile, values: Mapping[str, float]) -> None:
+    for name in _COUNTS:
+        if name in values and values[name] != (drawn := getattr(found.machine, name)):
+            raise WorkbenchError(f"[device] {name} = {values[name]:g}, but {found.title!r} has {drawn}: correct one of them")
+
+
 def _copper(values: Mapping[str, float]) -> float:
     """Cross-section of a turn [m^2], zero where no wire is declared."""
-    return 0.7853981633974483 * values.get("wire_diameter", 0.0) ** 2 * values.get("wires_in_hand", 1.0)
+    return pi / 4 * values.get("wire_diameter", 0.0) ** 2 * values.get("wires_in_hand", 1.0)
 
 
 def _magnet(found: MachineFile, values: Mapping[str, float]) -> Magnet:
     magnet = replace(
         found.materials.magnet,
+        remanence=values.get("remanence", found.materials.magnet.remanence),
         temperature_coefficient=values.get("remanence_coefficient", -0.0011),
         reference_temperature=values.get("remanence_reference", _ROOM),
     )

@@ -84,7 +84,7 @@ class Expansion:
     """
 
     def __init__(self, samples: FieldSamples, centre: DrawnAsBuilt | None = None):
-        self.samples, self.drawn = samples, in_field(samples.nominal)
+        self.samples, self.drawn, self.drawn_turns = samples, in_field(samples.nominal), samples.nominal.turns
         self.centre = in_field(centre or samples.nominal)
         self._coordinates = tuple(coordinates(self.drawn))
 

@@ -18,7 +18,7 @@ from workbench.models.drawn.answers import Answers
 PHASES = "abc"
 _STILL = 1e-9  # rad/s
 _SMALL = 1.0  # A between lines, of an inductance where the table has no current
-_SHARES = (-1.0, -0.6, -0.25, 0.0, 0.25, 0.6, 1.0)  # of the largest current of a map
+_SHARES = (-1.0, -0.55, -0.25, 0.0, 0.25, 0.55, 1.0)  # of the largest current of a map
 
 Found = dict[str, np.ndarray]
 
@@ -52,16 +52,18 @@ def _flux_linkage(answers: Answers, at: Columns) -> Found:
 
 
 def _inductance(answers: Answers, at: Columns) -> Found:
-    """Change of flux linkage over current: of a phase fed alone, and between the lines A and B with C open."""
-    angle, none = at["angle_mech"], np.zeros(len(at["angle_mech"]))
-    current = at.get("current", none + _SMALL)
-    alone = answers.linkage_change(angle, np.stack([current, none, none], axis=1))
-    lines = answers.linkage_change(angle, np.stack([current, -current, none], axis=1))
-    return {
-        "l_a": alone[:, 0] / current,
-        "l_m": alone[:, 1] / current,
-        "l_ab": (lines[:, 0] - lines[:, 1]) / current,
-    }
+    """Change of flux linkage over current: of phase A fed alone, its mutual one, and between two lines in series."""
+    angle = at["angle_mech"]
+    current = at.get("current", np.full(len(angle), _SMALL))
+
+    def per_current(fed: tuple[int, int, int]) -> np.ndarray:
+        return answers.linkage_change(angle, np.outer(current, fed)) / current[:, None]
+
+    alone = per_current((1, 0, 0))
+    found = {"l_a": alone[:, 0], "l_m": alone[:, 1]}
+    for name, fed in (("l_ab", (1, -1, 0)), ("l_bc", (0, 1, -1)), ("l_ca", (-1, 0, 1))):
+        found[name] = per_current(fed) @ np.array(fed)
+    return found
 
 
 def _phase_resistance(answers: Answers, at: Columns) -> Found:
@@ -130,6 +132,7 @@ def dq_machine(answers: Answers) -> DqMachine:
     largest = answers.design.largest_current
     if not (answers.design.phase_resistance and largest):
         raise WorkbenchError("currents at speed need phase_resistance and largest_current: give them in [device]")
+    largest *= answers.expansion.drawn_turns / answers.design.turns  # the ampere-turns of the drawing
     axis = largest * np.array(_SHARES)
     psi = _map(answers, axis)
     none = len(axis) // 2

@@ -10,7 +10,7 @@ but the resistance takes ``magnet_T``: the remanence follows it, row by row.
                                                                                       currents that turn: its columns
                                                                                       say which
     flux_linkage      angle_mech, i_a, i_b, i_c            -> dpsi_a .., psi_a ..     change by the current, and whole
-    inductance        angle_mech [, current]               -> l_a, l_m, l_ab          of a phase fed alone, its mutual
+    inductance        angle_mech [, current]               -> l_a, l_m, l_ab ..       of a phase fed alone, its mutual
                                                                                       one, and between lines
     phase_resistance  [winding_T]                          -> r_a .., r_ab .., resistance   of a phase, between lines
     drag              speed [, direction]                  -> torque, power           open terminals
@@ -36,6 +36,7 @@ from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option, Progress
 from workbench.models.drawn.answers import Anchors, Answers
+from workbench.models.drawn.copper import doubts_of_resistance
 from workbench.models.drawn.device import FILE, machine_of_device, with_tolerance
 from workbench.models.drawn.expansion import Expansion
 from workbench.models.drawn.field import ROUGH, FieldSamples, Plan
@@ -110,6 +111,10 @@ class DrawnBench(BaseModel):
     def options(self, design: Any, campaign: Campaign) -> list[Option]:
         """What could be measured next."""
         return options(design, campaign.tables)
+
+    def doubts(self, design: DrawnAsBuilt) -> tuple[str, ...]:
+        """Of the phase resistance against the copper that is drawn."""
+        return doubts_of_resistance(design)
 
 
 BASE = DrawnBench()
