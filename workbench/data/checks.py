@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 
 from workbench.data.column_units import factor, split_unit
@@ -12,8 +14,8 @@ LOUD = 4.0  # standard errors from which a check speaks
 COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
 FREQUENCIES = 8  # of a sweep that says something about causality
 NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
-MIRRORED_ROWS = 6  # on either side, of a torque over angle
-UNLIKE = np.deg2rad(0.6)  # rad, by which its branches may differ
+FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance
+UNLIKE = 0.005  # of the range of a condition, by which the same reading may stand at another one
 SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
 CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
 
@@ -24,7 +26,7 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     for table in campaign.tables:
         for check in _OF_A_TABLE:
             found += check(table)
-    return tuple(found + _constants(campaign) + _between_lines(campaign) + _positions(campaign))
+    return tuple(found + _constants(campaign) + _between_lines(campaign) + _positions(campaign) + _same_readings(campaign))
 
 
 def _repeats_agree(table: Table) -> list[str]:
@@ -226,38 +228,32 @@ def _constants(campaign: Campaign) -> list[str]:
     return []
 
 
-def _mirrored(table: Table) -> list[str]:
-    """A rotor that is turned by hand about the angle of no torque, at one direct current, pulls back alike both ways:
-    T(zero + x) = -T(zero - x)."""
-    if table.kind != "locked_rotor" or "torque" not in table.responses or "angle_mech" not in table.conditions:
-        return []
-    currents = [np.round(v, 9) for n, v in table.conditions.items() if n.startswith("i_")]
-    level = np.unique(np.column_stack([np.zeros(table.rows), *currents]), axis=0, return_inverse=True)[1].ravel()
+def _same_readings(campaign: Campaign) -> list[str]:
+    """Two tables with one and the same readings were taken at the same conditions."""
     found = []
-    for value in range(level.max() + 1):
-        shift = _unlike_branches(table, np.flatnonzero(level == value))
-        if shift is not None:
-            found.append(
-                f"{table.file}: at one current the torque beyond zero is that before it {np.rad2deg(shift):+.1f} deg on, "
-                "though both are zero in one place: a branch of the angle was shifted"
-            )
+    for one, other in combinations(campaign.tables, 2):
+        for name in set(one.responses) & set(other.responses) if one.kind == other.kind else ():
+            here, there = (_by_reading(table, name) for table in (one, other))
+            most = min(len(here), len(there))
+            shared = sorted(set(here) & set(there))
+            if most < FEWEST_SHARED or len(shared) < SHARED * most:
+                continue
+            for condition in sorted(set(one.conditions) & set(other.conditions)):
+                apart = max(abs(here[r][condition] - there[r][condition]) for r in shared)
+                range_ = float(np.ptp(one.conditions[condition]))
+                if apart > UNLIKE * range_ > 0:
+                    found.append(
+                        f"{one.file} and {other.file} hold the same {len(shared)} readings of {name}, but their "
+                        f"{condition} differ by up to {apart / range_:.1%} of its range: one of them was changed"
+                    )
     return found
 
 
-def _unlike_branches(table: Table, rows: np.ndarray) -> float | None:
-    """By how much the branch of positive angles lies further from the place without torque than the other one [rad],
-    at the same sizes of torque; None where both are alike or too little is there."""
-    order = rows[np.argsort(table.conditions["angle_mech"][rows])]
-    angle, torque = table.conditions["angle_mech"][order], table.responses["torque"].values[order]
-    torque = torque * np.sign(angle @ torque)
-    up, down = (np.flatnonzero(side) for side in (torque > 0.3 * torque.max(), torque < 0.3 * torque.min()))
-    if min(len(up), len(down)) < MIRRORED_ROWS:
-        return None
-    middle = np.abs(torque) < 0.3 * np.abs(torque).max()
-    zero = float(np.polyfit(torque[middle], angle[middle], 1)[1])
-    ahead = angle[up] - zero - np.interp(torque[up], -torque[down][::-1], zero - angle[down][::-1])
-    shift, scatter = float(np.median(ahead)), float(1.5 * np.median(np.abs(ahead - np.median(ahead))))
-    return shift if abs(shift) > max(LOUD * scatter / np.sqrt(len(up)), UNLIKE) else None
+def _by_reading(table: Table, name: str) -> dict[float, dict[str, float]]:
+    """Conditions of every reading that stands once in a table."""
+    values, first, count = np.unique(table.responses[name].values, return_index=True, return_counts=True)
+    rows = zip(values[count == 1].tolist(), first[count == 1].tolist(), strict=True)
+    return {value: {n: float(v[row]) for n, v in table.conditions.items()} for value, row in rows}
 
 
 def _between_lines(campaign: Campaign) -> list[str]:
@@ -305,5 +301,5 @@ def _strongest(angle: np.ndarray, values: np.ndarray, most: int) -> int | None:
 
 
 _OF_A_TABLE = (
-    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop, _mirrored,
+    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
 )  # fmt: skip

@@ -44,6 +44,8 @@ _ROOM = 20.0  # degC, where makers state a remanence
 
 def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
     """The machine as drawn. Raises WorkbenchError where file or table cannot be used."""
+    if FILE not in device:
+        raise WorkbenchError(f"[device] lacks {FILE}; give it in campaign.toml, a name in machines/ or a path")
     try:
         found = read_machine(str(device[FILE]))
         values = numbers(without_unit_traps(device), (), _OPTIONAL)
