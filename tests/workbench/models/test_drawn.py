@@ -9,12 +9,13 @@ import pytest
 from effects.drawn_design import rim_field
 from effects.electrical.winding_turns import WindingTurns
 from effects.machine.airgap_change import AirgapChange
-from effects.machine.bridge_width import BridgeWidth
+from effects.drawn.bridge_width import BridgeWidth
 from effects.machine.end_leakage import EndLeakage
 from effects.machine.magnet_temperature import MagnetTemperature
 from geometry.half_cell import MeshDensity
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.flux_linkage import phase_flux_linkage
+from magnetostatics.torque import arkkio_torque
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.drawn.answers import Answers, _around, _unfolded
@@ -46,8 +47,9 @@ def test_a_sixth_of_three_phases_makes_a_period():
 
 
 def test_a_polynomial_between_angles_is_met():
-    places, weights = _around(np.array([2.3, -0.7, 5.0]))
-    assert np.allclose((weights * (places**5 - 3 * places)).sum(1), np.array([2.3, -0.7, 5.0]) ** 5 - 3 * np.array([2.3, -0.7, 5.0]))
+    here = np.array([2.3, -0.7, 5.0])
+    places, weights = _around(here)
+    assert np.allclose((weights * (places**5 - 3 * places)).sum(1), here**5 - 3 * here)
 
 
 def test_the_voltage_is_the_slope_of_the_fields_linkage(outrunner):
@@ -87,8 +89,6 @@ def test_currents_in_proportion_share_their_anchor(outrunner):
     alone, more = (found.torque(angle, np.tile([i, -i / 2, -i / 2], (2, 1))) for i in (4.0, 4.2))
     assert len(outrunner[0].anchors._known) < 40
     exact = outrunner[0].expansion.samples.model(outrunner[1]).solve(PhaseCurrents(0.02, (4.2, -2.1, -2.1), 8))
-    from magnetostatics.torque import arkkio_torque
-
     assert more[0] != alone[0]
     assert more[0] == pytest.approx(arkkio_torque(exact) * outrunner[1].length, rel=0.03)
 

@@ -38,7 +38,8 @@ class Anchors:
         """The anchor of some ampere-turns (3,) [A], and how many times it they are [1]."""
         for anchor in self._known:
             scale = float(ampere_turns @ anchor / (anchor @ anchor))
-            if abs(scale - 1) < _NEAR and np.linalg.norm(ampere_turns - scale * anchor) < _SAME * np.linalg.norm(anchor):
+            beside = np.linalg.norm(ampere_turns - scale * anchor)
+            if abs(scale - 1) < _NEAR and beside < _SAME * np.linalg.norm(anchor):
                 return _triple(anchor), scale
         anchor = np.array([float(f"{value:.6g}") for value in ampere_turns])
         self._known.append(anchor)

@@ -36,8 +36,8 @@ from workbench.models.device import numbers, without_unit_traps
 FILE = "machine_file"
 _COUNTS = ("slots", "poles")
 _OPTIONAL = (
-    *_COUNTS, "remanence", "phase_resistance", "largest_current", "stacking_factor", "remanence_reference", "remanence_coefficient",
-    "magnet_temperature", "end_winding_inductance", "wire_diameter", "wires_in_hand",
+    *_COUNTS, "remanence", "phase_resistance", "largest_current", "stacking_factor", "remanence_reference",
+    "remanence_coefficient", "magnet_temperature", "end_winding_inductance", "wire_diameter", "wires_in_hand",
 )  # fmt: skip
 _ROOM = 20.0  # degC, where makers state a remanence
 
@@ -74,7 +74,7 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
 def _check_counts(found: MachineFile, values: Mapping[str, float]) -> None:
     for name in _COUNTS:
         if name in values and values[name] != (drawn := getattr(found.machine, name)):
-            raise WorkbenchError(f"[device] {name} = {values[name]:g}, but {found.title!r} has {drawn}: correct one of them")
+            raise WorkbenchError(f"[device] {name} = {values[name]:g}, but {found.title!r} has {drawn}: correct one")
 
 
 def _copper(values: Mapping[str, float]) -> float:
