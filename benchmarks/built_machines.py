@@ -83,7 +83,7 @@ def prius_locked() -> Iterator[Row]:
     for current in LOCKED:
         torque = max(abs(_locked(found, model, current, beyond)) for beyond in BEYOND)
         yield Row("prius_2004", f"locked torque at {current:g} A in phase A / Nm", torque, None,
-                  "prediction: direct current, half of it back through each of B and C; magnets at 20 degC")  # fmt: skip
+                  "prediction: direct current, half of it back through B and through C; 20 degC")  # fmt: skip
 
 
 def _locked(found: MachineFile, model: FieldModel, current: float, beyond: float) -> float:

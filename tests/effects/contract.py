@@ -20,8 +20,8 @@ from geometry.machine import Machine
 from materials.magnet import Magnet
 from workbench.data.table import Response, Table
 from workbench.models.damper.model import DamperModel
-from workbench.models.drawn.model import DrawnBench
 from workbench.models.dq.model import DqModel
+from workbench.models.drawn.model import DrawnBench
 from workbench.models.model import Model
 
 SMALL = 1e-3  # share of a typical size at which an effect counts as vanishing

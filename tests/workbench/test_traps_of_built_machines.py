@@ -70,7 +70,7 @@ def test_a_resistance_between_lines_is_none_of_a_phase(tmp_path, between, said):
     """The outrunner's source says that it halves 142.4, 140.2 and 133.8 mohm, and prints 139."""
     text = f"winding_T_degC,r_ab_mohm\n20,{between}\n"
     found = checks_of(campaign(tmp_path, "phase_resistance", "{ r_ab_mohm = 0.5 }", text))
-    assert len([s for s in found if "that between lines" in s]) == said
+    assert len([s for s in found if "is that between lines" in s]) == said
 
 
 def test_a_curve_with_two_values_at_one_field_is_refused():

@@ -26,7 +26,9 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     for table in campaign.tables:
         for check in _OF_A_TABLE:
             found += check(table)
-    return tuple(found + _constants(campaign) + _between_lines(campaign) + _positions(campaign) + _same_readings(campaign))
+    for check in _OF_A_CAMPAIGN:
+        found += check(campaign)
+    return tuple(found)
 
 
 def _repeats_agree(table: Table) -> list[str]:
@@ -258,20 +260,24 @@ def _by_reading(table: Table, name: str) -> dict[float, dict[str, float]]:
 
 def _between_lines(campaign: Campaign) -> list[str]:
     """Two phases in series have twice the resistance of one."""
-    declared = next((v for k, v in campaign.device.items() if k.startswith("phase_resistance")), None)
-    key = next((k for k in campaign.device if k.startswith("phase_resistance")), "")
+    phase = _declared_resistance(campaign)
     found = []
-    for table in campaign.tables if isinstance(declared, (int, float)) and declared > 0 else ():
-        readings = [r for n, r in table.responses.items() if n in ("r_ab", "r_bc", "r_ca")]
-        for r in readings[:1] if table.kind == "phase_resistance" else ():
-            phase = declared * factor(split_unit(key.replace("_20degC", ""))[1] or "ohm", key)
-            ratio = float(np.mean([np.mean(one.values) for one in readings])) / phase
-            if abs(ratio - 1) < SAME_RESISTANCE:
-                found.append(
-                    f"{table.file}: between two lines there are {ratio:.2f} times the phase resistance of [device], two "
-                    f"phases in series have twice as much: {key} is that between lines"
-                )
+    for table in campaign.tables if phase else ():
+        readings = [r.values.mean() for n, r in table.responses.items() if n in ("r_ab", "r_bc", "r_ca")]
+        if readings and abs(float(np.mean(readings)) / phase - 1) < SAME_RESISTANCE:
+            found.append(
+                f"{table.file}: between two lines there are {np.mean(readings) / phase:.2f} times the phase resistance "
+                "of [device], two phases in series have twice as much: what is declared is that between lines"
+            )
     return found
+
+
+def _declared_resistance(campaign: Campaign) -> float:
+    """Of a phase [ohm], zero where none is declared."""
+    for key, value in campaign.device.items():
+        if key.startswith("phase_resistance") and isinstance(value, (int, float)):
+            return value * factor(split_unit(key.replace("_20degC", ""))[1] or "ohm", key)
+    return 0.0
 
 
 def _positions(campaign: Campaign) -> list[str]:
@@ -285,7 +291,7 @@ def _positions(campaign: Campaign) -> list[str]:
                 if order is not None and order != poles:
                     found.append(
                         f"{table.file}: {r.name} repeats after {360 / order:.3g} deg, the field of {poles} poles after "
-                        f"{360 / poles:.3g} deg: mechanical and electrical angles are exchanged, or the poles are others"
+                        f"{360 / poles:.3g} deg: mechanical and electrical angles are exchanged"
                     )
     return found
 
@@ -300,6 +306,7 @@ def _strongest(angle: np.ndarray, values: np.ndarray, most: int) -> int | None:
     return 1 + int(np.argmin(left)) if min(left) < 0.5 * float(rest @ rest) else None
 
 
+_OF_A_CAMPAIGN = (_constants, _between_lines, _positions, _same_readings)
 _OF_A_TABLE = (
     _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
 )  # fmt: skip

@@ -80,7 +80,7 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("magnet_temperature_degC", "of the magnets where no magnet_T is read; default: the reference", False),
         DeviceKey("stacking_factor", "steel over stack length; default 1", False),
         DeviceKey("end_winding_inductance_uH", "of a phase; default 0", False),
-        DeviceKey("largest_current_A", "peak, up to which flux linkages are mapped; needed for currents at speed", False),
+        DeviceKey("largest_current_A", "peak, up to which flux is mapped; needed for currents at speed", False),
         DeviceKey("wire_diameter_mm", "bare, for a check of the resistance", False),
         DeviceKey("wires_in_hand", "parallel wires of a turn; default 1", False),
         DeviceKey("iron_loss_grade", "M235-35A, M400-50A or M19; without it no iron loss", False),

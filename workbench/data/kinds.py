@@ -58,8 +58,8 @@ KINDS: dict[str, Kind] = {
     "inductance": Kind(
         ("l_?", "l_??"),
         ("i_?", "angle_mech"),
-        says="l_a: change of the flux linkage of a phase over its own current. Of a drawn machine over angle_mech, at a "
-        "current or a small one: l_a, l_m (of B by A), l_ab, l_bc, l_ca between two lines, the third open.",
+        says="l_a: change of the flux linkage of a phase over its own current. Of a drawn machine over angle_mech, at "
+        "a current or a small one: l_a, l_m (of B by A), l_ab, l_bc, l_ca between two lines, the third open.",
     ),
     "phase_resistance": Kind(
         ("r_?", "r_??", "resistance"),

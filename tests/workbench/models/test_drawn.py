@@ -6,10 +6,10 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from effects.drawn.bridge_width import BridgeWidth
 from effects.drawn_design import rim_field
 from effects.electrical.winding_turns import WindingTurns
 from effects.machine.airgap_change import AirgapChange
-from effects.drawn.bridge_width import BridgeWidth
 from effects.machine.end_leakage import EndLeakage
 from effects.machine.magnet_temperature import MagnetTemperature
 from geometry.half_cell import MeshDensity
