@@ -19,7 +19,9 @@ from scipy.optimize import brentq
 from geometry.cross_section import mesh_cross_section
 from geometry.parts import ComposedMachine
 from geometry.rotors.outer_magnets import OuterMagnets
+from magnetostatics.currents import PhaseCurrents
 from magnetostatics.model import FieldModel
+from magnetostatics.torque import arkkio_torque
 from magnetostatics.turn import Supply, Turned, turned
 from pipeline.modules import PROJECT
 from study.machine_file import MachineFile, read_machine
@@ -28,6 +30,9 @@ from units import DEGREE, MILLIMETRE, RPM
 TABLE = PROJECT / "results" / "reference" / "benchmarks" / "built_machines.csv"
 POSITIONS = 15  # of an electrical period; its fundamental is free of the orders that three phases have
 RING = (0.3, 0.5, 0.8, 1.13)  # mm, of the steel inside the cup of 1.13 mm: from a foil to all of it
+
+LOCKED = (50.0, 100.0, 150.0, 200.0, 250.0)  # A
+BEYOND = np.arange(90.0, 166.0, 7.5) * DEGREE  # electrical, where the reluctance torque helps that of the magnets
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,23 @@ def prius() -> Iterator[Row]:
               "steel, remanence and bridge assumed; another code has the same voltage of this drawing")  # fmt: skip
 
 
+def prius_locked() -> Iterator[Row]:
+    """Largest torque over the rotor angle, direct current in phase A and back through B and C; not compared yet."""
+    found = read_machine("prius_2004")
+    model = FieldModel(mesh_cross_section(found.machine, found.layout, found.density), found.materials)
+    for current in LOCKED:
+        torque = max(abs(_locked(found, model, current, beyond)) for beyond in BEYOND)
+        yield Row("prius_2004", f"locked torque at {current:g} A in phase A / Nm", torque, None,
+                  "prediction: direct current, half of it back through B and through C; 20 degC")  # fmt: skip
+
+
+def _locked(found: MachineFile, model: FieldModel, current: float, beyond: float) -> float:
+    """Torque [Nm] with the d axis an electrical angle beyond the axis of phase A [rad]; current [A]."""
+    angle = (found.layout.phase_axis + beyond) / found.machine.pole_pairs
+    point = PhaseCurrents(angle, (current, -current / 2, -current / 2), found.turns)
+    return found.active_length * arkkio_torque(model.solve(point))
+
+
 def ferrite() -> Iterator[Row]:
     """Voltage of a phase and cogging: both fall short of the drawing as less flux would have it."""
     found = read_machine("inset_ferrite_6_4")
@@ -107,7 +129,7 @@ def other_rotor(found: MachineFile, ring: float) -> MachineFile:
 
 
 def main() -> None:
-    rows = [row for rows in (prius(), ferrite(), outrunners()) for row in rows]
+    rows = [row for rows in (prius(), prius_locked(), ferrite(), outrunners()) for row in rows]
     table = pd.DataFrame([
         (r.machine, r.quantity, f"{r.drawn:.4g}", r.measured and f"{r.measured:.4g}",
          r.measured and f"{r.error_percent:+.1f}", r.remark) for r in rows

@@ -62,3 +62,13 @@ class DqMachine:
 
     def with_torque(self, law: TorqueLaw) -> DqMachine:
         return replace(self, torques=self.torques + (law,))
+
+    def with_turns(self, factor: float) -> DqMachine:
+        """``factor`` times the turns in the same slots: psi_m with it, inductances and resistance with its square."""
+        return replace(
+            self,
+            psi_m=self.psi_m * factor,
+            inductance_d=self.inductance_d * factor**2,
+            inductance_q=self.inductance_q * factor**2,
+            resistance=self.resistance * factor**2,
+        )

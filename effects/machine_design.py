@@ -1,9 +1,10 @@
-"""A permanent-magnet machine on the bench as the effects see it: as drawn, and where it may differ as built."""
+"""A machine on the bench as the effects see it: as drawn, and where it may differ as built."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 from geometry.machine import Machine
 from geometry.winding import star_of_slots
@@ -11,8 +12,36 @@ from materials.iron_loss import IronLossLaw
 from materials.magnet import Magnet
 
 
+class BuiltMachine:
+    """What every machine on a bench has, whatever its kind; the concrete ones are frozen dataclasses.
+
+    magnet: what all magnets are made of;  length: active length [m];  field_scale, saturation_scale, stacking_factor,
+    end_leakage, dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: see ``MachineAsBuilt``
+    """
+
+    magnet: Magnet
+    length: float
+    field_scale: float
+    saturation_scale: float
+    stacking_factor: float
+    end_leakage: float
+    dry_friction: float
+    viscous_friction: float
+    windage: float
+    iron_loss: IronLossLaw | None
+    iron_loss_factor: float
+
+    def with_magnet(self, **changes: float) -> Self:
+        """Another material of all magnets."""
+        return replace(self, magnet=replace(self.magnet, **changes))  # type: ignore[type-var]
+
+    def with_airgap(self, change: float) -> Self:
+        """The bore moved so that the gap is wider by ``change`` [m], slots and shoes with it."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class MachineAsBuilt:
+class MachineAsBuilt(BuiltMachine):
     """One machine, all that its field and its terminals depend on. Tuples count round it from magnet, slot or coil 0.
 
     machine: cross-section, all magnets, slots and teeth alike;  steel: grade;  magnet: what all magnets are made of
@@ -118,9 +147,8 @@ class MachineAsBuilt:
         """Other dimensions of the cross-section."""
         return replace(self, machine=replace(self.machine, **changes))
 
-    def with_magnet(self, **changes) -> MachineAsBuilt:
-        """Another material of all magnets."""
-        return replace(self, magnet=replace(self.magnet, **changes))
+    def with_airgap(self, change: float) -> MachineAsBuilt:
+        return self.with_machine(airgap=self.machine.airgap + change)
 
     def without_turns(self, coil: int, missing: float) -> MachineAsBuilt:
         """One coil with fewer turns, and its phase with less resistance."""

@@ -123,6 +123,7 @@ NO_MEANING: Mapping[str, str] = {
     "copper_drift": "the study states its winding temperature (winding_selection.winding_temperature_degC)",
     "remanence_drift": "the study states the remanence at the magnets' working temperature (materials.remanence_T)",
     "airgap_change": "it is of the machine that was measured; move machine.airgap_mm if all will be built like it",
+    "bridge_width": "it is of the sheets that were measured; move bridge_mm in the machine file if all are so",
     "slot_opening": "it is of the machine that was measured; move machine.slot_opening_mm if all will be built like it",
     "magnet_arc": "it is of the machine that was measured; move machine.magnet_arc_fraction if all will be so",
     "iron_loss_resistance": "the iron loss of a design comes from its field; compare with the loss map",

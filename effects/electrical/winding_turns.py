@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from effects.base import DesignEffect
 from effects.dq_design import DqMachine
+from effects.drawn_design import DrawnAsBuilt
 from effects.parameter import parameter
 from effects.prior import Normal
 from effects.signature import Power, Touches
@@ -18,7 +19,7 @@ class WindingTurns(DesignEffect):
     title = "other number of turns"
     looks_like = "back-EMF, inductances and resistance all off in the ratio n : n^2 : n^2"
     remedy = ("count, or phase resistance together with back-EMF",)
-    designs = (DqMachine,)
+    designs = (DqMachine, DrawnAsBuilt)
     signature = (
         Power("back_emf.v_ll", "speed", 1.0),
         Touches("dq_operation.v_d"),
@@ -36,11 +37,4 @@ class WindingTurns(DesignEffect):
     )
 
     def on_design(self, design):
-        n = 1.0 + self.change
-        return replace(
-            design,
-            psi_m=design.psi_m * n,
-            inductance_d=design.inductance_d * n**2,
-            inductance_q=design.inductance_q * n**2,
-            resistance=design.resistance * n**2,
-        )
+        return design.with_turns(1.0 + self.change)

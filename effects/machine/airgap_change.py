@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from effects.base import DesignEffect
 from effects.machine.places import FIELD
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import Normal
 from units import MILLIMETRE
@@ -22,7 +22,7 @@ class AirgapChange(DesignEffect):
     title = "air gap not as drawn"
     looks_like = "voltage, torque and inductance change together, cogging most of all"
     remedy = ("feeler gauge or bore and rotor diameter", "inductance")
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = FIELD
     base_rate = 0.015
     base_rate_source = "judgement: stacked tolerances of bore and rotor"
@@ -37,5 +37,5 @@ class AirgapChange(DesignEffect):
         source="ground rotors +-0.05 mm",
     )
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
-        return design.with_machine(airgap=design.machine.airgap + self.change)
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
+        return design.with_airgap(self.change)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
 from effects.machine.places import CREEP, SPEED
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power
@@ -22,7 +22,7 @@ class BearingFriction(DesignEffect):
     title = "dry friction of the bearings"
     looks_like = "both directions of a cogging scan apart by twice the same torque"
     remedy = ("drag with a rotor without magnets",)
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 0.0))
     base_rate = 0.3
     base_rate_source = "judgement: every rotor turns in bearings, and few campaigns declare their friction"
@@ -31,5 +31,5 @@ class BearingFriction(DesignEffect):
         0.0, "Nm", prior=LogNormal(0.01, 1.0), low=0.0, high=1.0, source="small ball bearings with seals, 1 to 50 mNm"
     )
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
         return replace(design, dry_friction=design.dry_friction + self.level)

@@ -7,7 +7,7 @@ from typing import Any
 
 from effects.base import DesignEffect
 from effects.machine.places import CREEP, SPEED
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd
@@ -20,7 +20,7 @@ class IronLossExcess(DesignEffect):
     title = "iron loss beyond the data of the sheet"
     looks_like = "drag above the model in the proportion of the iron loss, at every speed"
     remedy = ("drag with a rotor without magnets, and the difference", "loss of a stamped ring")
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)))
     base_rate = 0.03
     base_rate_source = "judgement: punching, welding and flux that turns make it the rule, a declared factor holds most"
@@ -33,5 +33,5 @@ class IronLossExcess(DesignEffect):
     def can_act_on(cls, design: Any) -> bool:
         return super().can_act_on(design) and design.iron_loss is not None
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
         return replace(design, iron_loss_factor=design.iron_loss_factor * (1.0 + self.excess))

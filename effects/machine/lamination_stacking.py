@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
 from effects.machine.places import FIELD
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
 
@@ -18,7 +18,7 @@ class LaminationStacking(DesignEffect):
     title = "stacking factor"
     looks_like = "less torque and flux change at high current, little without current"
     remedy = ("weight of the stack", "flux linkage at the highest current")
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: declared stacking factors are good to 1 or 2 %"
@@ -28,5 +28,5 @@ class LaminationStacking(DesignEffect):
         0.0, "1", prior=LogNormal(0.04, 0.5), low=0.0, high=0.2, source="stacking factors 0.90 to 0.98"
     )
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
         return replace(design, stacking_factor=design.stacking_factor - self.loss)

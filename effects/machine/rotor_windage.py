@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
 from effects.machine.places import SPEED
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power
@@ -19,7 +19,7 @@ class RotorWindage(DesignEffect):
     title = "windage of the rotor"
     looks_like = "drag that grows with the square of the speed"
     remedy = ("drag up to the highest speed", "drag with the fan or the open coupling covered")
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = (*SPEED, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 2.0))
     base_rate = 0.005
     base_rate_source = "judgement: seen with fans and at high speed only"
@@ -33,5 +33,5 @@ class RotorWindage(DesignEffect):
         source="smooth rotors of 15 mm radius 1e-10 (C_M = 0.01), with a fan 1e-6",
     )
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
         return replace(design, windage=design.windage + self.coefficient)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
 from effects.machine.places import FIELD
-from effects.machine_design import MachineAsBuilt
+from effects.machine_design import BuiltMachine
 from effects.parameter import parameter
 from effects.prior import LogNormal
 
@@ -21,7 +21,7 @@ class SteelGrade(DesignEffect):
     title = "permeability of the steel"
     looks_like = "slightly lower flux everywhere, most where the steel begins to saturate"
     remedy = ("ring sample", "flux linkage over current")
-    designs = (MachineAsBuilt,)
+    designs = (BuiltMachine,)
     signature = FIELD
     base_rate = 0.01
     base_rate_source = "judgement: another grade or sheet not annealed"
@@ -31,5 +31,5 @@ class SteelGrade(DesignEffect):
         0.0, "1", prior=LogNormal(0.4, 0.6), low=0.0, high=3.0, source="grades and stress after punching"
     )
 
-    def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
+    def on_design(self, design: BuiltMachine) -> BuiltMachine:
         return replace(design, field_scale=design.field_scale * (1.0 + self.excess))

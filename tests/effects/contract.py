@@ -21,6 +21,7 @@ from materials.magnet import Magnet
 from workbench.data.table import Response, Table
 from workbench.models.damper.model import DamperModel
 from workbench.models.dq.model import DqModel
+from workbench.models.drawn.model import DrawnBench
 from workbench.models.model import Model
 
 SMALL = 1e-3  # share of a typical size at which an effect counts as vanishing
@@ -159,11 +160,17 @@ def machine_case() -> Case:
     return Case(Model(None, design), ())
 
 
+@cache
+def drawn_case() -> Case:
+    """A machine with bridges, of which only the design is asked."""
+    return Case(Model(None, DrawnBench().design({"machine_file": "prius_2004", "phase_resistance_mohm": 69.0})), ())
+
+
 def cases_of(cls: type[Effect]) -> list[Case]:
     """The benches on which an effect can be tried; of the machine only its design, which needs no field solution."""
     cases = [damper_case(), dq_case(), waveform_case()]
     if issubclass(cls, DesignEffect):
-        cases.append(machine_case())
+        cases += [machine_case(), drawn_case()]
     return [case for case in cases if cls.can_act_on(case.model.design)]
 
 

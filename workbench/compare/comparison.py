@@ -69,7 +69,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
         sequences=tuple(s for v in every for s in views.sequences(v)),
         whiteness=tuple(views.whiteness(v) for v in every),
         signatures=tuple(SignatureMatch(n, titles[n], c) for n, c in matches.items()),
-        checks=checks_of(bench.campaign),
+        checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
         complaints=bench.complaints,
         provenance=dict(bench.campaign.file_hashes),
     )

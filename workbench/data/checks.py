@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 
+from workbench.data.column_units import factor, split_unit
 from workbench.data.repeats import matched_rows
 from workbench.data.table import Campaign, Response, Table
 
@@ -11,6 +14,9 @@ LOUD = 4.0  # standard errors from which a check speaks
 COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
 FREQUENCIES = 8  # of a sweep that says something about causality
 NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
+FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance
+UNLIKE = 0.005  # of the range of a condition, by which the same reading may stand at another one
+SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
 CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
 
 
@@ -20,7 +26,9 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     for table in campaign.tables:
         for check in _OF_A_TABLE:
             found += check(table)
-    return tuple(found + _constants(campaign))
+    for check in _OF_A_CAMPAIGN:
+        found += check(campaign)
+    return tuple(found)
 
 
 def _repeats_agree(table: Table) -> list[str]:
@@ -58,6 +66,8 @@ def _phase_sum(table: Table) -> list[str]:
     """Three open-circuit phase voltages of a balanced winding add up to a wave of multiples of three only."""
     if not (table.kind == "back_emf" and {"v_a", "v_b", "v_c"} <= set(table.responses)):
         return []
+    if "angle_mech" not in table.conditions:
+        return []  # RMS
     a, b, c = (table.responses[name] for name in ("v_a", "v_b", "v_c"))
     sizes = [np.sqrt(np.mean(r.values**2)) for r in (a, b, c)]
     spread = (max(sizes) - min(sizes)) / np.mean(sizes)
@@ -220,6 +230,83 @@ def _constants(campaign: Campaign) -> list[str]:
     return []
 
 
+def _same_readings(campaign: Campaign) -> list[str]:
+    """Two tables with one and the same readings were taken at the same conditions."""
+    found = []
+    for one, other in combinations(campaign.tables, 2):
+        for name in set(one.responses) & set(other.responses) if one.kind == other.kind else ():
+            here, there = (_by_reading(table, name) for table in (one, other))
+            most = min(len(here), len(there))
+            shared = sorted(set(here) & set(there))
+            if most < FEWEST_SHARED or len(shared) < SHARED * most:
+                continue
+            for condition in sorted(set(one.conditions) & set(other.conditions)):
+                apart = max(abs(here[r][condition] - there[r][condition]) for r in shared)
+                range_ = float(np.ptp(one.conditions[condition]))
+                if apart > UNLIKE * range_ > 0:
+                    found.append(
+                        f"{one.file} and {other.file} hold the same {len(shared)} readings of {name}, but their "
+                        f"{condition} differ by up to {apart / range_:.1%} of its range: one of them was changed"
+                    )
+    return found
+
+
+def _by_reading(table: Table, name: str) -> dict[float, dict[str, float]]:
+    """Conditions of every reading that stands once in a table."""
+    values, first, count = np.unique(table.responses[name].values, return_index=True, return_counts=True)
+    rows = zip(values[count == 1].tolist(), first[count == 1].tolist(), strict=True)
+    return {value: {n: float(v[row]) for n, v in table.conditions.items()} for value, row in rows}
+
+
+def _between_lines(campaign: Campaign) -> list[str]:
+    """Two phases in series have twice the resistance of one."""
+    phase = _declared_resistance(campaign)
+    found = []
+    for table in campaign.tables if phase else ():
+        readings = [r.values.mean() for n, r in table.responses.items() if n in ("r_ab", "r_bc", "r_ca")]
+        if readings and abs(float(np.mean(readings)) / phase - 1) < SAME_RESISTANCE:
+            found.append(
+                f"{table.file}: between two lines there are {np.mean(readings) / phase:.2f} times the phase resistance "
+                "of [device], two phases in series have twice as much: what is declared is that between lines"
+            )
+    return found
+
+
+def _declared_resistance(campaign: Campaign) -> float:
+    """Of a phase [ohm], zero where none is declared."""
+    for key, value in campaign.device.items():
+        if key.startswith("phase_resistance") and isinstance(value, (int, float)):
+            return value * factor(split_unit(key.replace("_20degC", ""))[1] or "ohm", key)
+    return 0.0
+
+
+def _positions(campaign: Campaign) -> list[str]:
+    """The inductance between two lines repeats once a pole."""
+    poles = campaign.device.get("poles")
+    found = []
+    for table in campaign.tables if isinstance(poles, int) and poles > 2 else ():
+        for r in table.responses.values():
+            if table.kind == "inductance" and len(r.name) == 4 and "angle_mech" in table.conditions:
+                order = _strongest(table.conditions["angle_mech"], r.values, 2 * poles)
+                if order is not None and order != poles:
+                    found.append(
+                        f"{table.file}: {r.name} repeats after {360 / order:.3g} deg, the field of {poles} poles after "
+                        f"{360 / poles:.3g} deg: mechanical and electrical angles are exchanged"
+                    )
+    return found
+
+
+def _strongest(angle: np.ndarray, values: np.ndarray, most: int) -> int | None:
+    """Order of the wave that takes most of the variance, None where none takes half of it."""
+    rest = values - values.mean()
+    left = []
+    for order in range(1, most + 1):
+        waves = np.column_stack([np.cos(order * angle), np.sin(order * angle), np.ones(len(angle))])
+        left.append(float(np.sum((rest - waves @ np.linalg.lstsq(waves, rest, rcond=1e-10)[0]) ** 2)))
+    return 1 + int(np.argmin(left)) if min(left) < 0.5 * float(rest @ rest) else None
+
+
+_OF_A_CAMPAIGN = (_constants, _between_lines, _positions, _same_readings)
 _OF_A_TABLE = (
     _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
 )  # fmt: skip

@@ -56,10 +56,16 @@ KINDS: dict[str, Kind] = {
         "As the integral of the voltage it shares voltage_gain; a meter of its own declares its gain in u_sys.",
     ),
     "inductance": Kind(
-        ("l_?", "l_??"), ("i_?", "angle_mech"), says="l_a: change of the flux linkage of a phase over its own current."
+        ("l_?", "l_??"),
+        ("i_?", "angle_mech"),
+        says="l_a: change of the flux linkage of a phase over its own current. Of a drawn machine over angle_mech, at "
+        "a current or a small one: l_a, l_m (of B by A), l_ab, l_bc, l_ca between two lines, the third open.",
     ),
     "phase_resistance": Kind(
-        ("r_?", "resistance"), ("winding_T",), cost=0.3, says="Of a phase between its terminals, d.c."
+        ("r_?", "r_??", "resistance"),
+        ("winding_T",),
+        cost=0.3,
+        says="Of a phase between its terminals, d.c. r_ab, r_bc, r_ca of a drawn machine: between two lines.",
     ),
     "drag": Kind(
         ("torque", "force", "power"),

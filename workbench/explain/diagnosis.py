@@ -98,7 +98,7 @@ def diagnosis_of(
         after=_failing_fit(bench, best),
         posteriors=_posteriors(search, said),
         complaints=bench.complaints + _not_tried(search.failed),
-        checks=checks_of(bench.campaign),
+        checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
         provenance=dict(bench.campaign.file_hashes),
     )
 

@@ -81,3 +81,7 @@ class BaseModel:
     def options(self, design: Any, campaign: Campaign) -> Sequence[Option]:
         """What could be measured next besides what was."""
         return ()
+
+    def doubts(self, design: Any) -> tuple[str, ...]:
+        """One sentence for each thing in the declared device that no device of the kind has."""
+        return ()

@@ -42,6 +42,17 @@ def numbers(table: Mapping[str, object], required: tuple[str, ...], optional: tu
     return {name: _number(keys[name], table[keys[name]]) for name in known if name in keys}
 
 
+def without_unit_traps(device: Mapping[str, object]) -> dict[str, object]:
+    """The table of a machine with the names of its quantities, where their ends look like other units."""
+    renamed = {
+        "remanence_T": "remanence",
+        "remanence_reference_degC": "remanence_reference",
+        "phase_resistance_mohm_20degC": "phase_resistance_mohm",
+        "magnet_temperature_degC": "magnet_temperature",
+    }
+    return {renamed.get(key, key): value for key, value in device.items()}
+
+
 def _refuse_doubles(table: Mapping[str, object], keys: Mapping[str, str]) -> None:
     for key in table:
         name = split_unit(key)[0]

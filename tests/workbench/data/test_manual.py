@@ -28,6 +28,7 @@ def test_what_is_written_by_hand_names_everything():
 
 
 EXAMPLES = {"steel": "M400-50A", "magnetisation": "parallel", "iron_loss_grade": "M400-50A"}
+EXAMPLES["machine_file"] = "prius_2004"
 
 
 @pytest.mark.parametrize("model", DEVICE_KEYS)

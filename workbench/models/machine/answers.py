@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from math import hypot, pi, sqrt
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
@@ -18,7 +16,6 @@ from workbench.models.machine.surrogate import Surrogate
 
 LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
 _PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
-_MAGNET_MEMORY = 61  # rows; a magnet warms over minutes, what its reading does from row to row is noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,39 +131,3 @@ class Answers:
 def load_angles(design: MachineAsBuilt) -> np.ndarray:
     """Rotor angles [rad] over a sixth of an electrical period, after which the phases change their places."""
     return (np.arange(LOAD_ANGLES) + 0.5) * pi / (3 * design.machine.pole_pairs * LOAD_ANGLES)
-
-
-def at_magnet_temperatures(
-    answer: Callable[[Answers, Columns], Mapping[str, np.ndarray]],
-    surrogate: Surrogate,
-    design: MachineAsBuilt,
-    at: Columns,
-) -> Mapping[str, np.ndarray]:
-    """What a bench answers with the magnets of every row at their own temperature, where it was read.
-
-    The field is taken with the remanence of the coldest, the mean and the warmest row, and a parabola between them.
-    """
-    if "magnet_T" not in at:
-        return answer(Answers(surrogate, design), at)
-    temperature = _slow(np.ascontiguousarray(at["magnet_T"], dtype=float).tobytes())
-    nodes = np.unique([temperature.min(), (temperature.min() + temperature.max()) / 2, temperature.max()])
-    found = [answer(Answers(surrogate, _warm(design, node)), at) for node in nodes.tolist()]
-    weights = [_lagrange(nodes, k, temperature) for k in range(len(nodes))]
-    return {name: sum(w * one[name] for w, one in zip(weights, found)) for name in found[0]}
-
-
-def _warm(design: MachineAsBuilt, temperature: float) -> MachineAsBuilt:
-    magnet = design.magnet
-    factor = 1.0 + magnet.temperature_coefficient * (temperature - magnet.reference_temperature)
-    return design.with_magnet(remanence=magnet.remanence * max(factor, 0.0))
-
-
-def _lagrange(nodes: np.ndarray, k: int, x: np.ndarray) -> np.ndarray:
-    others = np.delete(nodes, k)
-    return np.prod([(x - other) / (nodes[k] - other) for other in others], axis=0) if len(others) else np.ones_like(x)
-
-
-@lru_cache(maxsize=16)
-def _slow(readings: bytes) -> np.ndarray:
-    """Running median of readings, given as the bytes of their array."""
-    return median_filter(np.frombuffer(readings), _MAGNET_MEMORY, mode="nearest")

@@ -9,18 +9,14 @@ from concurrent.futures import as_completed
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
-import geometry
-import magnetostatics
-import materials
-from disk import write_atomically
 from effects.machine_design import MachineAsBuilt
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
 from processes import LostWorker, Processes
+from workbench.models.kept import KeptArrays, key_of
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.pieces import (
     DEFAULT_PLAN,
@@ -165,11 +161,8 @@ class Kept:
         return replace(self, states=states, arrays=arrays, missing=None)
 
 
-class Store:
+class Store(KeptArrays):
     """Results of pieces in a folder, a file each; None keeps nothing."""
-
-    def __init__(self, folder: Path | None):
-        self.folder = folder
 
     def load(self, piece: Piece, states: States) -> Kept:
         """What was kept of a piece, and which of the states are missing; a file that cannot be read is none."""
@@ -187,21 +180,6 @@ class Store:
         self.write(kept.piece.name, kept.arrays | ({"states": states} if kept.piece.with_current else {}))
         return kept
 
-    def read(self, name: str) -> Arrays | None:
-        """None where nothing was kept, or where it cannot be read."""
-        if self.folder is None:
-            return None
-        try:
-            with np.load(self.folder / f"{name}.npz", allow_pickle=False) as data:
-                return dict(data)
-        except (OSError, ValueError, EOFError, KeyError, BadZipFile):
-            return None
-
-    def write(self, name: str, arrays: Arrays) -> None:
-        """Whole or not at all."""
-        if self.folder is not None:
-            write_atomically(self.folder / f"{name}.npz", lambda path: np.savez(path, **arrays))
-
 
 def _states(rows: np.ndarray) -> States:
     return tuple(LoadedState(angle, (a, b, c)) for angle, a, b, c in rows.tolist())
@@ -211,9 +189,4 @@ def _key(machinery: Machinery) -> str:
     """Of the machine, the meshes and every line of code and every material curve that the solutions depend on."""
     steel = machinery.steel
     words = [repr(machinery.nominal), repr(machinery.plan), steel.__module__ + steel.__name__]
-    digest = hashlib.sha256(json.dumps(words).encode())
-    folders = [Path(package.__file__).parent for package in (geometry, magnetostatics, materials)]
-    files = [path for folder in folders for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".csv")]
-    for path in files + [Path(__file__).parent / f"{part}.py" for part in _CODE]:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return key_of(json.dumps(words), [Path(__file__).parent / f"{part}.py" for part in _CODE])

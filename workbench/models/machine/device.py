@@ -36,7 +36,7 @@ from materials.magnet import Magnet
 from units import MU_0
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.device import numbers, require_positive, require_whole
+from workbench.models.device import numbers, require_positive, require_whole, without_unit_traps
 
 LABORATORY = 22.0  # degC, at which a device table states its remanence when it does not say
 _DIMENSIONS = (
@@ -67,7 +67,7 @@ _OPTIONAL = (
 
 def machine_of_device(device: Mapping[str, object]) -> MachineAsBuilt:
     """The machine as drawn. Raises WorkbenchError when the table lacks something or the machine cannot be built."""
-    values = numbers(_without_unit_traps(device), _REQUIRED, _OPTIONAL)
+    values = numbers(without_unit_traps(device), _REQUIRED, _OPTIONAL)
     require_positive(values, *_REQUIRED)
     require_whole(values, "slots", "poles")
     try:
@@ -76,17 +76,6 @@ def machine_of_device(device: Mapping[str, object]) -> MachineAsBuilt:
         return _as_drawn(machine, values, device)
     except (GeometryError, MaterialError) as error:
         raise WorkbenchError(f"[device]: {error}") from None
-
-
-def _without_unit_traps(device: Mapping[str, object]) -> dict[str, object]:
-    """The table with the names of its quantities as this model has them."""
-    renamed = {
-        "remanence_T": "remanence",
-        "remanence_reference_degC": "remanence_reference",
-        "phase_resistance_mohm_20degC": "phase_resistance_mohm",
-        "magnet_temperature_degC": "magnet_temperature",
-    }
-    return {renamed.get(key, key): value for key, value in device.items()}
 
 
 def _machine_of(values: Mapping[str, float], device: Mapping[str, object]) -> Machine:

@@ -38,7 +38,7 @@ from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
 from workbench.models.device import names
-from workbench.models.machine.answers import at_magnet_temperatures
+from workbench.models.machine.answers import Answers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.field import MachineField
@@ -47,6 +47,7 @@ from workbench.models.machine.numerical import shapes_of
 from workbench.models.machine.options import options
 from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate
+from workbench.models.magnet_temperature import at_magnet_temperatures
 
 CACHE = Path("results") / "cache"
 _REMEMBERED = 24  # answers
@@ -109,7 +110,9 @@ class MachineBench(BaseModel):
         """An error of an instrument leaves the machine as it is: many fits ask the same again."""
 
         def answer(design: MachineAsBuilt, kind: str, asked: _Asked) -> Mapping[str, np.ndarray]:
-            return at_magnet_temperatures(KINDS[kind], self.surrogate, design, asked.columns)
+            return at_magnet_temperatures(
+                lambda warm: KINDS[kind](Answers(self.surrogate, warm), asked.columns), design, asked.columns
+            )
 
         return lru_cache(maxsize=_REMEMBERED)(answer)
 
@@ -142,7 +145,8 @@ class MachineBench(BaseModel):
 
 
 def _drawn_answers(surrogate: Surrogate, table: Table) -> Mapping[str, np.ndarray]:
-    return at_magnet_temperatures(KINDS[table.kind], surrogate, surrogate.nominal, table.conditions)
+    at = table.conditions
+    return at_magnet_temperatures(lambda warm: KINDS[table.kind](Answers(surrogate, warm), at), surrogate.nominal, at)
 
 
 class _Asked:

@@ -1,0 +1,188 @@
+"""The kinds of measurement on the bench of a drawn machine; ``model`` lists their columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from effects.base import Columns
+from effects.dq_design import DqMachine
+from workbench.errors import WorkbenchError
+from workbench.models.dq.model import BASE as DQ
+from workbench.models.drawn.answers import Answers
+
+PHASES = "abc"
+_STILL = 1e-9  # rad/s
+_SMALL = 1.0  # A between lines, of an inductance where the table has no current
+_SHARES = (-1.0, -0.55, -0.25, 0.0, 0.25, 0.55, 1.0)  # of the largest current of a map
+
+Found = dict[str, np.ndarray]
+
+
+def _back_emf(answers: Answers, at: Columns) -> Found:
+    """v = speed d psi/d angle over an angle; without one RMS: of a phase's fundamental, between lines of all orders."""
+    if "angle_mech" in at:
+        slopes = answers.linkage_slopes(at["angle_mech"]) * at["speed"][:, None]
+        return _by_phase("v", slopes)
+    orders = np.arange(len(answers.waves))
+    each = answers.design.machine.pole_pairs * orders * np.abs(answers.waves)
+    between = each * np.abs(1 - np.exp(-2j * pi / 3 * orders))
+    speed = np.abs(at["speed"])
+    found = {f"v_{x}": speed * each[1] / sqrt(2.0) for x in PHASES}
+    return found | {"v_ll": speed * np.linalg.norm(between) / sqrt(2.0)}
+
+
+def _cogging(answers: Answers, at: Columns) -> Found:
+    none = np.zeros((len(at["angle_mech"]), 3))
+    return {"torque": answers.torque(at["angle_mech"], none) + lost_torque(answers, at)}
+
+
+def _locked_rotor(answers: Answers, at: Columns) -> Found:
+    return {"torque": answers.torque(at["angle_mech"], _currents(at)) + lost_torque(answers, at)}
+
+
+def _flux_linkage(answers: Answers, at: Columns) -> Found:
+    change = answers.linkage_change(at["angle_mech"], _currents(at))
+    whole = change + answers.magnet_linkage(at["angle_mech"])
+    return _by_phase("dpsi", change) | _by_phase("psi", whole)
+
+
+def _inductance(answers: Answers, at: Columns) -> Found:
+    """Change of flux linkage over current: of phase A fed alone, its mutual one, and between two lines in series."""
+    angle = at["angle_mech"]
+    current = at.get("current", np.full(len(angle), _SMALL))
+
+    def per_current(fed: tuple[int, int, int]) -> np.ndarray:
+        return answers.linkage_change(angle, np.outer(current, fed)) / current[:, None]
+
+    alone = per_current((1, 0, 0))
+    found = {"l_a": alone[:, 0], "l_m": alone[:, 1]}
+    for name, fed in (("l_ab", (1, -1, 0)), ("l_bc", (0, 1, -1)), ("l_ca", (-1, 0, 1))):
+        found[name] = per_current(fed) @ np.array(fed)
+    return found
+
+
+def _phase_resistance(answers: Answers, at: Columns) -> Found:
+    """Of a phase, and between two of them."""
+    r = answers.resistance(at)
+    lines = {f"r_{x}": 2 * r for x in ("ab", "bc", "ca")}
+    return {"resistance": r, **{f"r_{x}": r for x in PHASES}, **lines}
+
+
+def _drag(answers: Answers, at: Columns) -> Found:
+    """Torque on the rotor, and the power that its drive gives."""
+    torque = lost_torque(answers, at)
+    return {"torque": torque, "power": -torque * at["speed"]}
+
+
+def lost_torque(answers: Answers, at: Columns) -> np.ndarray:
+    """Torque on the rotor against its motion [Nm] (n,), zero where neither speed nor direction is known.
+
+    Where only a column ``direction`` is known (+1, -1) the rotor creeps: dry friction and hysteresis alone.
+    """
+    d, none = answers.design, np.zeros(len(next(iter(at.values()))))
+    speed = at.get("speed", none)
+    size, sign = np.abs(speed), np.sign(at.get("direction", speed))
+    brake = d.dry_friction + d.viscous_friction * size + d.windage * size**2
+    if d.iron_loss is not None and sign.any():
+        loss, pairs = answers.iron_loss, d.machine.pole_pairs
+        frequency = pairs * np.maximum(size, _STILL) / (2 * pi)
+        brake = brake + pairs / (2 * pi) * loss.at(frequency) / frequency
+    return -sign * brake
+
+
+# ---- by the fundamental ----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class FluxMap:
+    """Flux linkages beyond those of constant inductances, as a law of the dq machine; beyond the map they go on with
+    the slope at its edge."""
+
+    direct: RectBivariateSpline
+    quadrature: RectBivariateSpline
+    largest: float
+
+    def flux(self, i_d: np.ndarray, i_q: np.ndarray, machine: DqMachine) -> tuple[np.ndarray, np.ndarray]:
+        """psi_d and psi_q [Vs] at currents [A]."""
+        return self._beyond(self.direct, i_d, i_q), self._beyond(self.quadrature, i_d, i_q)
+
+    def _beyond(self, spline: RectBivariateSpline, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
+        d, q = (np.clip(i, -self.largest, self.largest) for i in (i_d, i_q))
+        along = spline.ev(d, q, dx=1) * (i_d - d) + spline.ev(d, q, dy=1) * (i_q - q)
+        return np.asarray(spline.ev(d, q) + along)
+
+
+@dataclass(frozen=True, eq=False)
+class _Drag:
+    """What brakes the rotor, as a law of the dq machine."""
+
+    answers: Answers
+
+    def lost_torque(self, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
+        return -lost_torque(self.answers, {"speed": speed})
+
+
+def dq_machine(answers: Answers) -> DqMachine:
+    """The machine by its fundamental, with the flux linkages of the field at every current on its bench."""
+    largest = answers.design.largest_current
+    if not (answers.design.phase_resistance and largest):
+        raise WorkbenchError("currents at speed need phase_resistance and largest_current: give them in [device]")
+    largest *= answers.expansion.drawn_turns / answers.design.turns  # the ampere-turns of the drawing
+    axis = largest * np.array(_SHARES)
+    psi = _map(answers, axis)
+    none = len(axis) // 2
+    psi_m = float(psi[none, none, 0])
+    l_d = float((psi[-1, none, 0] - psi[0, none, 0]) / (2 * largest))
+    l_q = float((psi[none, -1, 1] - psi[none, 0, 1]) / (2 * largest))
+    left = psi - np.stack([psi_m + l_d * axis[:, None] + 0 * axis, l_q * axis + 0 * axis[:, None]], axis=2)
+    law = FluxMap(*(RectBivariateSpline(axis, axis, left[:, :, k], s=0) for k in (0, 1)), largest)
+    machine = DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, answers.design.phase_resistance)
+    return machine.with_flux(law).with_torque(_Drag(answers))
+
+
+def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
+    """psi_d, psi_q (k, k, 2) over i_d and i_q; psi_d is even in i_q, psi_q odd."""
+    half = axis[axis >= 0]
+    i_d, i_q = (values.ravel() for values in np.meshgrid(axis, half, indexing="ij"))
+    found = answers.mean_dq(i_d, i_q).reshape(len(axis), len(half), 2)
+    found[:, 0, 1] = 0.0
+    found = found + answers.design.end_winding_inductance * np.stack([i_d, i_q], axis=1).reshape(found.shape)
+    return np.concatenate([found[:, :0:-1] * np.array([1.0, -1.0]), found], axis=1)
+
+
+def _by_its_fundamental(kind: str) -> Callable[[Answers, Columns], Found]:
+    def answer(answers: Answers, at: Columns) -> Found:
+        machine = dq_machine(answers)
+        state = {name: values for name, values in at.items() if name not in ("winding_T", "magnet_T")}
+        warm = answers.resistance(at) / machine.resistance
+        return DQ.respond(machine, kind, state | {"resistance_factor": warm})
+
+    return answer
+
+
+KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
+    "back_emf": _back_emf,
+    "cogging": _cogging,
+    "locked_rotor": _locked_rotor,
+    "flux_linkage": _flux_linkage,
+    "inductance": _inductance,
+    "phase_resistance": _phase_resistance,
+    "drag": _drag,
+    **{kind: _by_its_fundamental(kind) for kind in ("dq_supply", "dq_operation", "dyno_map", "no_load")},
+}
+
+
+def _by_phase(quantity: str, rows: np.ndarray) -> Found:
+    return {f"{quantity}_{x}": rows[:, k] for k, x in enumerate(PHASES)}
+
+
+def _currents(at: Columns) -> np.ndarray:
+    missing = [f"i_{x}" for x in PHASES if f"i_{x}" not in at]
+    if missing:
+        raise WorkbenchError(f"a loaded row needs the currents of all phases: the column {missing[0]} is missing")
+    return np.stack([at[f"i_{x}"] for x in PHASES], axis=1)
