@@ -51,7 +51,7 @@ def test_a_laminate_of_a_laboratory_closes_and_fills_its_pitch():
 
 
 def test_a_stator_of_a_laboratory():
-    stator = read_machine("synrm_measured_48_4").machine.stator
+    stator = read_machine("szesynrm_outline").machine.stator
     inner, outer = stator.slot_radii
     assert inner == pytest.approx(85.65e-3, abs=0.05e-3) and outer == pytest.approx(107.5e-3, abs=0.05e-3)
     assert 5e-3 < stator.probed_tooth_width < 7e-3
@@ -77,6 +77,6 @@ def test_what_is_wrong_is_said(exported, changes, words):
 
 
 def test_poles_that_differ_are_allowed_only_where_it_is_said():
-    rotor = read_machine("synrm_measured_48_4").machine.rotor
+    rotor = read_machine("szesynrm_outline").machine.rotor
     with pytest.raises(GeometryError, match="differ by .* of their iron"):
         replace(rotor, unequal=1e-3).check()
