@@ -7,10 +7,11 @@ from math import ceil
 
 import numpy as np
 
-from actuator.compiled import Record, compiled, inside, limited_torque, rotor_speed
+from actuator.compiled import Record, inside, limited_torque, rotor_speed
 from actuator.errors import ActuatorError
 from actuator.model import Actuator
 from actuator.stiffness import fastest_rate
+from compiling import compiled
 
 _STABLE = 2.0  # step times the fastest rate; the limit of the Runge-Kutta rule is 2.78
 _MASS, _VELOCITY, _TORQUE, _LOST, _STATES = 0, 1, 2, 3, 7  # x, x', T, then works taken by mount, gears, friction, motor

@@ -14,6 +14,7 @@ ALLOWED = {
     "tasks": set(),
     "disk": set(),
     "processes": set(),
+    "compiling": set(),
     "materials": set(),
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
@@ -37,7 +38,7 @@ ALLOWED = {
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }
-BOTTOM = {"units", "tasks", "disk", "processes"}
+BOTTOM = {"units", "tasks", "disk", "processes", "compiling"}
 
 
 def modules():

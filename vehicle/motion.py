@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actuator.compiled import Record, at, compiled, inside, limited_torque
+from actuator.compiled import Record, at, inside, limited_torque
+from compiling import compiled
 
 BODY = np.dtype([(name, np.float64) for name in ("mass", "pitch_inertia", "cog_height", "propulsion")])
 _AXLE = ("position", "unsprung_mass", "spring", "bump", "rebound", "stop", "tyre", "load")
