@@ -16,6 +16,8 @@ SOURCES = (
     "actuator/imposed.py",
     "magnetostatics/fronts.py",
     "magnetostatics/multifrontal.py",
+    "magnetostatics/passes.py",
+    "materials/compiled_law.py",
     "vehicle/motion.py",
 )
 _PROJECT = Path(__file__).resolve().parent

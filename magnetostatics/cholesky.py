@@ -48,8 +48,5 @@ class SymmetricSystem:
 
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
         """Solution [Wb/m] of the shape of right_hand_side [A], (n,), or several in one, (n, k)."""
-        unknowns = np.ascontiguousarray(np.atleast_2d(right_hand_side.T)[:, self._order])
-        solve(self._fronts, self._factor, unknowns)
-        solution = np.empty_like(unknowns)
-        solution[:, self._order] = unknowns
-        return solution.T.reshape(right_hand_side.shape)
+        given = np.ascontiguousarray(np.atleast_2d(right_hand_side.T))
+        return solve(self._fronts, self._order, self._factor, given).T.reshape(right_hand_side.shape)

@@ -137,13 +137,16 @@ def subtract_products(panel: np.ndarray, pivots: int, height: int, update: np.nd
 
 
 @vectorised
-def solve(fronts: Fronts, factor: np.ndarray, unknowns: np.ndarray) -> None:
-    """Solve L L^T x = b for several b at once, in their place.
+def solve(fronts: Fronts, order: np.ndarray, factor: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """The x of L L^T x = b for several b at once [any unit], (m, n).
 
-    factor: the panels, [square root of the unit of A], (l,)
-    unknowns: b, then x, in the order of elimination, [any unit], (m, n)
+    order: of elimination, indices (n,); factor: the panels, [square root of the unit of A], (l,)
+    given: b [any unit], (m, n)
     """
-    front = np.empty(unknowns.shape[1])
+    front, unknowns, found = np.empty(len(order)), np.empty(given.shape), np.empty(given.shape)
+    for k in range(len(given)):
+        for i in range(len(order)):
+            unknowns[k, i] = given[k, order[i]]
     for s in range(len(fronts.parent)):
         rows = fronts.rows[fronts.row_starts[s] : fronts.row_starts[s + 1]]
         panel = factor[fronts.panels[s] : fronts.panels[s + 1]]
@@ -154,6 +157,10 @@ def solve(fronts: Fronts, factor: np.ndarray, unknowns: np.ndarray) -> None:
         panel = factor[fronts.panels[s] : fronts.panels[s + 1]]
         for k in range(len(unknowns)):
             back(panel, rows, fronts.columns[s + 1] - fronts.columns[s], unknowns[k], front)
+    for k in range(len(given)):
+        for i in range(len(order)):
+            found[k, order[i]] = unknowns[k, i]
+    return found
 
 
 @vectorised
