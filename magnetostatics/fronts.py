@@ -16,16 +16,17 @@ from compiling import compiled
 
 
 class Fronts(NamedTuple):
-    """Of s fronts, every one after its children; all are indices. Unknowns bear their places in the elimination.
+    """Of s fronts, every one after its children; unknowns bear their places in the elimination.
 
-    columns: first pivot of every front, then the number of unknowns (s + 1,)
-    row_starts: where the rows of a front begin (s + 1,); rows: its pivots, then the rows below, rising (r,)
-    relative: place of a row below the pivots among the rows of the parent (r,)
-    parent: of every front, -1 for none (s,); child, sibling: first child and next child of the same parent, or -1 (s,)
-    panels: where the panel of a front begins in the factor (s + 1,); it is stored column by column
-    updates: where its update matrix begins in the workspace (s,)
-    entry_starts: where the entries of the matrix in the pivots of a front begin (s + 1,)
-    entry_sources: their places in the given pattern (k,); entry_places: in the panel (k,)
+    columns: index of the first pivot of every front, then the number of unknowns (s + 1,)
+    row_starts: index where the rows of a front begin (s + 1,); rows: indices of its pivots, then of the rows below (r,)
+    relative: index of a row below the pivots among the rows of the parent (r,)
+    parent: index of that of every front, -1 for none (s,)
+    child: index of the first child, -1 for none (s,); sibling: index of the next child of the same parent (s,)
+    panels: index where the panel of a front begins in the factor, column by column (s + 1,)
+    updates: index where its update matrix begins in the workspace (s,)
+    entry_starts: index where the entries of the matrix in the pivots of a front begin (s + 1,)
+    entry_sources: indices of these in the given pattern (k,); entry_places: indices in the panel (k,)
     """
 
     columns: np.ndarray
@@ -48,58 +49,80 @@ def analysed(rows: np.ndarray, columns: np.ndarray, order: np.ndarray) -> tuple[
     analysed: indices, indices (n,), number of entries (n,), number of values; rows, columns: indices of the entries of
     one triangle (k,); order: that fill is small in, indices (n,)
     """
-    number = inverse(order)
-    upper = bucketed(np.maximum(number[rows], number[columns]), len(order))
-    parent = elimination_tree(upper, np.minimum(number[rows], number[columns]))
-    counts = column_counts(upper, np.minimum(number[rows], number[columns]), parent)
-    post = postorder(parent)
-    place = inverse(post)
-    parent, counts, number = np.append(place, -1)[parent[post]], counts[post], place[number]
-    entries = bucketed(np.minimum(number[rows], number[columns]), len(order))
-    lower = np.maximum(number[rows], number[columns])
-    starts = np.append(0, np.flatnonzero(amalgamated(parent, counts)) + 1)
-    pivots = np.diff(starts)
+    order, parent, counts = _with_tree(rows, columns, order)
+    starts = np.append(0, np.flatnonzero(_amalgamated(parent, counts)) + 1)
+    pivots, below = np.diff(starts), counts[starts[1:] - 1] - 1
     front = np.append(np.repeat(np.arange(len(pivots)), pivots), -1)  # of every column
     up = front[parent[starts[1:] - 1]]
-    child, sibling = families(up)
-    below = counts[starts[1:] - 1] - 1
-    row_starts = cumulated(pivots + below)
-    owner = np.repeat(np.arange(len(pivots)), pivots + below) * len(order)
-    front_rows = np.sort(structure(starts, row_starts, entries, lower, child, sibling) + owner) - owner
-    relative = relative_places(starts, row_starts, front_rows, child, sibling)
-    panels = cumulated(pivots * (pivots + below))
-    updates, workspace = update_places(up, below)
-    places = entry_places(starts, row_starts, front_rows, entries, lower)
-    fronts = Fronts(
-        starts, row_starts, front_rows, relative, up, child, sibling, panels, updates,
-        entries[0][starts], entries[1], places,
-    )  # fmt: skip
-    return fronts, order[post], counts, workspace
+    updates, workspace = _update_places(up, below)
+    panels = _cumulated(pivots * (pivots + below))
+    indexed = _indexed(_ordered(rows, columns, _inverse(order)), starts, _cumulated(pivots + below), _families(up))
+    return Fronts(columns=starts, parent=up, panels=panels, updates=updates, **indexed), order, counts, workspace
 
 
-def inverse(order: np.ndarray) -> np.ndarray:
+def _with_tree(rows: np.ndarray, columns: np.ndarray, order: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The order with descendants next to each other, and parents and counts of entries in it, (n,) each."""
+    smaller, larger = _ordered(rows, columns, _inverse(order))
+    of_row = _bucketed(larger, len(order))
+    parent = _elimination_tree(of_row, smaller)
+    counts, post = _column_counts(of_row, smaller, parent), _postorder(parent)
+    return order[post], np.append(_inverse(post), -1)[parent[post]], counts[post]
+
+
+def _indexed(
+    pairs: tuple[np.ndarray, np.ndarray],
+    starts: np.ndarray,
+    row_starts: np.ndarray,
+    families: tuple[np.ndarray, np.ndarray],
+) -> dict[str, np.ndarray]:
+    """What of ``Fronts`` follows from its columns and rows; pairs: (column, row) of the entries of the lower triangle.
+
+    families: (child, sibling), indices (s,) each
+    """
+    entries = _bucketed(pairs[0], int(starts[-1]))
+    owner = np.repeat(np.arange(len(starts) - 1), np.diff(row_starts)) * starts[-1]
+    rows = np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner
+    return {
+        "row_starts": row_starts,
+        "rows": rows,
+        "relative": _relative_places(starts, row_starts, rows, *families),
+        "child": families[0],
+        "sibling": families[1],
+        "entry_starts": entries[0][starts],
+        "entry_sources": entries[1],
+        "entry_places": _entry_places(starts, row_starts, rows, entries, pairs[1]),
+    }
+
+
+def _ordered(rows: np.ndarray, columns: np.ndarray, number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Smaller and larger new number of the entries, indices (k,) each; number: of every unknown, index (n,)."""
+    first, second = number[rows], number[columns]
+    return np.minimum(first, second), np.maximum(first, second)
+
+
+def _inverse(order: np.ndarray) -> np.ndarray:
     """Place of every index in an order; both indices (n,)."""
     place = np.empty_like(order)
     place[order] = np.arange(len(order))
     return place
 
 
-def cumulated(counts: np.ndarray) -> np.ndarray:
+def _cumulated(counts: np.ndarray) -> np.ndarray:
     """Where each of several stretches begins, then the end: indices (s + 1,); counts: number of places of each (s,)."""
     return np.concatenate([[0], np.cumsum(counts)])
 
 
-def bucketed(keys: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+def _bucketed(keys: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
     """(starts, order): indices (size + 1,) and (k,) of the entries by key, those of equal keys in their old order.
 
     keys: indices (k,), below size
     """
-    starts = cumulated(np.bincount(keys, minlength=size))
-    return starts, distributed(keys, starts[:-1].copy())
+    starts = _cumulated(np.bincount(keys, minlength=size))
+    return starts, _distributed(keys, starts[:-1].copy())
 
 
 @compiled
-def distributed(keys: np.ndarray, free: np.ndarray) -> np.ndarray:
+def _distributed(keys: np.ndarray, free: np.ndarray) -> np.ndarray:
     """Indices (k,) of the entries by key, indices (k,); free: where the next entry of every key goes, indices (n,)."""
     order = np.empty(len(keys), np.int64)
     for entry in range(len(keys)):
@@ -109,12 +132,12 @@ def distributed(keys: np.ndarray, free: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def elimination_tree(upper: tuple[np.ndarray, np.ndarray], smaller: np.ndarray) -> np.ndarray:
+def _elimination_tree(of_row: tuple[np.ndarray, np.ndarray], smaller: np.ndarray) -> np.ndarray:
     """Parent of every unknown: that of the first entry below the diagonal of its column in the factor (n,), an index.
 
-    upper: entries by the larger of their indices; smaller: the other one, indices (k,). Liu (1990), algorithm 4.2.
+    of_row: entries by the larger of their indices; smaller: the other one, indices (k,). Liu (1990), algorithm 4.2.
     """
-    starts, order = upper
+    starts, order = of_row
     parent, ancestor = np.full(len(starts) - 1, -1), np.full(len(starts) - 1, -1)
     for j in range(len(parent)):
         for entry in order[starts[j] : starts[j + 1]]:
@@ -129,9 +152,9 @@ def elimination_tree(upper: tuple[np.ndarray, np.ndarray], smaller: np.ndarray) 
 
 
 @compiled
-def column_counts(upper: tuple[np.ndarray, np.ndarray], smaller: np.ndarray, parent: np.ndarray) -> np.ndarray:
+def _column_counts(of_row: tuple[np.ndarray, np.ndarray], smaller: np.ndarray, parent: np.ndarray) -> np.ndarray:
     """Number of entries in every column of the factor, its diagonal among them (n,); arguments as of the tree (n,)."""
-    starts, order = upper
+    starts, order = of_row
     counts, seen = np.ones(len(parent), np.int64), np.full(len(parent), -1)
     for j in range(len(parent)):
         seen[j] = j
@@ -145,7 +168,7 @@ def column_counts(upper: tuple[np.ndarray, np.ndarray], smaller: np.ndarray, par
 
 
 @compiled
-def families(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _families(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First child and next sibling of every node, -1 for none, indices (n,) each; parent: index, -1 for none (n,)."""
     child, sibling = np.full(len(parent), -1), np.full(len(parent), -1)
     for node in range(len(parent) - 1, -1, -1):
@@ -156,9 +179,9 @@ def families(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @compiled
-def postorder(parent: np.ndarray) -> np.ndarray:
+def _postorder(parent: np.ndarray) -> np.ndarray:
     """Order in which every node follows its descendants at once, indices (n,); parent: index, -1 for none (n,)."""
-    child, sibling = families(parent)
+    child, sibling = _families(parent)
     order, found = np.empty(len(parent), np.int64), 0
     for root in range(len(parent)):
         node = root if parent[root] < 0 else -1
@@ -174,7 +197,7 @@ def postorder(parent: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def amalgamated(parent: np.ndarray, counts: np.ndarray) -> np.ndarray:
+def _amalgamated(parent: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """Whether a front ends with a column, (n,).
 
     A column joins the front that ends before it when it is the parent of its last column and few zeros come of it.
@@ -191,14 +214,14 @@ def amalgamated(parent: np.ndarray, counts: np.ndarray) -> np.ndarray:
             width = last + 1 - first[end]
             height = last - end + counts[last] - 1
             more = zeros[end] + zeros[last] + (first[last] - first[end]) * (height - counts[end] + 1)
-            if not is_worth(width, more / (width * (width + 1) / 2 + width * (counts[last] - 1))):
+            if not _is_worth(width, more / (width * (width + 1) / 2 + width * (counts[last] - 1))):
                 break
             is_end[end], zeros[last], first[last] = False, more, first[end]
     return is_end
 
 
 @compiled
-def is_worth(width: int, zeros: float) -> bool:
+def _is_worth(width: int, zeros: float) -> bool:
     """Whether a front of some columns (width, their number) may hold a share of zeros, dimensionless.
 
     The bounds of CHOLMOD (Chen, Davis, Hager and Rajamanickam, ACM TOMS 35 (2008), algorithm 887).
@@ -207,7 +230,7 @@ def is_worth(width: int, zeros: float) -> bool:
 
 
 @compiled
-def structure(
+def _structure(
     starts: np.ndarray,
     row_starts: np.ndarray,
     entries: tuple[np.ndarray, np.ndarray],
@@ -217,26 +240,26 @@ def structure(
 ) -> np.ndarray:
     """Rows of every front in any order (r,): of the matrix in its columns, and those that its children leave.
 
-    starts, row_starts, child, sibling: as in ``Fronts`` (s,); entries: by their columns, lower: their rows, indices (k,)
+    starts, row_starts, child, sibling: as in ``Fronts``; entries: by their columns; lower: their rows, indices (k,)
     """
     rows, seen = np.empty(row_starts[-1], np.int64), np.full(starts[-1], -1)
     for s in range(len(child)):
         found = row_starts[s]
         for column in range(starts[s], starts[s + 1]):
-            found = noted(column, s, seen, rows, found)
+            found = _noted(column, s, seen, rows, found)
         for k in range(entries[0][starts[s]], entries[0][starts[s + 1]]):
-            found = noted(lower[entries[1][k]], s, seen, rows, found)
+            found = _noted(lower[entries[1][k]], s, seen, rows, found)
         c = child[s]
         while c != -1:
             for k in range(row_starts[c], row_starts[c + 1]):
                 if rows[k] >= starts[c + 1]:
-                    found = noted(rows[k], s, seen, rows, found)
+                    found = _noted(rows[k], s, seen, rows, found)
             c = sibling[c]
     return rows
 
 
 @compiled
-def noted(row: int, front: int, seen: np.ndarray, rows: np.ndarray, found: int) -> int:
+def _noted(row: int, front: int, seen: np.ndarray, rows: np.ndarray, found: int) -> int:
     """Number of rows found, with this one if the front had not seen it; seen, rows: indices (n,) and (r,)."""
     if seen[row] == front:
         return found
@@ -246,7 +269,7 @@ def noted(row: int, front: int, seen: np.ndarray, rows: np.ndarray, found: int) 
 
 
 @compiled
-def relative_places(
+def _relative_places(
     starts: np.ndarray, row_starts: np.ndarray, rows: np.ndarray, child: np.ndarray, sibling: np.ndarray
 ) -> np.ndarray:
     """``Fronts.relative``, indices (r,); the arguments as there, indices (s + 1,), (s + 1,), (r,), (s,) and (s,)."""
@@ -263,7 +286,7 @@ def relative_places(
 
 
 @compiled
-def update_places(parent: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, int]:
+def _update_places(parent: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, int]:
     """Where the update matrix of every front begins, indices (s,), and the number of values of the workspace.
 
     Two stacks take turns over the levels of the tree: a front lies above nothing that is still needed but its children,
@@ -290,14 +313,14 @@ def update_places(parent: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, in
 
 
 @compiled
-def entry_places(
+def _entry_places(
     starts: np.ndarray,
     row_starts: np.ndarray,
     rows: np.ndarray,
     entries: tuple[np.ndarray, np.ndarray],
     lower: np.ndarray,
 ) -> np.ndarray:
-    """``Fronts.entry_places``, indices (k,); the arguments as there and in ``structure``, indices (s + 1,), (k,)."""
+    """``Fronts.entry_places``, indices (k,); the arguments as there and in ``_structure``, indices (s + 1,), (k,)."""
     places, place = np.empty(len(lower), np.int64), np.empty(starts[-1], np.int64)
     for s in range(len(starts) - 1):
         height = row_starts[s + 1] - row_starts[s]

@@ -31,16 +31,16 @@ def factorise(fronts: Fronts, values: np.ndarray, factor: np.ndarray, workspace:
             panel[fronts.entry_places[k]] += values[fronts.entry_sources[k]]
         c = fronts.child[s]
         while c != -1:
-            add_child(fronts, c, workspace, panel, update, pivots, height)
+            _add_child(fronts, c, workspace, panel, update, pivots, height)
             c = fronts.sibling[c]
-        if not eliminate(panel, pivots, height):
+        if not _eliminate(panel, pivots, height):
             return False
-        subtract_products(panel, pivots, height, update)
+        _subtract_products(panel, pivots, height, update)
     return True
 
 
 @vectorised
-def add_child(
+def _add_child(
     fronts: Fronts,
     child: int,
     workspace: np.ndarray,
@@ -68,7 +68,7 @@ def add_child(
 
 
 @vectorised
-def eliminate(panel: np.ndarray, pivots: int, height: int) -> bool:
+def _eliminate(panel: np.ndarray, pivots: int, height: int) -> bool:
     """Dense Cholesky factorisation of a panel in its place, [any unit], (p,); false at a pivot that is not positive."""
     for j in range(pivots):
         column = panel[j * height + j : (j + 1) * height]
@@ -94,7 +94,7 @@ def eliminate(panel: np.ndarray, pivots: int, height: int) -> bool:
 
 
 @vectorised
-def subtract_products(panel: np.ndarray, pivots: int, height: int, update: np.ndarray) -> None:
+def _subtract_products(panel: np.ndarray, pivots: int, height: int, update: np.ndarray) -> None:
     """Subtract the products of the rows below the pivots from the lower triangle of the update matrix, (p,) and (u,).
 
     Of every four columns the three entries above the diagonal are filled too, and nobody reads them.
@@ -151,12 +151,12 @@ def solve(fronts: Fronts, order: np.ndarray, factor: np.ndarray, given: np.ndarr
         rows = fronts.rows[fronts.row_starts[s] : fronts.row_starts[s + 1]]
         panel = factor[fronts.panels[s] : fronts.panels[s + 1]]
         for k in range(len(unknowns)):
-            forward(panel, rows, fronts.columns[s + 1] - fronts.columns[s], unknowns[k], front)
+            _forward(panel, rows, fronts.columns[s + 1] - fronts.columns[s], unknowns[k], front)
     for s in range(len(fronts.parent) - 1, -1, -1):
         rows = fronts.rows[fronts.row_starts[s] : fronts.row_starts[s + 1]]
         panel = factor[fronts.panels[s] : fronts.panels[s + 1]]
         for k in range(len(unknowns)):
-            back(panel, rows, fronts.columns[s + 1] - fronts.columns[s], unknowns[k], front)
+            _back(panel, rows, fronts.columns[s + 1] - fronts.columns[s], unknowns[k], front)
     for k in range(len(given)):
         for i in range(len(order)):
             found[k, order[i]] = unknowns[k, i]
@@ -164,7 +164,7 @@ def solve(fronts: Fronts, order: np.ndarray, factor: np.ndarray, given: np.ndarr
 
 
 @vectorised
-def forward(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray, front: np.ndarray) -> None:
+def _forward(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray, front: np.ndarray) -> None:
     """The part of L x = b in one front, (p,); rows: indices (h,); unknowns, front: [any unit], (n,) both."""
     height = len(rows)
     for i in range(height):
@@ -192,7 +192,7 @@ def forward(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarr
 
 
 @vectorised
-def back(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray, front: np.ndarray) -> None:
+def _back(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray, front: np.ndarray) -> None:
     """The part of L^T x = b in one front, (p,); rows: indices (h,); unknowns, front: [any unit], (n,) both."""
     height = len(rows)
     for i in range(height):
@@ -225,4 +225,3 @@ def back(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray,
             value -= panel[j * height + i] * front[i]
         front[j] = value / panel[j * height + j]
         unknowns[rows[j]] = front[j]
-

@@ -1,5 +1,7 @@
-"""The law of ``materials.reluctivity.SplineReluctivity`` at many points in one pass, compiled: the innermost loop of every
-field solution."""
+"""The law of ``materials.reluctivity.SplineReluctivity`` at many points in one pass, compiled.
+
+It is the innermost loop of every field solution.
+"""
 
 from __future__ import annotations
 
