@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
-# Each room may import those named after it; everything may import units, tasks and disk. From top to
+# Each room may import those named after it; everything may import what ``BOTTOM`` names. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
 _DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain",
