@@ -1,7 +1,7 @@
 """The project's sparse Cholesky factorisation against CHOLMOD: ``python -m benchmarks.factorisation``.
 
-On the tangent matrix of the reference machine with linear and with quadratic elements: CPU times on one thread, taken in
-turns, and medians of the ratios. Writes results/reference/benchmarks/factorisation.csv.
+On the tangent matrix of the reference machine with linear and with quadratic elements: CPU times on one thread, taken
+in turns, and medians of the ratios. Writes results/reference/benchmarks/factorisation.csv.
 """
 
 from __future__ import annotations
