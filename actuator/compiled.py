@@ -1,31 +1,17 @@
 """The equations of ``actuator.model.Actuator``, compiled: they are evaluated some million times for a ride.
 
-Compiled by numba on the first use, some seconds, and kept beside this file. ``actuator.parts`` says the force laws a
-second time, on arrays; a test holds the two together.
+``actuator.parts`` says the force laws a second time, on arrays; a test holds the two together.
 """
 
 from __future__ import annotations
 
-from hashlib import sha256
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import config, njit
+
+from compiling import compiled
 
 Record = Any  # of numpy, whose fields the compiled code reads as attributes
-
-# numba keeps compiled code beside its source and asks whether that one file has changed, not those that it calls. All
-# of them are therefore asked for here, as far as they are there (an exported actuator comes without a vehicle): their
-# folder bears the hash of every file with compiled code.
-SOURCES = ("actuator/compiled.py", "actuator/imposed.py", "actuator/step.py", "vehicle/motion.py")
-_PROJECT = Path(__file__).resolve().parent.parent
-_THERE = [_PROJECT / source for source in SOURCES if (_PROJECT / source).is_file()]
-_HASH = sha256(b"".join(source.read_bytes() for source in _THERE)).hexdigest()[:16]
-_FOLDER = _PROJECT / "actuator" / "__pycache__" / f"compiled-{_HASH}"
-config.CACHE_DIR = str(_FOLDER)  # type: ignore[attr-defined]  # numba has no annotations
-# A division by zero gives inf, as in numpy, which makes the code smaller and faster.
-compiled = njit(cache=True, error_model="numpy")
 
 
 # The numbers of an actuator, a record of this type; names and units as in ``actuator.parts`` and ``actuator.drive``.

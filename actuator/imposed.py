@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from actuator.compiled import MASS, TORQUE, VELOCITY, ActuatorNumbers, compiled
+from actuator.compiled import MASS, TORQUE, VELOCITY, ActuatorNumbers
 from actuator.errors import ActuatorError
 from actuator.model import Actuator
 from actuator.step import LOST, STATES, Imposed, carry, pieces, rates, stable_step
+from compiling import compiled
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actuator.compiled import MASS, TORQUE, VELOCITY, ActuatorNumbers, compiled, inner_motion, respond
+from actuator.compiled import MASS, TORQUE, VELOCITY, ActuatorNumbers, inner_motion, respond
 from actuator.errors import ActuatorError, require_positive
 from actuator.model import Actuator
 from actuator.parts import RigidMount
 from actuator.stiffness import fastest_rate
+from compiling import compiled
 
 LOST = TORQUE + 1  # from here on a state holds the works taken by mount, gears, friction and motor
 STATES = LOST + 4

@@ -216,7 +216,7 @@ def _scale(model: FieldModel, point: OperatingPoint) -> dict[str, float]:
         cold = [cost(lambda: FieldModel(model.section, model.materials).solve(point)) for _ in range(3)]
         solution = model.solve(point)
         system = model.topology.pattern(model.unknowns.turn(point.angle).edges).system
-        counts = system.column_counts()
+        counts = system.column_counts
         return {
             "unknowns": model.unknowns.count,
             "cold_solve_s": median(cold),

@@ -7,7 +7,7 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
-_PACKAGES = ("numpy", "scipy", "scikit-fem", "cvxopt", "gmsh")
+_PACKAGES = ("numpy", "scipy", "scikit-fem", "cvxopt", "numba", "gmsh")
 
 
 def machine_name() -> dict[str, object]:

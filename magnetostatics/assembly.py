@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.passes import symmetric_product
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,19 +121,9 @@ class JoinedSystem:
         self._linear[pattern.linear_position] = linear
         self._linear[pattern.band_positions[edges]] += pattern.bands[edges].sum(band)
 
-    @cached_property
-    def linear_matrix(self) -> sp.csc_matrix:
-        """Lower triangle of the linear part."""
-        size = self.pattern.size
-        return sp.csc_matrix((self._linear, self.pattern.rows, self.pattern.column_starts), shape=(size, size))
-
-    @cached_property
-    def _diagonal(self) -> np.ndarray:
-        return self.linear_matrix.diagonal()
-
     def linear_product(self, u: np.ndarray) -> np.ndarray:
         """Linear part of the matrix times the unknowns [A], (n,); u: [Wb/m], (n,)."""
-        return self.linear_matrix @ u + self.linear_matrix.T @ u - self._diagonal * u
+        return symmetric_product(self.pattern.column_starts, self.pattern.rows, self._linear, u)
 
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
         """Factorise linear part plus iron. Good until the next call for the same pattern.

@@ -1,13 +1,21 @@
-"""Sparse Cholesky factorisation (CHOLMOD through cvxopt) of a matrix whose pattern stays and whose values change."""
+"""Sparse Cholesky factorisation of a matrix whose pattern stays and whose values change.
+
+The order is that of approximate minimum degree (Amestoy, Davis and Duff, through cvxopt); the factorisation itself is
+the project's own (``magnetostatics/fronts.py``, ``magnetostatics/multifrontal.py``): on the problems of this room it
+takes 0.6 of the time of CHOLMOD as cvxopt carries it (``docs/speed.md``).
+"""
 
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
 
 import cvxopt
-import cvxopt.cholmod
+import cvxopt.amd
 import numpy as np
 from threadpoolctl import ThreadpoolController
+
+from magnetostatics.fronts import analysed
+from magnetostatics.multifrontal import factorise, solve
 
 _BLAS = ThreadpoolController()  # made after the imports above, or it would not know their libraries
 
@@ -20,30 +28,25 @@ def one_thread() -> AbstractContextManager[object]:
 class SymmetricSystem:
     """A symmetric positive definite matrix with fixed pattern: analysed once, refactorised for new values.
 
-    rows, columns: indices of the lower triangle (k,), rows >= columns, sorted by column, then by row
+    rows, columns: indices of the lower triangle (k,), rows >= columns
+    column_counts: number of entries in every column of the factor (n,); their squares sum up to the operations
     """
 
     def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int) -> None:
-        ones = cvxopt.matrix(1.0, (len(rows), 1))
-        self._matrix = cvxopt.spmatrix(ones, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
-        self._factor = cvxopt.cholmod.symbolic(self._matrix)
+        pattern = cvxopt.spmatrix(1.0, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
+        order = np.array(cvxopt.amd.order(pattern, "L")).ravel()
+        self._fronts, self._order, self.column_counts, workspace = analysed(rows, columns, order)
+        self._factor, self._workspace = np.empty(self._fronts.panels[-1]), np.empty(workspace)
 
     def factorise(self, values: np.ndarray) -> None:
         """Numeric factorisation for the values of the lower triangle [m/H], (k,), in the order of the pattern.
 
         Raises ArithmeticError when the matrix is not positive definite.
         """
-        self._matrix.V = cvxopt.matrix(values)
-        cvxopt.cholmod.numeric(self._matrix, self._factor)
-
-    def column_counts(self) -> np.ndarray:
-        """Number of entries in every column of the factor (n,); their squares sum up to the operations."""
-        factor = cvxopt.cholmod.symbolic(self._matrix)
-        cvxopt.cholmod.numeric(self._matrix, factor)
-        return np.diff(np.array(cvxopt.cholmod.getfactor(factor).CCS[0]).ravel())
+        if not factorise(self._fronts, values, self._factor, self._workspace):
+            raise ArithmeticError("the matrix is not positive definite")
 
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
         """Solution [Wb/m] of the shape of right_hand_side [A], (n,), or several in one, (n, k)."""
-        solution = cvxopt.matrix(right_hand_side)
-        cvxopt.cholmod.solve(self._factor, solution)
-        return np.array(solution).reshape(right_hand_side.shape)
+        given = np.ascontiguousarray(np.atleast_2d(right_hand_side.T))
+        return solve(self._fronts, self._order, self._factor, given).T.reshape(right_hand_side.shape)

@@ -157,15 +157,20 @@ class Elements:
         return u[0] * v[1] - u[1] * v[0]
 
     @cached_property
+    def size(self) -> np.ndarray:
+        """|D|, twice the area (E,) [m^2]."""
+        return np.abs(self.determinant)
+
+    @cached_property
     def metric(self) -> np.ndarray:
         """M_11, M_12, M_22, dimensionless (3, E): grad . grad times |D| in reference coordinates."""
         u, v = self.edges
-        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / np.abs(self.determinant)
+        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / self.size
 
     @cached_property
     def weights(self) -> np.ndarray:
         """Area that belongs to every quadrature point (Q, E) [m^2]."""
-        return self.order.weights[:, None] * np.abs(self.determinant)
+        return self.order.weights[:, None] * self.size
 
     @cached_property
     def points(self) -> np.ndarray:

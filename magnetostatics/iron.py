@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from magnetostatics.elements import Elements
+from magnetostatics.passes import flux
 from materials.reluctivity import Reluctivity
 
 
@@ -31,14 +32,13 @@ class Iron:
 
     def at(self, local: np.ndarray) -> IronState:
         """The iron in the field of local values [Wb/m], (F, E)."""
-        elements = self.elements
-        m11, m12, m22 = elements.metric
-        g1, g2 = elements.slopes(local)
-        h1, h2 = m11 * g1 + m12 * g2, m12 * g1 + m22 * g2
-        nu, slope = self._reluctivity((g1 * h1 + g2 * h2) / np.abs(elements.determinant))
-        return IronState(elements, h1, h2, nu, slope)
+        h1, h2, b2 = flux(local, self.elements.order.slopes, self.elements.metric, self.elements.size)
+        nu, slope = self._reluctivity(b2)
+        return IronState(self.elements, h1, h2, nu, slope)
 
     def _reluctivity(self, b2: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if len(self._laws) == 1:
+            return self._laws[0][1].nu_and_derivative(b2)
         nu, slope = np.empty_like(b2), np.empty_like(b2)
         for part, law in self._laws:
             nu[:, part], slope[:, part] = law.nu_and_derivative(b2[:, part])
@@ -64,7 +64,7 @@ class IronState:
     def tangent(self) -> np.ndarray:
         """Local matrices integral nu grad u . grad v + 2 nu' (grad A . grad u)(grad A . grad v) [m/H], (K, E)."""
         m11, m12, m22 = self.elements.metric
-        s1 = self.slope * self.h1 * (2 / np.abs(self.elements.determinant))
-        s2 = self.slope * self.h2 * (2 / np.abs(self.elements.determinant))
+        twice = self.slope * (2 / self.elements.size)
+        s1, s2 = twice * self.h1, twice * self.h2
         tensor = self.nu * m11 + s1 * self.h1, self.nu * m12 + s1 * self.h2, self.nu * m22 + s2 * self.h2
         return self.elements.order.products @ np.concatenate(tensor)

@@ -167,9 +167,6 @@ class FieldModel:
         other._coarse_topology = self._coarse_topology
         return other
 
-    def _region(self, name: str) -> Elements:
-        return self.elements.take(self.topology.regions[name])
-
     # ---- sources ----------------------------------------------------------------------------------------------
 
     @cached_property
@@ -186,7 +183,11 @@ class FieldModel:
 
     def magnet_elements(self, number: int) -> Elements:
         """The elements of a magnet."""
-        return self._region(f"magnet_{number}")
+        return self._magnets[number]
+
+    @cached_property
+    def _magnets(self) -> list[Elements]:
+        return [self.elements.take(self.topology.regions[f"magnet_{m}"]) for m in range(self.section.magnets)]
 
     def magnetisation(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the unit vector of the magnetisation at the quadrature points of a magnet, dimensionless, each

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
+from materials.compiled_law import nu_and_derivative
 from materials.errors import MaterialError
 from units import MU_0, Values
 
@@ -136,6 +137,11 @@ class PiecewiseCubic:
         t = b - self.starts[k]
         return self.a0[k] + t * (self.a1[k] + t * (self.a2[k] + t * self.a3[k]))
 
+    @property
+    def coefficients(self) -> np.ndarray:
+        """B_k [T] and a0 to a3, as the compiled law reads them (5, n - 1)."""
+        return np.stack([self.starts, self.a0, self.a1, self.a2, self.a3])
+
     def value_and_slope(self, b: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """H(b) [A/m] and dH/dB [m/H], both (m,), for b [T], (m,), in intervals k (indices), (m,)."""
         t = b - self.starts[k]
@@ -249,39 +255,21 @@ class SplineReluctivity(Reluctivity):
         """End of the measured table [T]; larger values are extrapolated."""
         return self.tail.last_flux
 
-    def nu(self, b2: Values) -> np.ndarray:
-        """Reluctivity [m/H] at b2 [T^2], of its shape."""
-        b2, shape = _flat(b2)
-        b = np.sqrt(b2)
-        k = self.table.locate(b)
-        nu = self._away_from_zero(self.table.value(b, k), b)
-        np.copyto(nu, self.table.a1[0] + self.table.a3[0] * b2, where=k == 0)
-        beyond = np.flatnonzero(b > self.tail.last_flux)
-        if beyond.size:
-            nu[beyond] = self.tail.value(b[beyond]) / b[beyond]
-        return nu.reshape(shape)
-
     def nu_and_derivative(self, b2: Values) -> tuple[np.ndarray, np.ndarray]:
         """nu [m/H] and dnu/d(b2) = (dH/dB - nu)/(2 b2) [m/(H T^2)] at b2 [T^2], of its shape; exact in every piece."""
         b2, shape = _flat(b2)
-        b = np.sqrt(b2)
-        k = self.table.locate(b)
-        H, slope = self.table.value_and_slope(b, k)
-        beyond = np.flatnonzero(b > self.tail.last_flux)
-        if beyond.size:
-            H[beyond] = self.tail.value(b[beyond])
-            slope[beyond] = self.tail.slope(H[beyond])
-        nu = self._away_from_zero(H, b)
-        derivative = self._away_from_zero(slope - nu, b2, power=2)
-        derivative *= 0.5
-        first = k == 0
-        np.copyto(nu, self.table.a1[0] + self.table.a3[0] * b2, where=first)
-        np.copyto(derivative, self.table.a3[0], where=first)
+        table, tail = self.table, self.tail
+        nu, derivative = nu_and_derivative(
+            b2,
+            table.ends,
+            table.coefficients,
+            table.bins_per_tesla,
+            table.interval_of_bin,
+            tail.last_flux,
+            tail.saturation_polarisation,
+            tail.rise * tail.last_field,
+        )
         return nu.reshape(shape), derivative.reshape(shape)
-
-    def _away_from_zero(self, numerator: np.ndarray, divisor: np.ndarray, power: int = 1) -> np.ndarray:
-        """Quotient without a division by zero in the first interval, whose values are overwritten by the caller."""
-        return numerator / np.maximum(divisor, self.table.ends[0] ** power)
 
     def field_strength(self, b: Values) -> np.ndarray:
         """H [A/m] at b [T], of its shape."""

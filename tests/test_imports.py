@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
-# Each room may import those named after it; everything may import units, tasks and disk. From top to
+# Each room may import those named after it; everything may import what ``BOTTOM`` names. From top to
 # bottom as in README.md.
 _FIELD = {"magnetostatics", "geometry", "materials"}
 _DESIGN = _FIELD | {"optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics", "drivetrain",
@@ -14,6 +14,7 @@ ALLOWED = {
     "tasks": set(),
     "disk": set(),
     "processes": set(),
+    "compiling": set(),
     "materials": set(),
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
@@ -37,7 +38,7 @@ ALLOWED = {
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }
-BOTTOM = {"units", "tasks", "disk", "processes"}
+BOTTOM = {"units", "tasks", "disk", "processes", "compiling"}
 
 
 def modules():

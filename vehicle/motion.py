@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actuator.compiled import TORQUE, Inner, Record, Response, compiled, inner_motion, inside, respond
+from actuator.compiled import TORQUE, Inner, Record, Response, inner_motion, inside, respond
+from compiling import compiled
 
 BODY = np.dtype([(name, np.float64) for name in ("mass", "pitch_inertia", "cog_height", "propulsion")])
 _AXLE = ("position", "unsprung_mass", "spring", "bump", "rebound", "stop", "tyre", "load")

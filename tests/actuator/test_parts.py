@@ -1,13 +1,12 @@
 """Force laws of the parts: energy, tangent, and the compiled equations that say them a second time."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from actuator.compiled import SOURCES, inside
+from actuator.compiled import inside
 from actuator.drive import DcLoad, DiodeBridge, TorqueLimit, flat_limit
 from actuator.errors import ActuatorError
 from actuator.model import Actuator
@@ -114,15 +113,3 @@ def test_ratio_between_its_points_and_beyond():
 def test_what_no_actuator_has_is_refused(make, sentence):
     with pytest.raises(ActuatorError, match=sentence):
         make()
-
-
-def test_every_file_with_compiled_code_is_asked_whether_it_changed():
-    project = Path(__file__).resolve().parents[2]
-    rooms = ("control", "actuator", "vehicle")
-    found = {
-        path.relative_to(project).as_posix()
-        for room in rooms
-        for path in (project / room).glob("*.py")
-        if "\n@compiled\n" in path.read_text(encoding="utf-8")
-    }
-    assert found == set(SOURCES)
