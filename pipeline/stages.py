@@ -11,7 +11,7 @@ from actuator.errors import ActuatorError
 from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
-from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
+from drivetrain.heat_views import built_machine, continuous_need, mapped_loss, stated_duty
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -32,7 +32,7 @@ from export.step import StepError
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.errors import GeometryError
-from losses.stage import LossError, loss_law, losses_stage
+from losses.stage import LossError, current_losses_stage, loss_law, losses_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
 from magnetostatics.gap_stress_stage import gap_stress_stage
@@ -156,10 +156,12 @@ _MAGNETS: tuple[Node, ...] = (
     Stage("magnets", magnets_stage, "what they stand", magnets.files, remarks=magnets.remarks),
 )
 _LOSSES: tuple[Node, ...] = (
+    Stage("current_losses", current_losses_stage, "per metre, over the currents"),
     Stage("losses", losses_stage, "loss and efficiency map", losses.files),
     View(mapped_loss),
 )
 _NO_LOSSES: tuple[Node, ...] = (
+    Stage("current_losses", current_losses_stage, "per metre, over the currents", on_request=True),
     Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=True),
     Source(no_loss_data),
 )
@@ -172,6 +174,7 @@ _MACHINE: tuple[Node, ...] = (
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
+    View(continuous_need),
     Stage("winding", winding_stage, "wires, turns, connection, length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),

@@ -16,11 +16,11 @@ from drivetrain.output import Shaft, Wheel
 from electrical.braking_stage import CopperHeat, braking_stage
 from electrical.winding_stage import winding_stage
 from export.stage import package_stage
-from losses.stage import losses_stage
+from losses.stage import current_losses_stage, losses_stage
 from materials.magnet_grade import load_grade
 from report import datasheet
 from report import package as package_report
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 from tests.losses.test_stage_and_figure import LOSSES, Computed
 from tests.magnetostatics.test_flux_map_stage import CASE
 from thermal.cooling import HeatLimits
@@ -41,7 +41,7 @@ UNCERTAINTY = SimpleNamespace(budget=Budget(*[KNOWN] * len(fields(Budget))))
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def outcome(winding):
 
 @pytest.fixture(scope="module")
 def losses(winding):
-    return losses_stage(CASE, MAP, winding, INPUTS, LOSSES, Computed())
+    return losses_stage(current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed()), MAP, winding, INPUTS, LOSSES)
 
 
 @pytest.fixture(scope="module")

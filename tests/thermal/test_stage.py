@@ -12,7 +12,7 @@ from materials.conductor import COPPER
 from materials.magnet import Magnet
 from pipeline.codec import decoded, digest, encoded
 from report.heat import files, flow_table, overload_table, rating_table, remarks, section, temperature_table
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 from tests.thermal.built import CASING, COOLING, WEIGHTS
 from thermal.air import StillAir
 from thermal.cooling import HeatLimits
@@ -41,7 +41,7 @@ class Turning(FieldLoss):
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
