@@ -154,7 +154,8 @@ class LengthByTemperature(ContinuousNeed):
         )
         turns = wound.equivalent_turns
         circulating = wound.circulating_loss(self.flux_map.data, d / turns, q / turns, self.speed)
-        return FieldHeat(*(np.array(length * part) for part in parts), circulating)
+        stator, rotor, magnets = (np.array(length * part) for part in parts)
+        return FieldHeat(stator, rotor, magnets, circulating)
 
 
 def first_root(beyond: Callable[[float], float], low: float, high: float) -> float:
