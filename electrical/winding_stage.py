@@ -157,6 +157,11 @@ def winding_stage(
     return _outcome(flux_map, matched, machine, choice, length, requirement, inputs)
 
 
+def rated_speed(winding: WindingOutcome, limits: WindingLimits) -> float:
+    """The base speed, or the largest allowed one where that is lower [rad/s]."""
+    return min(winding.chosen.base_speed, limits.maximum_speed)
+
+
 def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine) -> PerTurnMachine:
     """The machine of a map before its winding is chosen."""
     return PerTurnMachine(
