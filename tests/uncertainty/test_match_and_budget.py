@@ -123,7 +123,7 @@ def test_a_product_moves_with_all_its_factors_at_once():
 
 
 def test_the_efficiency_moves_with_its_losses():
-    """At 90 %, three quarters copper, a fifth iron, magnets as they are: d ln eta = -0.1 (0.75 d ln P_cu + 0.2 d ln P_fe)."""
+    """At 90 %, three quarters copper, a fifth iron: d ln eta = -0.1 (0.75 d ln P_cu + 0.2 d ln P_fe)."""
     at = PowerLosses(*map(np.array, (9.0, 1.0, 0.75, 0.15, 0.05, 0.05, 0.0)))
     mesh = SimpleNamespace(copper_loss=0.01, iron_loss=float("nan"))
     found = SimpleNamespace(mesh=mesh, sensitivities=(moved(copper_loss=0.04, iron_loss=-0.03),))
