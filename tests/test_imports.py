@@ -26,7 +26,7 @@ ALLOWED = {
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
     "uncertainty": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain"},
     "control": set(),
-    "actuator": {"control"},
+    "actuator": {"electrical", "control"},
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "effects": {"materials", "geometry"},
     "workbench": {"effects", *_FIELD, "figures"},
