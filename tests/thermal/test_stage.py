@@ -176,6 +176,13 @@ def test_without_loss_data_the_run_says_so(winding, found):
     assert not any("no loss data" in line for line in remarks(found, Wheel()))
 
 
+@pytest.mark.parametrize(("share", "said"), ((0.95, False), (0.7, True)))
+def test_another_density_than_was_counted_on_is_said_with_its_key(found, share, said):
+    allowed = found.slow_density * found.at_speed.current / found.slow.current
+    lines = [one for one in remarks(replace(found, nominal_density=share * allowed), Wheel()) if "j_nominal" in one]
+    assert bool(lines) == said and all(f"allow {allowed / 1e6:.3g} A/mm²" in one for one in lines)
+
+
 def test_files_are_written(found, tmp_path):
     (tmp_path / "figures").mkdir()
     for one in files(found, Wheel()):
