@@ -9,7 +9,8 @@ import numpy as np
 
 from drivetrain.outcome import OutcomeInputs, active_masses, machine_envelope
 from drivetrain.requirements import Requirements
-from electrical.final_length import ContinuousNeed
+from electrical.final_length import ContinuousNeed, LengthByDensity
+from electrical.flux_map_machine import FluxMapMachine
 from electrical.shaft_demand import ShaftDemand
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from electrical.wound_machine import WoundMachine
@@ -52,7 +53,13 @@ def built_machine(winding: WindingOutcome, gears: GearboxOutcome, inputs: Outcom
     return WholeActuator(gears, inputs).around(winding.wound)
 
 
-def continuous_need(
+def length_by_density(flux_map: FluxMap, demand: ShaftDemand, windings: WindingInputs) -> ContinuousNeed:
+    """How long the machine must be for its RMS torque at the nominal current density."""
+    machine = FluxMapMachine.from_per_turn(flux_map.data, turns=1, active_length=1.0, resistance=0.0)
+    return LengthByDensity(machine, demand.torque_rms / (1 - flux_map.torque_error), windings.nominal_density)
+
+
+def length_by_temperature(
     flux_map: FluxMap,
     matched: MatchedMachine,
     losses: CurrentLosses | None,

@@ -10,7 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, inf, sqrt
+from typing import ClassVar
 
+from electrical.dq import DqMachine, mtpa_currents
 from electrical.winding_design import WindingDesign
 from units import MILLIMETRE
 
@@ -27,12 +29,42 @@ class LengthNeed:
 
 
 class ContinuousNeed:
-    """The active length that the torque for good asks for; what limits it is known by the concrete one."""
+    """The active length that the torque for good asks for; what limits it is known by the concrete one.
+
+    name: of the demand, in words
+    """
+
+    name: ClassVar[str]
+
+    @property
+    def density(self) -> float | None:
+        """RMS current density in the copper for good [A/m^2], None where the temperatures decide."""
+        return None
 
     def length(self, design: WindingDesign) -> float:
         """Of a machine with this winding [m], infinite where no length is enough; only gauge, copper and closing of
         the design count."""
         raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class LengthByDensity(ContinuousNeed):
+    """By a current density that is stated; machine: of one turn and one metre; torque: for good, with what the mesh may
+    have put on top [Nm]; stated: RMS in the copper [A/m^2]."""
+
+    machine: DqMachine
+    torque: float
+    stated: float
+    name: ClassVar[str] = "the RMS torque at the nominal current density"
+
+    @property
+    def density(self) -> float:
+        return self.stated
+
+    def length(self, design: WindingDesign) -> float:
+        """[m]"""
+        currents = mtpa_currents(self.machine, sqrt(2) * self.stated * design.copper_area)
+        return length_for_torque(self.torque, float(self.machine.torque(*currents)))
 
 
 @dataclass(frozen=True)

@@ -231,7 +231,7 @@ class Lengths:
         """copper: [m^2]; peak: torque [Nm/m]; good: length for the continuous torque [m]."""
         torques = (
             LengthNeed("the peak torque", length_for_torque(self.demand.torque_peak, peak)),
-            LengthNeed("the continuous torque by temperature", good),
+            LengthNeed(self.continuous.name, good),
         )
         if not self.inputs.damping_asked:
             return torques

@@ -11,7 +11,13 @@ from actuator.errors import ActuatorError
 from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
-from drivetrain.heat_views import built_machine, continuous_need, mapped_loss, stated_duty
+from drivetrain.heat_views import (
+    built_machine,
+    length_by_density,
+    length_by_temperature,
+    mapped_loss,
+    stated_duty,
+)
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -74,7 +80,7 @@ from report import (
     winding,
 )
 from report import learned as learned_report
-from study.chain import drives, searches_linkage
+from study.chain import drives, rates_by_density, searches_linkage
 from study.inputs_actuator import actuator_inputs
 from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
@@ -174,7 +180,6 @@ _MACHINE: tuple[Node, ...] = (
     View(matched_machine),
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
-    View(continuous_need),
     Stage("winding", winding_stage, "wires, turns, connection, length", winding.files, remarks=winding.remarks),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
@@ -227,6 +232,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_ENERGY if driven and _has_loss_data(study) else ()),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
+        View(length_by_density if rates_by_density(study) else length_by_temperature),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 

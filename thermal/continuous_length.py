@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, pi
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from scipy.optimize import brentq
@@ -77,6 +77,7 @@ class LengthByTemperature(ContinuousNeed):
     torque: float
     speed: float
     longest: float
+    name: ClassVar[str] = "the continuous torque by temperature"
 
     def length(self, design: WindingDesign) -> float:
         """See ``ContinuousNeed``: the first length [m] at which no limit is passed, infinite where none up to ``REACH``

@@ -65,7 +65,7 @@ class Budget:
     Of the wound machine: peak_torque, continuous_torque: at the current densities [Nm]; torque_constant: no load
     [Nm/A]; resistance: of a phase [ohm]; inductance_d, inductance_q: incremental, no load [H]; base_speed [rad/s];
     cogging: from peak to peak, magnets alike [Nm]; copper_loss: at the continuous torque [W]; mass: active parts [kg]
-    needed_length: active length that the peak torque is given with [m]
+    needed_length: active length that the peak torque asks for, the first of the needs [m]
     power_at_base_speed: at the peak torque [W]; rated_speed [rad/s]; rated_power: continuous torque at that speed [W]
     iron_loss: of the stator, losses: all [W], efficiency: at the rated point; None without loss data. The mesh of the
         iron loss is not bounded
@@ -145,7 +145,7 @@ def budget_of(
         cogging=wound("cogging"),
         copper_loss=wound("copper_loss"),
         mass=wound("mass"),
-        needed_length=wound("peak_torque", winding.wound.active_length),
+        needed_length=wound("peak_torque", winding.length.needs[0].length),
         peak_effort=wound("peak_torque", outcome.features.effort_peak),
         power_at_base_speed=product(winding.chosen.power_at_base_speed, peak_torque=1, base_speed=1),
         rated_speed=product(speed, base_speed=moves),

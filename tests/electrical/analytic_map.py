@@ -79,6 +79,7 @@ class AnyLength(ContinuousNeed):
     """A length for good [m] that the copper does not change."""
 
     needed: float = 1 * MILLIMETRE
+    name = "the continuous torque of a test"
 
     def length(self, design):
         return self.needed

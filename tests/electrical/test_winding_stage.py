@@ -7,10 +7,10 @@ import pytest
 
 from drivetrain.requirements import shaft_demand
 from electrical.dq import base_speed, mtpa_currents
-from electrical.final_length import LENGTH_STEP
+from electrical.final_length import LENGTH_STEP, LengthByDensity
 from electrical.short_circuit import winding_damping
 from electrical.winding_selection import WindingError
-from electrical.winding_stage import winding_stage
+from electrical.winding_stage import per_turn_machine, winding_stage
 from tests.electrical.analytic_map import (
     AMPERE_TURNS,
     DEMAND,
@@ -147,9 +147,21 @@ def test_rows_are_of_the_overload_current(found):
 def test_the_length_for_good_sets_the_length_where_it_is_the_largest():
     found = winding_stage(MAP, MATCHED, DEMAND, INPUTS, AnyLength(60 * MILLIMETRE))
     assert found.wound.active_length == pytest.approx(60 * MILLIMETRE)
-    assert found.length.set_by.name == "the continuous torque by temperature"
+    assert found.length.set_by.name == AnyLength.name and found.length.needs[0].name == "the peak torque"
 
 
 def test_a_torque_for_good_that_no_length_gives_leaves_the_length_to_the_peak(found):
     hot = winding_stage(MAP, MATCHED, DEMAND, INPUTS, AnyLength(inf))
     assert hot.length.length == found.length.length and hot.length.needs[1].length == inf
+
+
+def test_a_stated_density_gives_its_torque_at_the_length_for_it():
+    density, machine = INPUTS.nominal_density, per_turn_machine(MAP, MATCHED).dq
+    need = LengthByDensity(machine, 3.0, density)
+    found = winding_stage(MAP, MATCHED, DEMAND, INPUTS, need)
+    wound = replace(found.wound, active_length=need.length(found.wound.design))
+    current = wound.current_peak(density)
+    on_map = wound.on_map(MAP.data)
+    assert on_map.torque(*mtpa_currents(on_map, current)) == pytest.approx(3.0, rel=1e-6)
+    assert found.length.needs[1].length == pytest.approx(wound.active_length, rel=1e-3) and need.density == density
+    assert GOOD.density is None
