@@ -13,7 +13,7 @@ import pandas as pd
 
 from geometry.family import Combination
 from geometry.variables import FURTHER
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from optimisation.constrained_optimum import NoOptimumError
 from optimisation.design import Judge
 from optimisation.freedom import Freedom
@@ -43,7 +43,7 @@ def freed_with(keys: tuple[str, ...]) -> Freedom:
     return freedom(read_study("motorcycle", [f"variables.{key}=[{BOUNDS[key][0]}, {BOUNDS[key][1]}]" for key in keys]))
 
 
-def found(case: FieldCase, limit: SaturationLimit, combination: Combination, free: Freedom) -> dict[str, object]:
+def found(case: FamilyCase, limit: SaturationLimit, combination: Combination, free: Freedom) -> dict[str, object]:
     """One optimum from the study's own machine, in drawing units; without numbers where none was found."""
     judge = Judge(case, limit.reading, case.nominal_density, QuickMeanTorque())
     start = [one.of(case.family.machine(combination)) for one in free.variables]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import prod
+from typing import TypeVar
 
 from drivetrain.added_friction import AddedFriction
 from drivetrain.requirements import Requirements, Transmission, shaft_demand
@@ -19,6 +20,7 @@ from magnetostatics.model import MachineMaterials
 from materials.altered_steel import ScaledSaturation, hardened, stacked
 from materials.reluctivity import Reluctivity
 
+Case = TypeVar("Case", bound=FieldCase)
 
 @dataclass(frozen=True)
 class Quantity:
@@ -149,7 +151,7 @@ class Learned:
 NOTHING_LEARNED = Learned()
 
 
-def case_as_learned(case: FieldCase, learned: Learned) -> FieldCase:
+def case_as_learned(case: Case, learned: Learned) -> Case:
     """The machines and materials of a study with the magnets, the steel and the end leakage of the bench.
 
     Flux that the winding lacks, for a reason that the bench did not tell, acts as end leakage does: the field inside

@@ -12,6 +12,7 @@ from typing import Protocol
 
 from geometry.areas import part_areas
 from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,9 @@ class PartMasses:
         )
 
 
-def part_masses(machine: Machine, active_length: float, copper: CopperBars, materials: PartMaterials) -> PartMasses:
+def part_masses(
+    machine: DrawnMachine, active_length: float, copper: CopperBars, materials: PartMaterials
+) -> PartMasses:
     """Masses and inertias of the drawn parts.
 
     m = rho k A l and J = rho k l (integral of r^2 dA), with the stacking k for laminations and 1 for the others.

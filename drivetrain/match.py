@@ -30,7 +30,7 @@ from drivetrain.masses import CopperBars, MassModel
 from drivetrain.output import Output
 from drivetrain.planetary import Gearbox, GearboxDesign
 from drivetrain.requirements import Requirements
-from electrical.end_turn import end_turn_length
+from electrical.wound_machine import machine_end_turn
 from geometry.machine import Machine
 from units import MILLIMETRE
 
@@ -71,14 +71,7 @@ class SizedSection:
     @property
     def end_turn_length(self) -> float:
         """l_et [m], with the shoe (3.84-3.90), of the coil pitch."""
-        machine = self.machine
-        return end_turn_length(
-            slots=machine.slots,
-            shoe_top_radius=machine.shoe_top_radius,
-            slot_bottom_radius=machine.slot_bottom_radius,
-            tooth_width=machine.tooth_width,
-            coil_pitch=self.coil_pitch,
-        )
+        return machine_end_turn(self.machine, self.coil_pitch)
 
     def copper(self, packing: float) -> CopperBars:
         """The copper of all three phases at a packing factor k_cp."""

@@ -45,7 +45,7 @@ from drivetrain.requirements import Linkage, Requirements
 from geometry.family import Combination, MatchedMachine
 from geometry.machine import Machine
 from geometry.winding import star_of_slots
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.model import FieldModel, FieldSolution
 from magnetostatics.positions import period_points
 from magnetostatics.torque import maxwell_torque
@@ -233,7 +233,7 @@ class Matcher:
     radii, ratio_samples: how many stator radii and transmission ratios are looked at before the best is refined
     """
 
-    case: FieldCase
+    case: FamilyCase
     fits: SectionFits
     requirements: Requirements
     linkage: Linkage
@@ -339,7 +339,7 @@ class Matcher:
 
 
 def sized_section(
-    case: FieldCase, machine: Machine, coil_side_area: float, torque_nominal: float, torque_overload: float
+    case: FamilyCase, machine: Machine, coil_side_area: float, torque_nominal: float, torque_overload: float
 ) -> SizedSection:
     """A machine of a study as the match sees it.
 
@@ -357,7 +357,7 @@ def _coils(slots: int, pole_pairs: int, layers: int, coil_pitch: int | None) -> 
 
 
 def match_stage(
-    case: FieldCase,
+    case: FamilyCase,
     fits: SectionFits,
     requirements: Requirements,
     linkage: Linkage,
@@ -477,7 +477,7 @@ def _comparison(chosen: Match, best: RadiusMatches) -> str:
 _SOLVED = "the study's machine with its torques from the field solution, mean over a period"
 
 
-def solved_section(case: FieldCase, machine: Machine) -> SizedSection:
+def solved_section(case: FamilyCase, machine: Machine) -> SizedSection:
     """A machine as the match sees it, with slot area and torques from the field in the place of the fits.
 
     Raises GeometryError where it cannot be built.
@@ -489,7 +489,7 @@ def solved_section(case: FieldCase, machine: Machine) -> SizedSection:
     return sized_section(case, machine, area, nominal, overload)
 
 
-def _mean_torque(case: FieldCase, model: FieldModel, density: float) -> float:
+def _mean_torque(case: FamilyCase, model: FieldModel, density: float) -> float:
     """The torque that optima have, mean over one electrical period [Nm/m], at an amplitude of the current [A/m^2]."""
     section = model.section
     solutions: list[FieldSolution] = []
@@ -518,7 +518,7 @@ def _stated_reason(printed: PrintedMachine) -> str:
     )
 
 
-def _printed_section(case: FieldCase, printed: PrintedMachine) -> SizedSection:
+def _printed_section(case: FamilyCase, printed: PrintedMachine) -> SizedSection:
     """The study's machine with somebody else's torque and slot, the torque scaled linearly to the overload."""
     overload = linear_overload(printed.torque_nominal, case.nominal_density, case.overload_density)
     machine = case.family.reference

@@ -202,7 +202,7 @@ def active_masses(wound: WoundMachine, materials: PartMaterials) -> PartMasses:
         sides=6 * wound.coils_in_series,
         end_turn_length=wound.end_turn_length,
     )
-    return part_masses(wound.machine, wound.active_length, copper, materials)
+    return part_masses(wound.dimensions, wound.active_length, copper, materials)
 
 
 def actuator_design(
@@ -238,7 +238,7 @@ def actuator_design(
 
 def machine_envelope(wound: WoundMachine) -> MachineEnvelope:
     """The machine as the assembly sees it; end turns are half circles: their height is their length over pi."""
-    machine = wound.machine
+    machine = wound.dimensions
     return MachineEnvelope(
         stator_outer_radius=machine.stator_outer_radius,
         rotor_outer_radius=machine.rotor_outer_radius,

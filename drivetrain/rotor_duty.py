@@ -17,7 +17,7 @@ def rotor_duty(
     wound, materials = winding.wound, inputs.materials
     masses, envelope = active_masses(wound, materials), machine_envelope(wound)
     return RotorDuty(
-        machine=wound.machine,
+        machine=wound.dimensions,
         active_length=wound.active_length,
         bearing_span=wound.active_length + 2 * envelope.end_winding_length + inputs.housing.bearing_seat,
         mass=masses.rotor_mass,

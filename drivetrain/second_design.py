@@ -107,7 +107,7 @@ def lesson_costs_stage(first: FirstDesign, learned: Learned, workers: Workers) -
     cases = _cases(learned)
     task = TorqueTask(
         first.case,
-        first.winding.wound.machine,
+        first.winding.wound.dimensions,
         first.winding.wound.active_length,
         _ampere_turns(first),
         first.flux_map.data.sizes["angle"],

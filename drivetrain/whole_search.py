@@ -34,7 +34,7 @@ from geometry.family import Combination
 from geometry.machine import Machine
 from losses.iron import FrequencyTerms
 from losses.map import field_losses
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.model import OperatingPoint
 from materials.iron_loss import IronLossLaw, iron_loss_law
 from optimisation.fits import SectionFits
@@ -65,7 +65,7 @@ class WholeSearchInputs:
 class FieldTask:
     """A machine of a study, with the loss data of its steel."""
 
-    case: FieldCase
+    case: FamilyCase
     machine: Machine
     law: IronLossLaw
 
@@ -194,7 +194,7 @@ class WholeSearch:
 
 
 def optimise_stage(
-    case: FieldCase,
+    case: FamilyCase,
     fits: SectionFits,
     match: MatchOutcome,
     linkage: Linkage,
@@ -363,7 +363,7 @@ def _shown(
 
 def _solved(
     problem: WholeProblem,
-    case: FieldCase,
+    case: FamilyCase,
     law: IronLossLaw,
     shown: tuple[tuple[str, RatedDesign], ...],
     workers: Workers,

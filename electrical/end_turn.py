@@ -5,26 +5,28 @@ from __future__ import annotations
 from math import asin, pi
 
 
-def slot_centre_distance(*, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float) -> float:
+def slot_centre_distance(
+    *, slots: int, slot_inner_radius: float, slot_outer_radius: float, tooth_width: float
+) -> float:
     """Arc between the centres of the two half-slots that one tooth coil fills, D_et [m].
 
     D_et = (R_1 + R_2)/2 theta_w                        (3.85)
     theta_w = pi/N_s + asin(w_tb / (R_1 + R_2))         (3.89)
 
     slots: number of slots N_s
-    shoe_top_radius: R_1 = R_ro + g + d_1 + d_2 [m]     (3.86)
-    slot_bottom_radius: R_2 = R_so - w_bi [m]           (3.86)
+    slot_inner_radius, slot_outer_radius: where a coil side begins and ends; R_1 = R_ro + g + d_1 + d_2 and
+        R_2 = R_so - w_bi inside a stator around its rotor [m] (3.86)
     tooth_width: w_tb [m]
     Raises ValueError when the slot has no depth or the tooth is wider than the slot pitch at mid slot.
     Source: thesis eqs 3.85-3.89; coils wound on single teeth only.
     """
-    diameter = shoe_top_radius + slot_bottom_radius
-    _check_slot(slots, shoe_top_radius, slot_bottom_radius, tooth_width)
+    diameter = slot_inner_radius + slot_outer_radius
+    _check_slot(slots, slot_inner_radius, slot_outer_radius, tooth_width)
     return diameter / 2 * (pi / slots + asin(tooth_width / diameter))
 
 
 def end_turn_length(
-    *, slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float, coil_pitch: int
+    *, slots: int, slot_inner_radius: float, slot_outer_radius: float, tooth_width: float, coil_pitch: int
 ) -> float:
     """Length of one end turn, a half circle over the distance D of the two coil sides, l_et = pi D / 2 [m] (3.84).
 
@@ -43,22 +45,22 @@ def end_turn_length(
         raise ValueError(f"a coil spans one slot pitch or more; found {coil_pitch}")
     distance = slot_centre_distance(
         slots=slots,
-        shoe_top_radius=shoe_top_radius,
-        slot_bottom_radius=slot_bottom_radius,
+        slot_inner_radius=slot_inner_radius,
+        slot_outer_radius=slot_outer_radius,
         tooth_width=tooth_width,
     )
     if coil_pitch > 1:
-        distance = coil_pitch * pi * (shoe_top_radius + slot_bottom_radius) / slots
+        distance = coil_pitch * pi * (slot_inner_radius + slot_outer_radius) / slots
     return pi * distance / 2
 
 
-def _check_slot(slots: int, shoe_top_radius: float, slot_bottom_radius: float, tooth_width: float) -> None:
-    if slot_bottom_radius <= shoe_top_radius:
+def _check_slot(slots: int, slot_inner_radius: float, slot_outer_radius: float, tooth_width: float) -> None:
+    if slot_outer_radius <= slot_inner_radius:
         raise ValueError(
-            f"the slot has no depth: its bottom radius is {slot_bottom_radius:.6g} m, the top of the shoe "
-            f"{shoe_top_radius:.6g} m; reduce the rotor radius, the shoe or the back iron"
+            f"the slot has no depth: its bottom radius is {slot_outer_radius:.6g} m, the top of the shoe "
+            f"{slot_inner_radius:.6g} m; reduce the rotor radius, the shoe or the back iron"
         )
-    pitch = pi * (shoe_top_radius + slot_bottom_radius) / slots
+    pitch = pi * (slot_inner_radius + slot_outer_radius) / slots
     if not 0 < tooth_width < pitch:
         raise ValueError(
             f"tooth width must lie between 0 and the slot pitch at mid slot, {pitch:.6g} m; found {tooth_width:.6g} m"

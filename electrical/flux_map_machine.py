@@ -177,8 +177,9 @@ class FluxMapMachine:
 
     @property
     def reach(self) -> float:
-        """Largest peak current of which the whole motoring quarter (i_d <= 0 <= i_q) lies in the map [A]."""
-        return float(min(-self.i_d[0], self.i_q[-1]))
+        """Largest peak current of which a whole motoring quarter lies in the map [A]: 0 <= i_q and i_d <= 0, or
+        0 <= i_d where the map has no other, as that of a machine without magnets."""
+        return float(min(max(-self.i_d[0], self.i_d[-1]), self.i_q[-1]))
 
     def direct_range(self, current: Values) -> tuple[Values, Values]:
         """Range of i_d [A] inside a current [A] and inside the map.

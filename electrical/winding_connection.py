@@ -93,4 +93,5 @@ class WindingConnection:
         return self.closing.name if self.paths == 1 else f"{self.closing.name}, {self.paths} parallel paths"
 
 
+CLOSINGS: dict[str, Star | Delta] = {one.name: one for one in (Star(), Delta())}
 SERIES_STAR = WindingConnection(1, Star())

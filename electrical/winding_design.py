@@ -12,7 +12,7 @@ from electrical.wire import Wire
 class WindingDesign:
     """turns: of one coil, N_t; strands: wires in hand, N_h; wire: each of them; connection: of the coils and phases."""
 
-    turns: int
+    turns: float
     strands: int
     wire: Wire
     connection: WindingConnection

@@ -142,7 +142,7 @@ class Winding:
     speed_at_maximum_power: float | None = None  # mechanical [rad/s]
 
     @property
-    def turns(self) -> int:
+    def turns(self) -> float:
         """Of one coil, N_t."""
         return self.design.turns
 

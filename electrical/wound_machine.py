@@ -14,7 +14,8 @@ from electrical.end_turn import end_turn_length
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
 from electrical.winding_design import WindingDesign
-from geometry.machine import Machine
+from geometry.machine import Machine, dimensions_of
+from geometry.parts import DrawnMachine
 
 
 @dataclass(frozen=True)
@@ -27,11 +28,16 @@ class WoundMachine:
     active_length: l [m]
     """
 
-    machine: Machine
+    machine: DrawnMachine
     coils_in_series: int
     coil_pitch: int
     design: WindingDesign
     active_length: float
+
+    @property
+    def dimensions(self) -> Machine:
+        """See ``geometry.machine.dimensions_of``."""
+        return dimensions_of(self.machine)
 
     @property
     def equivalent_turns(self) -> float:
@@ -95,12 +101,13 @@ class WoundMachine:
         )
 
 
-def machine_end_turn(machine: Machine, coil_pitch: int) -> float:
+def machine_end_turn(machine: DrawnMachine, coil_pitch: int) -> float:
     """Length of one end turn of a machine [m]; coil_pitch [slots]. See ``end_turn_length``."""
+    inner, outer = machine.stator.slot_radii
     return end_turn_length(
         slots=machine.slots,
-        shoe_top_radius=machine.shoe_top_radius,
-        slot_bottom_radius=machine.slot_bottom_radius,
-        tooth_width=machine.tooth_width,
+        slot_inner_radius=inner,
+        slot_outer_radius=outer,
+        tooth_width=machine.stator.probed_tooth_width,
         coil_pitch=coil_pitch,
     )

@@ -96,8 +96,7 @@ def _pieces(curve: Curve) -> list[Curve]:
     if isinstance(curve, Line):
         return [curve]
     count = ceil(abs(curve.sweep) / _LONGEST_ARC)
-    step = curve.sweep / count
-    return [Arc(curve.radius, curve.first + k * step, step) for k in range(count)]
+    return [curve.part(k / count, 1 / count) for k in range(count)]
 
 
 def _point(place: complex) -> int:
@@ -107,7 +106,7 @@ def _point(place: complex) -> int:
 def _curve(curve: Curve, start: int, end: int) -> int:
     if isinstance(curve, Line):
         return gmsh.model.occ.addLine(start, end)
-    centre = gmsh.model.occ.addPoint(0.0, 0.0, 0.0)
+    centre = _point(curve.centre)
     arc = gmsh.model.occ.addCircleArc(start, centre, end)
     gmsh.model.occ.remove([(0, centre)])  # or it goes into the file as a part of its own
     return int(arc)

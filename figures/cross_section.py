@@ -112,7 +112,7 @@ def _draw_magnetisation(axes: Axes, section: CrossSection, angle: float) -> None
     spread = m.magnet_arc_fraction * m.pole_pitch * np.linspace(-0.3, 0.3, _ARROWS_PER_MAGNET)
     for magnet in range(m.poles):
         centre = magnet * m.pole_pitch
-        direction = m.magnetisation.direction_angle(centre + spread, centre) + angle
+        direction = m.rotor.direction(centre + spread, centre) + angle
         for place, pointing in zip(centre + spread + angle, direction, strict=True):
             _arrow(axes, radius * np.exp(1j * place), section.polarity(magnet) * length * np.exp(1j * pointing))
 

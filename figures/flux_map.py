@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,6 +11,7 @@ from matplotlib.figure import Figure
 
 from electrical.dq import Envelope
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.performance import Performance
 from figures.style import BLACK, BLUE, FIELD_MAP, GREY, ORANGE, VERMILION, letter, new_figure, show_grid, styled
 from units import RPM
 
@@ -18,18 +20,10 @@ _FIELD_LOOK: dict[str, Any] = {"color": BLUE, "label": "flux map"}
 _CONSTANT_LOOK: dict[str, Any] = {"color": ORANGE, "linestyle": "--", "label": "constant parameters"}
 
 
-class Curve(NamedTuple):
-    """A line in the plane of the currents: i_d, i_q [A peak]."""
-
-    i_d: np.ndarray
-    i_q: np.ndarray
-
-
 @styled
-def flux_maps(machine: FluxMapMachine, mtpa: Curve, mtpv: Curve, envelope: Envelope, current_peak: float) -> Figure:
+def flux_maps(machine: FluxMapMachine, found: Performance, current_peak: float) -> Figure:
     """psi_d and psi_q over the motoring currents, with the MTPA and MTPV curves and the envelope's path.
 
-    mtpa: from no current to the limit; mtpv: over speed, NaN where the current limit rules
     current_peak: limit [A], drawn as a circle
     """
     i_d, i_q = np.linspace(machine.i_d[0], machine.i_d[-1], _SAMPLES), np.linspace(0.0, machine.i_q[-1], _SAMPLES)
@@ -38,7 +32,7 @@ def flux_maps(machine: FluxMapMachine, mtpa: Curve, mtpv: Curve, envelope: Envel
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
     for axis, psi, name in zip(axes, values, ("d", "q"), strict=True):
         _map(figure, axis, i_d, i_q, 1e3 * psi, f"{name}-axis flux linkage / mWb")
-        _draw_currents(axis, mtpa, mtpv, envelope, current_peak)
+        _draw_currents(axis, found, current_peak)
         axis.set_title(f"flux linkage $\\psi_{name}$", loc="left")
         axis.set_xlabel("$i_d$ / A")
         axis.set_aspect("equal")
@@ -52,8 +46,23 @@ def flux_maps(machine: FluxMapMachine, mtpa: Curve, mtpv: Curve, envelope: Envel
 def field_envelope(field: Envelope, constant: Envelope, *, title: str) -> Figure:
     """Largest torque, power and its currents over speed, from the flux map and from constant parameters."""
     figure = new_figure(4.6)
+    axes = _envelopes(figure, ((field, _FIELD_LOOK), (constant, _CONSTANT_LOOK)))
+    figure.suptitle(title)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+@styled
+def envelope_over_speed(envelope: Envelope) -> Figure:
+    """Largest torque, power and its current on the d axis over speed."""
+    figure = new_figure(4.0)
+    _envelopes(figure, ((envelope, {"color": BLUE}),))
+    return figure
+
+
+def _envelopes(figure: Figure, envelopes: Iterable[tuple[Envelope, dict[str, Any]]]) -> np.ndarray:
     axes = figure.subplots(1, 3)
-    for envelope, look in ((field, _FIELD_LOOK), (constant, _CONSTANT_LOOK)):
+    for envelope, look in envelopes:
         speed_rpm = envelope.speed / RPM
         axes[0].plot(speed_rpm, envelope.torque, **look)
         axes[1].plot(speed_rpm, envelope.power / 1e3, **look)
@@ -66,9 +75,7 @@ def field_envelope(field: Envelope, constant: Envelope, *, title: str) -> Figure
         axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
     letter(axes)
     show_grid(*axes)
-    figure.suptitle(title)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    return figure
+    return axes
 
 
 def _map(figure: Figure, axes: Axes, i_d: np.ndarray, i_q: np.ndarray, values: np.ndarray, label: str) -> None:
@@ -78,10 +85,13 @@ def _map(figure: Figure, axes: Axes, i_d: np.ndarray, i_q: np.ndarray, values: n
     figure.colorbar(colours, ax=axes, pad=0.02, orientation="horizontal").set_label(label)
 
 
-def _draw_currents(axes: Axes, mtpa: Curve, mtpv: Curve, envelope: Envelope, current_peak: float) -> None:
-    angle = np.linspace(0.0, np.pi / 2, 91)
+def _draw_currents(axes: Axes, found: Performance, current_peak: float) -> None:
+    magnetising = found.full.direct > 0
+    angle = np.linspace(-np.pi / 2 if magnetising else 0.0, 0.0 if magnetising else np.pi / 2, 91)
     circle = -current_peak * np.sin(angle), current_peak * np.cos(angle)
     axes.plot(*circle, color=GREY, linestyle=":", label="current limit")
-    axes.plot(*mtpa, color=BLACK, label="MTPA")
-    axes.plot(*mtpv, color=BLACK, linestyle="--", label="MTPV")
-    axes.plot(envelope.i_d, envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed")
+    axes.plot(found.mtpa_direct, found.mtpa_quadrature, color=BLACK, label="MTPA")
+    axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
+    axes.plot(
+        found.envelope.i_d, found.envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed"
+    )

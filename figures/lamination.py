@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cmath import exp, rect
+from cmath import exp
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
@@ -16,6 +16,7 @@ from figures.dimension_lines import TO_THE_POINT, Place, measure
 from figures.style import BLACK, GREY, PHASE_COLOURS, PHASE_LIGHT, Look, new_figure, styled
 from geometry.machine import Machine
 from geometry.outline import Arc, Contour, Curve, Outline, Part, outline_of
+from geometry.parts import DrawnMachine
 from geometry.winding import WindingLayout
 from units import MILLIMETRE
 
@@ -39,6 +40,19 @@ def lamination(machine: Machine, layout: WindingLayout) -> Figure:
     _measure_tooth(tooth, machine)
     whole.set_title(f"{machine.slots} slots, {machine.poles} poles; dimensions in mm", loc="left")
     tooth.set_title("Tooth 0, enlarged", loc="left")
+    return figure
+
+
+@styled
+def outline_picture(machine: DrawnMachine, layout: WindingLayout) -> Figure:
+    """The whole machine of any kind, without dimensions."""
+    figure = new_figure(6.0)
+    axes = figure.subplots()
+    _fill(axes, outline_of(machine), layout)
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.set(xlabel="mm", ylabel="mm")
+    axes.set_title(f"{machine.slots} slots, {machine.poles} poles", loc="left")
     return figure
 
 
@@ -72,7 +86,7 @@ def _points(curve: Curve) -> Iterable[complex]:
     if not isinstance(curve, Arc):
         return (curve.start,)
     chords = max(2, int(abs(curve.sweep) / _CHORD))
-    return (rect(curve.radius, curve.first + curve.sweep * step / chords) for step in range(chords))
+    return (curve.part(step / chords, 1 / chords).start for step in range(chords))
 
 
 # ---- dimensions -----------------------------------------------------------------------------------------------------

@@ -32,18 +32,23 @@ _HEADROOM = 0.35  # of the height, above the curves for the legend
 
 @styled
 def rotation(
-    table: pd.DataFrame, *, null_angle_deg: float | None = None, q_axis_angle_deg: float | None = None
+    table: pd.DataFrame,
+    *,
+    null_angle_deg: float | None = None,
+    q_axis_angle_deg: float | None = None,
+    current: str = "nominal",
 ) -> Figure:
     """Torque per length by both routes, without current, and the probes in teeth and back iron.
 
     table: columns ``angle_mech_deg``, ``torque_arkkio_Nm_per_m``, ``torque_maxwell_Nm_per_m``,
         ``torque_no_current_Nm_per_m``, ``tooth_<k>_T``, ``back_iron_<k>_T``
     null_angle_deg: rotor angle at which a magnet stands on a tooth; q_axis_angle_deg: angle of the marked field
+    current: which one, in a word
     """
     table = table.sort_values("angle_mech_deg")
     figure = new_figure(9.6)
     axes = figure.subplots(4, 1, sharex=True, height_ratios=(1.5, 1.0, 1.2, 1.2))
-    _draw_torque(axes[0], table)
+    _draw_torque(axes[0], table, current)
     _draw_no_current(axes[1], table)
     _draw_probes(axes[2], table, "tooth_", "teeth")
     _draw_probes(axes[3], table, "back_iron_", "back iron")
@@ -74,7 +79,7 @@ def _is_even(span: np.ndarray) -> bool:
     return bool(np.allclose(np.diff(span), span[1], rtol=1e-6))
 
 
-def _draw_torque(axes: Axes, table: pd.DataFrame) -> None:
+def _draw_torque(axes: Axes, table: pd.DataFrame, current: str) -> None:
     for column, name, look in TORQUES:
         if column not in table:
             continue
@@ -84,7 +89,7 @@ def _draw_torque(axes: Axes, table: pd.DataFrame) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + _HEADROOM * (high - low))
     axes.set_ylabel("torque per length\n/ (Nm/m)")
-    axes.set_title("torque per length at the nominal current", loc="left")
+    axes.set_title(f"torque per length at the {current} current", loc="left")
 
 
 def _draw_no_current(axes: Axes, table: pd.DataFrame) -> None:

@@ -80,9 +80,14 @@ class CrossSection:
         return self.machine.slots // self.sectors
 
     @property
+    def poles(self) -> int:
+        """Poles in the sector."""
+        return self.machine.poles // self.sectors
+
+    @property
     def magnets(self) -> int:
         """Magnets in the sector."""
-        return self.machine.poles * self.machine.rotor.magnets_per_pole // self.sectors
+        return self.poles * self.machine.rotor.magnets_per_pole
 
     @property
     def coil_sides(self) -> tuple[tuple[int, str], ...]:

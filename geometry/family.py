@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from geometry.machine import Machine, hanselman_machine
+from geometry.machine import Machine, dimensions_of, hanselman_machine
 from geometry.magnetisation import Magnetisation
+from geometry.parts import DrawnMachine
 
 _STATED = ("tooth_width", "shoe_d1", "shoe_d2")
 
@@ -86,4 +87,16 @@ class MachineFamily:
 class MatchedMachine:
     """The cross-section that gearbox and motor were matched to; its winding is chosen by the stages behind it."""
 
-    machine: Machine
+    machine: DrawnMachine
+
+    @property
+    def dimensions(self) -> Machine:
+        """See ``geometry.machine.dimensions_of``."""
+        return dimensions_of(self.machine)
+
+
+@dataclass(frozen=True)
+class StatedMachine:
+    """The cross-section that a study states."""
+
+    machine: DrawnMachine

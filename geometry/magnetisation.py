@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -10,11 +12,12 @@ import numpy as np
 class Magnetisation:
     """Direction of the remanence inside one magnet; the concrete patterns are below."""
 
-    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
         """Angle of the magnetisation vector of an outward magnet [rad], of the shape of the positions.
 
         position_angle: polar angle of the point [rad], array of any shape
         centre_angle: polar angle of the magnet's centre line [rad]
+        pitch: angle between two poles [rad], negative where the gap lies inside of the magnets
         """
         raise NotImplementedError
 
@@ -23,7 +26,7 @@ class Magnetisation:
 class ParallelMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along the magnet's centre line."""
 
-    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
         """The angle of the centre line [rad], of the shape of position_angle [rad], any shape."""
         return 0.0 * position_angle + centre_angle
 
@@ -32,9 +35,26 @@ class ParallelMagnetisation(Magnetisation):
 class RadialMagnetisation(Magnetisation):
     """Every point of a magnet is magnetised along its own radius."""
 
-    def direction_angle(self, position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
         """The polar angle of the point [rad], of the shape of position_angle [rad], any shape."""
         return position_angle + 0.0 * centre_angle
 
 
+@dataclass(frozen=True)
+class HalbachMagnetisation(Magnetisation):
+    """Turned further and further from the centre line on, so that the flux gathers at the gap and needs no iron behind.
+
+    delta - pi delta/pitch from the centre line: radial in the middle of a pole, along the circumference between two.
+    Source: the ideal Halbach cylinder, Atallah and Howe, IEEE Trans. Magn. 34(4) (1998) 2060.
+    """
+
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
+        """Angles [rad], of the shape of position_angle [rad], any shape."""
+        off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
+        return centre_angle + off - pi / pitch * off
+
+
 PARALLEL = ParallelMagnetisation()
+PATTERNS: Mapping[str, Magnetisation] = {
+    "parallel": PARALLEL, "radial": RadialMagnetisation(), "halbach": HalbachMagnetisation(),
+}  # fmt: skip

@@ -1,6 +1,6 @@
-"""Outlines of the parts of the whole machine: closed contours of straight lines and of arcs about the axis.
+"""Outlines of the parts of the whole machine: closed contours of straight lines and of arcs.
 
-They come from the drawing of the half cells that is meshed (``geometry.half_cell``), so that what is ordered is what
+They come from the drawing of the half pitches that is meshed (``geometry.parts``), so that what is ordered is what
 was solved: a part is some copies of a region, and a curve that two of its copies share lies inside it and is left out.
 """
 
@@ -9,14 +9,16 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import pi
+from math import pi, sin
 
-from geometry.half_cell import HalfCell, MeshDensity, half_cells
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine, Rim, Rotor
+from geometry.parts import Part as DrawnPart
 from geometry.plane_mesh import Drawing
 
+SHAFT = "shaft"  # region of a rotor whose shaft is drawn
+_ANY_RIM = Rim(edges=8, edge_length=1.0, across_iron=1.0)  # how finely it is meshed moves no corner
 _SAME_PLACE = 1e-9  # m; far below any dimension, far above round-off
 _SAME_DIRECTION = 1e-9  # rad
 _FULL_TURN = 2 * pi
@@ -34,6 +36,12 @@ class Line:
         """Area that the ray from the axis sweeps [m^2], positive counter-clockwise."""
         return (self.start.conjugate() * self.end).imag / 2
 
+    @property
+    def swept_moment(self) -> float:
+        """Polar moment of that area about the axis [m^4]."""
+        squares = abs(self.start) ** 2 + abs(self.end) ** 2 + (self.start.conjugate() * self.end).real
+        return self.swept * squares / 6
+
     def joined(self, other: Curve) -> Curve | None:
         """One line in the place of this and the next, None where they make a corner."""
         if not isinstance(other, Line):
@@ -44,24 +52,26 @@ class Line:
 
 @dataclass(frozen=True)
 class Arc:
-    """A circular arc about the axis.
+    """A circular arc.
 
-    radius: [m]; first: angle of its start [rad]; sweep: [rad], positive counter-clockwise, a full circle at 2 pi
+    radius: [m]; first: angle of its start about its centre [rad]; sweep: [rad], positive counter-clockwise, a full
+    circle at 2 pi; centre: x + jy [m], the axis of the machine where none is given
     """
 
     radius: float
     first: float
     sweep: float
+    centre: complex = 0j
 
     @property
     def start(self) -> complex:
         """First point x + jy [m]."""
-        return rect(self.radius, self.first)
+        return self.centre + rect(self.radius, self.first)
 
     @property
     def end(self) -> complex:
         """Last point x + jy [m]."""
-        return rect(self.radius, self.first + self.sweep)
+        return self.centre + rect(self.radius, self.first + self.sweep)
 
     @property
     def is_circle(self) -> bool:
@@ -71,13 +81,34 @@ class Arc:
     @property
     def swept(self) -> float:
         """Area that the ray from the axis sweeps [m^2], positive counter-clockwise."""
-        return self.radius**2 * self.sweep / 2
+        chord = (self.centre.conjugate() * (self.end - self.start)).imag
+        return (self.radius**2 * self.sweep + chord) / 2
+
+    @property
+    def swept_moment(self) -> float:
+        """Polar moment of that area about the axis [m^4].
+
+        1/4 integral of r^2 (x dy - y dx), with r^2 = R^2 + c^2 + 2 R c cos(psi), x dy - y dx = R (R + c cos(psi)) dpsi,
+        psi counted from the direction of the centre at c
+        """
+        radius, distance = self.radius, abs(self.centre)
+        ends = (self.first - phase(self.centre), self.first + self.sweep - phase(self.centre))
+        cosine = sin(ends[1]) - sin(ends[0])
+        square = self.sweep / 2 + (sin(2 * ends[1]) - sin(2 * ends[0])) / 4
+        sum_of_squares = radius**2 + distance**2
+        constant = radius * sum_of_squares * self.sweep + distance * (sum_of_squares + 2 * radius**2) * cosine
+        return radius / 4 * (constant + 2 * radius * distance**2 * square)
+
+    def part(self, start: float, share: float) -> Arc:
+        """The arc of a share of it from a place on it, 0 at its start and 1 at its end, dimensionless."""
+        return replace(self, first=self.first + start * self.sweep, sweep=share * self.sweep)
 
     def joined(self, other: Curve) -> Curve | None:
         """One arc in the place of this and the next, None where they make a corner."""
         if not isinstance(other, Arc) or abs(other.radius - self.radius) > _SAME_PLACE:
             return None
-        return Arc(self.radius, self.first, self.sweep + other.sweep) if self.sweep * other.sweep > 0 else None
+        goes_on = self.sweep * other.sweep > 0 and abs(other.centre - self.centre) < _SAME_PLACE
+        return replace(self, sweep=self.sweep + other.sweep) if goes_on else None
 
 
 Curve = Line | Arc
@@ -94,6 +125,11 @@ class Contour:
         """What it encloses [m^2], negative for a hole, which runs clockwise."""
         return sum(curve.swept for curve in self.curves)
 
+    @property
+    def moment(self) -> float:
+        """Its polar moment about the axis [m^4], negative for a hole."""
+        return sum(curve.swept_moment for curve in self.curves)
+
 
 @dataclass(frozen=True)
 class Part:
@@ -106,12 +142,18 @@ class Part:
         """Of the section [m^2]."""
         return sum(contour.area for contour in self.contours)
 
+    @property
+    def moment(self) -> float:
+        """Polar moment of the section about the axis [m^4]."""
+        return sum(contour.moment for contour in self.contours)
+
 
 @dataclass(frozen=True)
 class Outline:
-    """Every part of the whole machine with magnet 0 on the axis of tooth 0.
+    """Every part of the whole machine with pole 0 on the axis of tooth 0.
 
     stator, rotor: laminations; magnets: by number; coil_sides: by (slot, side), see ``geometry.winding``
+    shaft: a solid bar, without contours in a rotor that leaves no room for one
     """
 
     stator: Part
@@ -121,15 +163,14 @@ class Outline:
     coil_sides: dict[tuple[int, str], Part]
 
 
-def outline_of(machine: Machine) -> Outline:
+def outline_of(machine: DrawnMachine) -> Outline:
     """The outline of a machine that can be built (``geometry.checks``)."""
-    stator_cell, rotor_cell = half_cells(machine, MeshDensity())
-    stator, rotor = _Ring(stator_cell, machine), _Ring(rotor_cell, machine)
+    stator, rotor = _Ring(machine.stator, 2 * machine.slots), _Ring(machine.rotor, 2 * machine.poles)
     return Outline(
-        stator=stator.part("iron", range(2 * machine.slots)),
-        rotor=rotor.part("iron", range(2 * machine.poles)),
-        shaft=rotor.part("shaft", range(2 * machine.poles)),
-        magnets=tuple(rotor.part("magnet", (2 * m, 2 * m + 1)) for m in range(machine.poles)),
+        stator=stator.whole("iron"),
+        rotor=rotor.whole("iron"),
+        shaft=_shaft(machine.rotor, rotor),
+        magnets=tuple(rotor.part("magnet", copies) for copies in _magnet_copies(machine.rotor)),
         coil_sides={
             (slot, side): stator.part("copper", [2 * slot + place])
             for slot in range(machine.slots)
@@ -138,12 +179,36 @@ def outline_of(machine: Machine) -> Outline:
     )
 
 
-class _Ring:
-    """Copies of a half cell round the machine, numbered and mirrored as in ``geometry.cross_section.Piece``."""
+def region_contours(part: DrawnPart) -> dict[str, Contour]:
+    """Of the regions of half a pitch of a stator or rotor."""
+    drawing = part.draw(_ANY_RIM)
+    return {name: Contour(tuple(_loop(drawing, corners))) for name, corners in drawing.regions.items()}
 
-    def __init__(self, cell: HalfCell, machine: Machine) -> None:
-        self.drawing, self.pitch = cell.draw(machine), 2 * cell.width(machine)
-        self.regions = {name: _loop(self.drawing, corners) for name, corners in self.drawing.regions.items()}
+
+def _magnet_copies(rotor: Rotor) -> list[range]:
+    """Half pitches that every magnet lies in: two for one on the axis of its pole, one for one beside it."""
+    if rotor.magnets_per_pole == 0:
+        return []
+    each, halves = 2 // rotor.magnets_per_pole, range(2 * rotor.poles)
+    return [halves[first : first + each] for first in halves[::each]]
+
+
+def _shaft(rotor: Rotor, ring: _Ring) -> Part:
+    if rotor.bore_radius > 0:
+        return Part((Contour((Arc(rotor.bore_radius, 0.0, _FULL_TURN),)),))
+    return ring.whole(SHAFT) if SHAFT in ring.regions else Part(())
+
+
+class _Ring:
+    """Copies of half a pitch round the machine, numbered and mirrored as in ``geometry.cross_section.Piece``."""
+
+    def __init__(self, part: DrawnPart, copies: int) -> None:
+        self.pitch, self.copies = part.pitch, copies
+        self.regions = {name: contour.curves for name, contour in region_contours(part).items()}
+
+    def whole(self, region: str) -> Part:
+        """A region in all copies as one part."""
+        return self.part(region, range(self.copies))
 
     def part(self, region: str, copies: Iterable[int]) -> Part:
         """A region in some copies as one part."""
@@ -158,15 +223,21 @@ def _loop(drawing: Drawing, corners: tuple[str, ...]) -> list[Curve]:
 
 
 def _curve(drawing: Drawing, start: str, end: str) -> Curve:
-    is_arc, _ = drawing.curves[(start, end) if (start, end) in drawing.curves else (end, start)]
+    drawn = (start, end) if (start, end) in drawing.curves else (end, start)
+    is_arc, _ = drawing.curves[drawn]
     a, b = (complex(*drawing.points[name][:2]) for name in (start, end))
-    return Arc(abs(a), phase(a), phase(b / a)) if is_arc else Line(a, b)
+    return _arc(a, b, complex(*drawing.centres.get(drawn, (0.0, 0.0)))) if is_arc else Line(a, b)
+
+
+def _arc(start: complex, end: complex, centre: complex) -> Arc:
+    spoke = start - centre
+    return Arc(abs(spoke), phase(spoke), phase((end - centre) / spoke), centre)
 
 
 def _backwards(curve: Curve) -> Curve:
     if isinstance(curve, Line):
         return Line(curve.end, curve.start)
-    return Arc(curve.radius, curve.first + curve.sweep, -curve.sweep)
+    return replace(curve, first=curve.first + curve.sweep, sweep=-curve.sweep)
 
 
 def _placed(curve: Curve, copy: int, pitch: float) -> Curve:
@@ -174,15 +245,16 @@ def _placed(curve: Curve, copy: int, pitch: float) -> Curve:
     turned = copy // 2 * pitch
     if copy % 2 == 0:
         curve = _mirrored(_backwards(curve))
+    turn = rect(1.0, turned)
     if isinstance(curve, Line):
-        return Line(curve.start * rect(1.0, turned), curve.end * rect(1.0, turned))
-    return Arc(curve.radius, curve.first + turned, curve.sweep)
+        return Line(curve.start * turn, curve.end * turn)
+    return replace(curve, first=curve.first + turned, centre=curve.centre * turn)
 
 
 def _mirrored(curve: Curve) -> Curve:
     if isinstance(curve, Line):
         return Line(curve.start.conjugate(), curve.end.conjugate())
-    return Arc(curve.radius, -curve.first, -curve.sweep)
+    return Arc(curve.radius, -curve.first, -curve.sweep, curve.centre.conjugate())
 
 
 def _outer(curves: list[Curve]) -> Iterator[Curve]:

@@ -6,12 +6,13 @@ probes and defects ask for what is declared here. Angles count from the axis of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import gcd, pi
-from typing import Annotated, Protocol
+from dataclasses import dataclass, fields
+from math import gcd, hypot, pi
+from typing import Annotated, ClassVar, Protocol, get_args, get_type_hints
 
 import numpy as np
 
+from geometry.magnetisation import Magnetisation
 from geometry.plane_mesh import Drawing
 
 Length = Annotated[float, "mm"]  # [m]; what it is stated in at the border stands behind
@@ -49,7 +50,7 @@ class Part:
     @property
     def grounded_radius(self) -> float | None:
         """Circle on which the vector potential is zero [m], None where the part has none."""
-        raise NotImplementedError
+        return None
 
     @property
     def other_corners(self) -> str:
@@ -75,6 +76,23 @@ class Stator(Part):
     def pitch(self) -> float:
         """Angle between two teeth [rad]."""
         return 2 * pi / self.slots
+
+    @property
+    def slot_radii(self) -> tuple[float, float]:
+        """Between which the coil sides lie, the smaller first [m]; the taper of a shoe is left out."""
+        raise NotImplementedError
+
+    @property
+    def slot_depth(self) -> float:
+        """Radial height of the coil sides [m]."""
+        inner, outer = self.slot_radii
+        return outer - inner
+
+    @property
+    def probed_tooth_width(self) -> float:
+        """Of a tooth where its saturation is read [m]."""
+        (x, y), (other_x, other_y) = self.tooth_probe
+        return hypot(other_x - x, other_y - y)
 
     @property
     def tooth_probe(self) -> Segment:
@@ -103,7 +121,12 @@ class Rotor(Part):
     @property
     def magnets_per_pole(self) -> int:
         """0: none; 1: on the axis of the pole; 2: beside it, the clockwise one first."""
-        raise NotImplementedError
+        return 1
+
+    @property
+    def bore_radius(self) -> float:
+        """Of a hole in it that is not drawn, for a shaft [m]; 0 where all of the rotor is drawn."""
+        return 0.0
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
         """Angle of the magnetisation of an outward pole [rad], of the shape of the positions.
@@ -114,8 +137,26 @@ class Rotor(Part):
         raise NotImplementedError
 
 
+class MagnetOnAxis(Rotor):
+    """One magnet on the axis of every pole, as it is magnetised.
+
+    gap_outside: whether the gap lies outside of the magnets
+    """
+
+    magnetisation: Magnetisation
+    gap_outside: ClassVar[bool] = True
+
+    def direction(self, position_angle: np.ndarray, axis: float, which: int = 0) -> np.ndarray:
+        """Of the pattern [rad], of the shape of position_angle [rad], any shape; axis: of the pole [rad]"""
+        return self.magnetisation.direction_angle(
+            position_angle, axis, self.pitch if self.gap_outside else -self.pitch
+        )
+
+
 class DrawnMachine(Protocol):
     """What mesh and field ask of a machine, whatever its kind."""
+
+    def __hash__(self) -> int: ...
 
     @property
     def stator(self) -> Stator: ...
@@ -215,3 +256,9 @@ class ComposedMachine(Pitches):
     def mid_gap_radius(self) -> float:
         """Of the sliding circle [m]."""
         return (self.stator.rim_radius + self.rotor.rim_radius) / 2
+
+
+def part_units(cls: type[Part]) -> dict[str, str]:
+    """Drawing units of the fields of a part by their names, empty for a pure number."""
+    hints = get_type_hints(cls, include_extras=True)
+    return {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]

@@ -37,8 +37,7 @@ def proximity_ratio(wound: WoundMachine) -> float:
     1387, for round wires; Ferreira, IEEE Trans. Power Electron. 9(1) (1994) 127.
     """
     machine = wound.machine
-    depth = machine.slot_bottom_radius - machine.shoe_top_radius
-    width = 2 * part_areas(machine).half_slot / depth
+    width = 2 * part_areas(machine).half_slot / machine.stator.slot_depth
     wires = wound.design.turns * wound.design.strands * 6 * wound.coils_in_series / machine.slots
     wire = wound.design.wire
     return pi**2 * MU_0**2 * wire.copper_diameter**6 * wires**2 / (768 * wire.resistivity**2 * width**2)

@@ -155,19 +155,23 @@ def stator_loci(part: PartOfPeriod) -> Loci:
 
 
 def rotor_loci(part: PartOfPeriod) -> Loci:
-    """Mean B of every rotor-iron element (steps, E, 2) [T], in the frame of its own magnet; turns with the rotor."""
+    """Mean B of every rotor-iron element (steps, E, 2) [T], in the frame of its own pole; turns with the rotor."""
     section = part.model.section
-    return _iron_loci(part, "rotor_iron", section.magnets, section.machine.pole_pitch, part.repetition.poles)
+    return _iron_loci(part, "rotor_iron", section.poles, section.machine.pole_pitch, part.repetition.poles)
 
 
 def magnet_potential_loci(part: PartOfPeriod) -> tuple[Loci, ...]:
-    """A at the quadrature points of every magnet (steps, E, Q) [Wb/m], seen from the rotor; one ``Loci`` a magnet."""
+    """A at the quadrature points of every magnet (steps, E, Q) [Wb/m], seen from the rotor; one ``Loci`` a magnet, none
+    for a rotor without magnets."""
     section = part.model.section
+    if section.magnets == 0:
+        return ()
+    per_pole = section.machine.rotor.magnets_per_pole
     regions = [section.mesh.subdomains[f"magnet_{m}"] for m in range(section.magnets)]
     elements = part.model.elements.take(np.concatenate(regions))
     block = np.stack([_potential(elements, solution.a) for solution in part.solutions])
     block = block.reshape(len(block), section.magnets, -1, block.shape[-1])
-    values, blocks = _extend(block, part.repetition.poles, part.repetition.sign, section.sign)
+    values, blocks = _extend(block, part.repetition.poles * per_pole, part.repetition.sign, section.sign)
     area = elements.weights.sum(0).reshape(section.magnets, -1)
     periods = blocks / part.repetition.parts
     return tuple(Loci(regions[m], area[m], values[:, m], periods, section.sectors) for m in range(section.magnets))

@@ -18,7 +18,7 @@ from math import pi, sqrt
 import numpy as np
 
 from electrical.dq import Values
-from geometry.machine import dimensions_of
+from geometry.cross_section import CrossSection
 from losses.loci import Loci, PartOfPeriod, magnet_potential_loci
 from units import MU_0
 
@@ -54,21 +54,21 @@ class MagnetLoss:
 def magnet_loss(part: PartOfPeriod, resistivity: float = NDFEB_RESISTIVITY, segments: int = 1) -> MagnetLoss:
     """Eddy-current loss of the magnets at one current.
 
-    resistivity: [Ohm m]; segments: equal pieces into which every magnet is cut along the circumference
+    resistivity: [Ohm m]; segments: pieces of equal width into which every magnet is cut along its magnetisation
+    A magnet that two poles share counts as two pieces.
     """
     section = part.model.section
-    machine = dimensions_of(section.machine)
-    arc = machine.magnet_arc_fraction * machine.pole_pitch
-    total, by_order, orders = 0.0, np.zeros(1), np.zeros(1)
+    total, width, by_order, orders = 0.0, 0.0, np.zeros(1), np.zeros(1)
     for number, loci in enumerate(magnet_potential_loci(part)):
         elements = part.model.elements.take(loci.elements)
-        pieces = _pieces(elements.points, number * machine.pole_pitch, arc, segments)
+        width = max(width, _width(section, loci, number))
+        pieces = _pieces(_across(section, number, elements.points.transpose(0, 2, 1)), segments)
         density, spectrum, orders = _piece_losses(loci, elements.weights.T, pieces, segments)
         total, by_order = total + density, by_order + spectrum
     return MagnetLoss(
         eddy=float(section.sectors * total / resistivity),
         order=float(orders[np.argmax(by_order)]) if total > 0 else 0.0,
-        width=arc * (machine.rotor_outer_radius - machine.magnet_length / 2) / segments,
+        width=width / segments,
         resistivity=resistivity,
         permeability=part.model.materials.magnet.recoil_permeability,
     )
@@ -79,11 +79,23 @@ def skin_depth(frequency: float, resistivity: float = NDFEB_RESISTIVITY, permeab
     return sqrt(resistivity / (pi * frequency * MU_0 * permeability))
 
 
-def _pieces(points: np.ndarray, centre: float, arc: float, segments: int) -> np.ndarray:
-    """Number of the segment of every quadrature point (E, Q)."""
-    x, y = points.transpose(0, 2, 1)
-    angle = np.mod(np.arctan2(y, x) - centre + pi, 2 * pi) - pi
-    return np.clip(((angle / arc + 0.5) * segments).astype(int), 0, segments - 1)
+def _width(section: CrossSection, loci: Loci, number: int) -> float:
+    """Of a magnet across its magnetisation [m]."""
+    corners = section.mesh.p[:, section.mesh.t[:, loci.elements]]
+    return float(np.ptp(_across(section, number, corners)))
+
+
+def _across(section: CrossSection, number: int, points: np.ndarray) -> np.ndarray:
+    """Distance of points (2, ...) of a magnet from the plane along its magnetisation [m], (...)."""
+    middle = points.reshape(2, -1).mean(axis=1)
+    direction = float(section.magnetisation_angle(number, middle))
+    return points[1] * np.cos(direction) - points[0] * np.sin(direction)
+
+
+def _pieces(across: np.ndarray, segments: int) -> np.ndarray:
+    """Number of the segment of every quadrature point (E, Q), of equal widths."""
+    low, high = across.min(), across.max()
+    return np.clip(((across - low) / (high - low) * segments).astype(int), 0, segments - 1)
 
 
 def _piece_losses(

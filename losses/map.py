@@ -8,6 +8,7 @@ electrical (a resistance across the machine), bearings and windage are left out.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from math import atan2, hypot, pi
 
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.interpolate import RegularGridInterpolator
 from electrical.dq import OperatingMap, Values
 from electrical.wound_machine import WoundMachine
 from geometry.cross_section import CrossSection
+from geometry.parts import Rotor
 from losses.copper import copper_loss
 from losses.iron import FrequencyTerms, iron_loss
 from losses.loci import Repetition, rotor_loci, solve_part, stator_loci
@@ -28,6 +30,7 @@ STEPS = 48  # per electrical period
 # Grid of the currents as shares of the largest. The direct axis reaches into the strengthening side because the least
 # currents of a machine with L_d > L_q lie there.
 DIRECT = (-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)
+MAGNETISING = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a machine without magnets, which runs on no other
 QUADRATURE = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
@@ -114,16 +117,29 @@ class FieldLossTable:
                 )
 
 
-def grid(largest: float) -> list[tuple[float, float]]:
-    """(d, q) ampere-turns [A] of a table up to ``largest`` [A], peak of a coil, d outermost."""
-    return [(d * largest, q * largest) for d in DIRECT for q in QUADRATURE]
+@dataclass(frozen=True)
+class LossGrid:
+    """Currents of a table. direct, quadrature: peak ampere-turns of a coil on the axes [A], rising"""
 
+    direct: tuple[float, ...]
+    quadrature: tuple[float, ...]
 
-def table_of(largest: float, losses: list[FieldLosses]) -> FieldLossTable:
-    """The table of the losses at the currents of ``grid(largest)`` [A], in that order."""
-    terms = [[[t.hysteresis, t.eddy, t.excess] for t in (one.stator, one.rotor, one.magnet)] for one in losses]
-    shaped = np.array(terms).reshape(len(DIRECT), len(QUADRATURE), 3, 3)
-    return FieldLossTable(largest * np.array(DIRECT), largest * np.array(QUADRATURE), shaped)
+    @classmethod
+    def of(cls, rotor: Rotor, largest: float) -> LossGrid:
+        """Up to a largest peak [A] of a coil of a machine with this rotor."""
+        shares = DIRECT if rotor.magnets_per_pole else MAGNETISING
+        return cls(tuple(d * largest for d in shares), tuple(q * largest for q in QUADRATURE))
+
+    @property
+    def points(self) -> list[tuple[float, float]]:
+        """(d, q) [A], d outermost."""
+        return list(product(self.direct, self.quadrature))
+
+    def table(self, losses: list[FieldLosses]) -> FieldLossTable:
+        """The table of the losses at ``points``, in that order."""
+        terms = [[[t.hysteresis, t.eddy, t.excess] for t in (one.stator, one.rotor, one.magnet)] for one in losses]
+        shaped = np.array(terms).reshape(len(self.direct), len(self.quadrature), 3, 3)
+        return FieldLossTable(np.array(self.direct), np.array(self.quadrature), shaped)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,21 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from electrical.dq import OperatingMap, operating_map, torque_speed_envelope
+from electrical.dq import OperatingMap, operating_map, peak_torque, torque_speed_envelope
+from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
-from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.family import MatchedMachine
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from losses.magnet import NDFEB_RESISTIVITY
 from losses.map import (
     FieldLosses,
     FieldLossTable,
+    LossGrid,
     PowerLosses,
     current_point,
     field_losses,
-    grid,
     power_losses,
-    table_of,
 )
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
@@ -110,7 +109,7 @@ class LossTask:
     """
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     direct: float
     quadrature: float
     law: IronLossLaw
@@ -124,21 +123,19 @@ def current_losses_stage(
 
     Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
     """
-    law, largest = loss_law(inputs), _LARGEST * flux_map.overload_ampere_turns
+    law, machine = loss_law(inputs), matched.machine
+    grid = LossGrid.of(machine.rotor, _LARGEST * flux_map.overload_ampere_turns)
     tasks = {
-        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, matched.machine, d, q, law, inputs.magnet_resistivity)
-        for d, q in grid(largest)
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, machine, d, q, law, inputs.magnet_resistivity)
+        for d, q in grid.points
     }
     found = workers.map("current_losses", losses_at_current, tasks)
-    return CurrentLosses(table_of(largest, list(found.values())), law)
+    return CurrentLosses(grid.table(list(found.values())), law)
 
 
-def losses_stage(
-    found: CurrentLosses, flux_map: FluxMap, winding: WindingOutcome, windings: WindingInputs, inputs: LossInputs
-) -> LossMap:
+def losses_stage(found: CurrentLosses, flux_map: FluxMap, driven: DrivenMachine, inputs: LossInputs) -> LossMap:
     """The losses over the currents, read along the operating map of the wound machine."""
-    wound = winding.wound
-    operating = both_senses(flux_map, winding, windings.limits.maximum_speed)
+    wound, operating = driven.wound, both_senses(flux_map, driven)
     losses = power_losses(operating, wound, found.table, flux_map.data)
     return LossMap(
         plane_dataset(losses),
@@ -166,16 +163,13 @@ def losses_at_current(task: LossTask) -> FieldLosses:
     return field_losses(model, point, task.law, resistivity=task.resistivity)
 
 
-def both_senses(flux_map: FluxMap, winding: WindingOutcome, fastest: float) -> OperatingMap:
-    """Least currents on the flux map over torques from generating to motoring and speeds up to the last one reached.
-
-    fastest: [rad/s]
-    """
-    machine = winding.wound.on_map(flux_map.data)
-    envelope = torque_speed_envelope(machine, winding.limits, np.linspace(0.0, fastest, _SPEEDS))
+def both_senses(flux_map: FluxMap, driven: DrivenMachine) -> OperatingMap:
+    """Least currents on the flux map over torques from generating to motoring and speeds up to the last one reached."""
+    machine, limits = driven.wound.on_map(flux_map.data), driven.limits
+    envelope = torque_speed_envelope(machine, limits, np.linspace(0.0, driven.fastest, _SPEEDS))
     top = float(envelope.speed[np.flatnonzero(np.isfinite(envelope.torque))[-1]])
-    torque = torques_of(winding.peak_torque)
-    return operating_map(machine, winding.limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
+    torque = torques_of(float(peak_torque(machine, limits)))
+    return operating_map(machine, limits, torque[:, None], np.linspace(0.0, top, _SPEEDS))
 
 
 def torques_of(peak: float) -> np.ndarray:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from magnetostatics.case import FieldCase
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.positions import null_angle
@@ -24,7 +24,7 @@ class Arc:
     """Some neighbouring rotor angles [rad] of a machine."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angles: tuple[float, ...]
 
     def model(self) -> FieldModel:
@@ -32,13 +32,13 @@ class Arc:
         return self.case.model(self.machine)
 
 
-def arcs(case: FieldCase, machine: Machine, angles: Sequence[float]) -> dict[str, Arc]:
+def arcs(case: FieldCase, machine: DrawnMachine, angles: Sequence[float]) -> dict[str, Arc]:
     """Rotor angles [rad] in their order, as tasks by name."""
     firsts = range(0, len(angles), _TOGETHER)
     return {f"arc {k}": Arc(case, machine, tuple(angles[k : k + _TOGETHER])) for k in firsts}
 
 
-def angles_from_null(case: FieldCase, machine: Machine, span: float, steps: int) -> list[float]:
+def angles_from_null(case: FieldCase, machine: DrawnMachine, span: float, steps: int) -> list[float]:
     """Evenly over a span [rad] from the null position on, its end left out [rad]."""
     return (null_angle(machine, case.layout(machine)) + span * np.arange(steps) / steps).tolist()
 

@@ -1,4 +1,4 @@
-"""What every field solution of one study shares: machines, materials, winding, mesh and the two current densities.
+"""What every field solution of one study shares: materials, winding, mesh and the two current densities.
 
 A ``FieldCase`` is a plain value: a task carries it to its worker, and a field solution there depends on nothing else.
 """
@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from geometry.cross_section import mesh_cross_section
-from geometry.family import MachineFamily
+from geometry.family import MachineFamily, StatedMachine
 from geometry.half_cell import MeshDensity
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.model import FieldModel, MachineMaterials
 from magnetostatics.newton import NewtonSettings
@@ -27,7 +27,6 @@ class FieldCase:
         that the winding lacks for another reason
     """
 
-    family: MachineFamily
     materials: MachineMaterials
     layers: int
     coil_pitch: int | None
@@ -43,14 +42,31 @@ class FieldCase:
         """Share of the torque of magnets and currents that the ends leave."""
         return 1.0 - self.end_leakage
 
-    def layout(self, machine: Machine) -> WindingLayout:
+    def layout(self, machine: DrawnMachine) -> WindingLayout:
         """The winding of a machine of this study."""
         return star_of_slots(machine.slots, machine.pole_pairs, self.layers, self.coil_pitch)
 
-    def model(self, machine: Machine, settings: NewtonSettings = NewtonSettings()) -> FieldModel:
+    def model(self, machine: DrawnMachine, settings: NewtonSettings = NewtonSettings()) -> FieldModel:
         """Field model of a machine on the mesh of the sweep. Raises GeometryError when it cannot be built."""
         return FieldModel(mesh_cross_section(machine, self.layout(machine), self.density), self.materials, settings)
 
-    def detailed_model(self, machine: Machine) -> FieldModel:
+    def detailed_model(self, machine: DrawnMachine) -> FieldModel:
         """Field model of a machine on the finer mesh."""
         return FieldModel(mesh_cross_section(machine, self.layout(machine), self.detail), self.materials)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FamilyCase(FieldCase):
+    """The case of a study that varies its machine. family: the machines among which it looks for the best"""
+
+    family: MachineFamily
+
+
+def field_case(case: FamilyCase) -> FieldCase:
+    """The case for those who have their machine."""
+    return case
+
+
+def stated_machine(case: FamilyCase) -> StatedMachine:
+    """The machine that the family begins with."""
+    return StatedMachine(case.family.reference)

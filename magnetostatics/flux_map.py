@@ -65,6 +65,15 @@ class CurrentGrid:
         """
         return cls(np.linspace(-reach, reach / 4, steps), np.linspace(0.0, reach, steps))
 
+    @classmethod
+    def magnetising(cls, reach: float, steps: int = 11) -> CurrentGrid:
+        """``steps`` x ``steps`` currents of a motor without magnets: 0 <= i_d <= reach and 0 <= i_q <= reach.
+
+        Its d axis is that of high permeance: without a current on it there is no torque.
+        reach: largest peak ampere-turns of one coil [A]
+        """
+        return cls(np.linspace(0.0, reach, steps), np.linspace(0.0, reach, steps))
+
 
 # ---- currents in the rotor frame and operating points ---------------------------------------------------------------
 

@@ -16,7 +16,7 @@ import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from geometry.family import MatchedMachine
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import (
     CurrentGrid,
@@ -35,7 +35,7 @@ from tasks import Workers
 MARGIN = 1.05  # reach of the map over the largest ampere-turns of a winding: keeps them off the edge of the spline
 ANGLES = 10  # over 60 electrical degrees; the mean over them is free of harmonics below the 60th
 CURRENTS = 11  # along i_d and along i_q >= 0
-_BEST_ANGLES = 91  # of the current, on the negative d axis and off it, from which the best one is taken
+_BEST_ANGLES = 181  # of the current over both senses of the d axis, from which the best one is taken
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class AngleTask:
     """All currents of a grid at one rotor angle [rad]."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angle: float
     grid: CurrentGrid
 
@@ -103,7 +103,7 @@ class PointTask:
     """One rotor angle [rad] and current [A of one coil, peak]."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angle: float
     i_d: float
     i_q: float
@@ -118,7 +118,8 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
     model = kept_model(case, machine)
     area = model.section.half_slot_area * model.section.half_slots_per_coil_side
     overload = grid.ampere_turns(area)
-    currents = CurrentGrid.motoring(grid.margin * overload, grid.currents)
+    quadrant = CurrentGrid.motoring if machine.rotor.magnets_per_pole else CurrentGrid.magnetising
+    currents = quadrant(grid.margin * overload, grid.currents)
     angles = map_angles(model, grid.angles)
     tasks = {f"angle {k}": AngleTask(case, machine, float(angle), currents) for k, angle in enumerate(angles)}
     rows = workers.map("flux map", solve_angle_task, tasks)
@@ -171,15 +172,17 @@ def torque_error_task(task: PointTask) -> tuple[float, float]:
 
 def best_current(data: xr.Dataset, current: float) -> tuple[float, float]:
     """(i_d, i_q) [A] of the largest mean torque on the circle of a current [A], to a degree of the current angle."""
-    gamma = np.linspace(0.0, np.pi / 2, _BEST_ANGLES)
+    gamma = np.linspace(-np.pi / 2, np.pi / 2, _BEST_ANGLES)
     i_d, i_q = -current * np.sin(gamma), current * np.cos(gamma)
+    inside = (data["id"].values[0] <= i_d) & (i_d <= data["id"].values[-1])
+    i_d, i_q = i_d[inside], i_q[inside]
     mean = data["torque"].mean("angle").transpose("id", "iq")
     table = RegularGridInterpolator((data["id"].values, data["iq"].values), mean.values, method="cubic")
     best = int(np.argmax(table(np.stack([i_d, i_q], axis=-1))))
     return float(i_d[best]), float(i_q[best])
 
 
-def kept_model(case: FieldCase, machine: Machine) -> FieldModel:
+def kept_model(case: FieldCase, machine: DrawnMachine) -> FieldModel:
     """Field model of a machine on the mesh of the sweep; the last one is kept in this process.
 
     A case holds arrays and travels by pickling, so that it is known again by its pickled bytes.

@@ -16,7 +16,7 @@ import xarray as xr
 from geometry.cross_section import mesh_cross_section
 from geometry.defects import StaticEccentricity, deformed
 from geometry.family import MatchedMachine
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from magnetostatics.arc import Arc, angles_from_null, arcs, solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import StressWave, radial_stress_orders, stress_over_angle, stress_waves, torque_orders
@@ -48,7 +48,7 @@ class GapStress:
     centred_pull: largest pull on a rotor in the middle, of the same states and angles [N/m], (2,)
     """
 
-    machine: Machine
+    machine: DrawnMachine
     data: xr.Dataset
     cogging_torque: np.ndarray
     shift: float
@@ -123,7 +123,7 @@ class PullTask:
     """A machine at some rotor angles [rad] in one of ``PULL_STATES``; shift: of its stator [m]."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angles: tuple[float, ...]
     density: float  # amplitude of the current density in the copper [A/m^2]
     shift: float
@@ -149,7 +149,7 @@ def gap_stress_stage(case: FieldCase, matched: MatchedMachine, workers: Workers)
     )
 
 
-def _pull_tasks(case: FieldCase, machine: Machine, shift: float) -> dict[str, PullTask]:
+def _pull_tasks(case: FieldCase, machine: DrawnMachine, shift: float) -> dict[str, PullTask]:
     """In the middle, then off centre, each in ``PULL_STATES``."""
     angles = tuple(angles_from_null(case, machine, machine.pole_pitch, _PULL_STEPS))
     densities = dict(zip(PULL_STATES, (0.0, case.overload_density)))

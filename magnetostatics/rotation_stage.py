@@ -14,8 +14,8 @@ import xarray as xr
 from skfem import MeshTri
 
 from geometry.cross_section import CrossSection
-from geometry.family import MatchedMachine
-from geometry.machine import Machine
+from geometry.family import MatchedMachine, StatedMachine
+from geometry.parts import DrawnMachine
 from magnetostatics.arc import Arc, angles_from_null, arcs, solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
@@ -40,7 +40,7 @@ class NullFields:
         the quadratic elements [Wb/m]
     """
 
-    machine: Machine
+    machine: DrawnMachine
     sectors: int
     antiperiodic: bool
     rest: float
@@ -71,7 +71,7 @@ class Rotation:
         ``torque_circle`` (``maxwell_torque``), ``torque_no_current`` [Nm/m]; ``flux_density`` (probe, angle) [T]
     """
 
-    machine: Machine
+    machine: DrawnMachine
     null_angle: float
     q_axis_angle: float
     torque_error: float
@@ -126,7 +126,7 @@ class NullStates:
     """A machine whose fields in the null position are wanted."""
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,9 +149,11 @@ class SolvedNullStates:
     potentials: np.ndarray
 
 
-def rotations_stage(case: FieldCase, matched: MatchedMachine | None, workers: Workers) -> Rotations:
+def rotations_stage(
+    case: FieldCase, stated: StatedMachine, matched: MatchedMachine | None, workers: Workers
+) -> Rotations:
     """Turn both machines over one electrical period, and solve their fields in the null position."""
-    machines = {"reference": case.family.reference} | ({"matched": matched.machine} if matched is not None else {})
+    machines = {"reference": stated.machine} | ({"matched": matched.machine} if matched is not None else {})
     states = {f"{name}, null position": NullStates(case, machine) for name, machine in machines.items()}
     turns = {name: arcs(case, machine, _angles(case, machine)) for name, machine in machines.items()}
     named = {f"{name}, {which}": arc for name, turn in turns.items() for which, arc in turn.items()}
@@ -170,7 +172,7 @@ def rotations_stage(case: FieldCase, matched: MatchedMachine | None, workers: Wo
     return Rotations(found["reference"], found.get("matched"))
 
 
-def _angles(case: FieldCase, machine: Machine) -> list[float]:
+def _angles(case: FieldCase, machine: DrawnMachine) -> list[float]:
     """One electrical period from the null position on, both ends included [rad]."""
     period = 2 * pi / machine.pole_pairs
     angles = angles_from_null(case, machine, period, _STEPS)
@@ -187,7 +189,7 @@ def solve_arc(arc: Arc) -> SolvedArc:
     return SolvedArc(np.array(torques), np.array([list(reader.read(one).values()) for one in loaded]), reader.names)
 
 
-def null_points(case: FieldCase, machine: Machine) -> tuple[OperatingPoint, ...]:
+def null_points(case: FieldCase, machine: DrawnMachine) -> tuple[OperatingPoint, ...]:
     """The operating points of ``STATES``."""
     amplitudes = (0.0, case.nominal_density, case.overload_density)
     return tuple(null_point(machine, case.layout(machine), amplitude, case.packing) for amplitude in amplitudes)
@@ -216,7 +218,7 @@ def solve_null_states(wanted: NullStates) -> SolvedNullStates:
 
 
 def _rotation(
-    case: FieldCase, machine: Machine, angles: np.ndarray, arcs: list[SolvedArc], null: SolvedNullStates
+    case: FieldCase, machine: DrawnMachine, angles: np.ndarray, arcs: list[SolvedArc], null: SolvedNullStates
 ) -> Rotation:
     layout = case.layout(machine)
     return Rotation(
@@ -238,7 +240,7 @@ def _turning(angles: np.ndarray, arcs: list[SolvedArc]) -> xr.Dataset:
     return xr.Dataset(data, {"angle": angles, "probe": list(arcs[0].probes)})
 
 
-def _fields(case: FieldCase, machine: Machine, null: SolvedNullStates) -> NullFields:
+def _fields(case: FieldCase, machine: DrawnMachine, null: SolvedNullStates) -> NullFields:
     data = {
         "node": (("xy", "corner_node"), null.nodes),
         "triangle": (("corner", "element"), null.triangles),

@@ -30,6 +30,21 @@ class Turned:
     dq_linkage: np.ndarray
 
     @property
+    def mean_torque(self) -> float:
+        """Ring average [Nm]."""
+        return float(self.torque[:, 0].mean())
+
+    @property
+    def ripple(self) -> float:
+        """Ring average from peak to peak [Nm]."""
+        return float(np.ptp(self.torque[:, 0]))
+
+    @property
+    def routes_apart(self) -> float:
+        """Largest difference of the two torques, relative to the largest torque."""
+        return float(np.abs(np.diff(self.torque)).max() / np.abs(self.torque).max())
+
+    @property
     def fundamental(self) -> float:
         """Amplitude of the fundamental of phase A [Wb]; the positions span one electrical period evenly."""
         return float(2 / len(self.angle) * np.abs(np.fft.rfft(self.linkage[:, 0])[1]))
@@ -57,14 +72,21 @@ class Supply:
 
 
 def turned(model: FieldModel, supply: Supply, active_length: float, angles: Iterable[float]) -> Turned:
-    """Solve the field at every rotor angle [rad], each from the one before; active_length [m]."""
+    """Solve the field at rotor angles, each from the one before; active_length [m]; angles [rad]"""
+    return read_turn(solved_turn(model, supply, angles), supply.turns, active_length)
+
+
+def solved_turn(model: FieldModel, supply: Supply, angles: Iterable[float]) -> list[FieldSolution]:
+    """The field at rotor angles, each solved from the one before; angles [rad]"""
     solutions: list[FieldSolution] = []
     for angle in angles:
         solutions.append(model.solve(supply.at(angle, model), solutions[-1] if solutions else None))
-    return _read(model, solutions, supply.turns, active_length)
+    return solutions
 
 
-def _read(model: FieldModel, solutions: list[FieldSolution], turns: float, length: float) -> Turned:
+def read_turn(solutions: list[FieldSolution], turns: float, length: float) -> Turned:
+    """Torque and linkages of a stack; turns: of every coil, dimensionless; length [m]"""
+    model = solutions[0].model
     angle = np.array([solution.point.angle for solution in solutions])
     linkage = turns * length * np.array([phase_flux_linkage(solution) for solution in solutions])
     electrical, axis = model.section.machine.pole_pairs * angle, model.section.layout.phase_axis

@@ -11,7 +11,7 @@ from math import pi
 
 import numpy as np
 
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from magnetostatics.case import FieldCase
 from magnetostatics.demagnetisation import MagnetFlux, MagnetMap, magnet_flux, magnet_map
 from magnetostatics.flux_map import map_angles, operating_point
@@ -28,7 +28,7 @@ class MagnetTask:
     """
 
     case: FieldCase
-    machine: Machine
+    machine: DrawnMachine
     angle: float
     currents: tuple[Current, ...]
     knee: float
@@ -60,7 +60,7 @@ class TurningMagnets:
 
 
 def turning_magnets(
-    case: FieldCase, machine: Machine, currents: Iterable[Current], knee: float, angles: int, workers: Workers
+    case: FieldCase, machine: DrawnMachine, currents: Iterable[Current], knee: float, angles: int, workers: Workers
 ) -> list[TurningMagnets]:
     """The magnets under each of the currents, on the finer mesh.
 
@@ -89,7 +89,7 @@ def solve_magnets(task: MagnetTask) -> SolvedMagnets:
     return SolvedMagnets(np.array(smallest), np.array(lost))
 
 
-def magnet_maps(case: FieldCase, machine: Machine, seen: TurningMagnets) -> tuple[MagnetMap, MagnetMap]:
+def magnet_maps(case: FieldCase, machine: DrawnMachine, seen: TurningMagnets) -> tuple[MagnetMap, MagnetMap]:
     """For drawing: one magnet over the turn, upright, and all of the sector at the worst angle."""
     model = case.detailed_model(machine)
     solution = model.solve(operating_point(model, seen.angle, *seen.current))

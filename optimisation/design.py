@@ -14,7 +14,7 @@ from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.machine import Machine, dimensions_of
 from geometry.morph import Morpher
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import aligned_teeth
@@ -34,7 +34,7 @@ class Judge:
     objective: the torque that designs are compared by; settings: of Newton's method
     """
 
-    case: FieldCase
+    case: FamilyCase
     reading: SaturationReading
     amplitude: float
     objective: TorqueObjective = MeanTorque()

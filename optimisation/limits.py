@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.errors import GeometryError
 from geometry.machine import Machine
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from optimisation.design import Design, DesignSolver, Judge
 from optimisation.design_map import DesignMap
 from optimisation.states import AlignedTooth, EveryTooth, EveryToothAndBackIronOverPeriod, SaturationReading
@@ -48,7 +48,7 @@ class LimitComparison:
 class LimitRow:
     """The study's own stator with one rotor radius and all back_iron_widths [m]."""
 
-    case: FieldCase
+    case: FamilyCase
     rotor_outer_radius: float
     back_iron_widths: tuple[float, ...]
 
@@ -63,7 +63,7 @@ class LimitRow:
         return None
 
 
-def limits_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> LimitComparison:
+def limits_stage(case: FamilyCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> LimitComparison:
     """Compare the limits in every reading on the grid of the sweep; nothing is solved where none is compared."""
     if not limit.compared:
         return LimitComparison(limit, ())

@@ -9,7 +9,7 @@ from math import nan
 from geometry.family import Combination
 from geometry.machine import Machine
 from geometry.variables import Variable
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.mesh_error import torque_errors
 from magnetostatics.model import FieldModel, FieldSolution
 from magnetostatics.positions import period_points
@@ -147,7 +147,7 @@ class Optima:
 class OptimumSearch:
     """One search; start: (back-iron width, rotor radius) [m], read off the map."""
 
-    case: FieldCase
+    case: FamilyCase
     limit: SaturationLimit
     freedom: Freedom
     combination: Combination
@@ -155,7 +155,7 @@ class OptimumSearch:
     start: tuple[float, float]
 
 
-def optima_stage(case: FieldCase, maps: DesignMaps, freedom: Freedom, workers: Workers) -> Optima:
+def optima_stage(case: FamilyCase, maps: DesignMaps, freedom: Freedom, workers: Workers) -> Optima:
     """Refine the best point of every map, then free the further dimensions.
 
     Raises NoOptimumError where no design of the sweep holds the limit.
@@ -227,7 +227,7 @@ def edges_at(optimum: Optimum, grid: SweepGrid) -> list[GridEdge]:
 
 
 def _searches(
-    case: FieldCase, maps: DesignMaps, freedom: Freedom
+    case: FamilyCase, maps: DesignMaps, freedom: Freedom
 ) -> tuple[dict[str, OptimumSearch], tuple[NoOptimum, ...]]:
     """The searches that have a start, and where no design of the map holds the limit."""
     searches, without = {}, []
@@ -248,7 +248,7 @@ def _nothing(limit: SaturationLimit, without: tuple[NoOptimum, ...]) -> str:
     )
 
 
-def _record(case: FieldCase, best: BestDesign, freedom: Freedom) -> Optimum:
+def _record(case: FamilyCase, best: BestDesign, freedom: Freedom) -> Optimum:
     design, machine = best.design, best.design.machine
     torques = _torques(case, machine)
     return Optimum(
@@ -284,7 +284,7 @@ class _Torques:
     overload_error: float
 
 
-def _torques(case: FieldCase, machine: Machine) -> _Torques:
+def _torques(case: FamilyCase, machine: Machine) -> _Torques:
     """Mean torques at both current densities and their mesh errors in the first position, all on one mesh."""
     model = case.model(machine)
     nominal, overload = (_over_period(case, model, density) for density in _densities(case))
@@ -298,11 +298,11 @@ def _torques(case: FieldCase, machine: Machine) -> _Torques:
     )
 
 
-def _densities(case: FieldCase) -> tuple[float, float]:
+def _densities(case: FamilyCase) -> tuple[float, float]:
     return case.nominal_density, case.overload_density
 
 
-def _over_period(case: FieldCase, model: FieldModel, density: float) -> list[FieldSolution]:
+def _over_period(case: FamilyCase, model: FieldModel, density: float) -> list[FieldSolution]:
     """The fields that ``MeanTorque`` is the mean of."""
     section, solutions = model.section, list[FieldSolution]()
     for point in period_points(section.machine, section.layout, density, case.packing, STEPS_OVER_PERIOD):

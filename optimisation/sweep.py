@@ -14,7 +14,7 @@ import xarray as xr
 from geometry.errors import GeometryError
 from geometry.family import Combination
 from geometry.machine import Machine
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.newton import NewtonSettings
 from optimisation.design import Design, DesignSolver, Judge
 from optimisation.design_map import DesignMap
@@ -124,7 +124,7 @@ class DesignMaps:
 class SweepBlock:
     """All back_iron_widths [m] at some rotor_outer_radii [m] of one combination and stator radius [m]."""
 
-    case: FieldCase
+    case: FamilyCase
     reading: SaturationReading
     combination: Combination
     stator_outer_radius: float
@@ -145,7 +145,7 @@ class SweepBlock:
         )
 
 
-def sweep_stage(case: FieldCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> DesignMaps:
+def sweep_stage(case: FamilyCase, grid: SweepGrid, limit: SaturationLimit, workers: Workers) -> DesignMaps:
     """Solve every design of the grid at the nominal current density."""
     solved = workers.map("sweep", solve_block, blocks_of(case, grid, limit.reading))
     return DesignMaps(grid, limit, _dataset(grid, list(solved.values())))
@@ -166,7 +166,7 @@ def _row(design: Design | None) -> list[float]:
     return [nan if design is None else getattr(design, name) for name in VARIABLES]
 
 
-def blocks_of(case: FieldCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
+def blocks_of(case: FamilyCase, grid: SweepGrid, reading: SaturationReading) -> dict[str, SweepBlock]:
     """The tasks of a sweep by name: some rotor radii together, because they share a mesh."""
     blocks = {}
     for combination, outer in grid.sections:

@@ -19,7 +19,7 @@ from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_connection import SERIES_STAR
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
-from geometry.magnetisation import RadialMagnetisation
+from geometry.magnetisation import PATTERNS
 from magnetostatics.flux_map_stage import FluxMap
 from materials.conductor import Conductor
 from study.errors import StudyError
@@ -164,7 +164,7 @@ class MachineBench(Bench):
 
     def draft(self, designed: Designed) -> Draft:
         wound = designed.winding.wound
-        tooth_coils = wound.coil_pitch == 1 and 3 * wound.coils_in_series == wound.machine.slots
+        tooth_coils = wound.coil_pitch == 1 and 3 * wound.coils_in_series == wound.dimensions.slots
         if not tooth_coils or wound.design.connection != SERIES_STAR:
             raise StudyError(
                 "the machine bench knows a coil on every tooth, all of a phase in series and in star; this is "
@@ -262,8 +262,8 @@ _DIMENSIONS = (
 
 def _machine_device(designed: Designed) -> tuple[Entry, ...]:
     wound, magnet = designed.winding.wound, design_magnet(designed.study)
-    machine = wound.machine
-    pattern = "radial" if isinstance(machine.magnetisation, RadialMagnetisation) else "parallel"
+    machine = wound.dimensions
+    pattern = next(name for name, one in PATTERNS.items() if one == machine.magnetisation)
     return (
         Entry("model", '"machine"'),
         Entry("slots", str(machine.slots)),

@@ -24,6 +24,8 @@ COMMANDS = {
     "check": Command("pipeline.check_command", "add_check", "is a study file usable?"),
     "solve": Command("pipeline.solve_command", "add_solve", "solve the field of one operating point"),
     "turn": Command("pipeline.turn_command", "add_turn", "turn a machine of any kind at one current"),
+    "machine": Command("pipeline.machine_command", "add_machine",
+                       "map, losses and data sheet of a machine of any kind"),
     "inspect": Command("pipeline.inspect_fields", "add_inspect", "look into the solved fields of a study"),
     "take-over": Command("pipeline.take_over_command", "add_take_over",
                          "make a study of a design that was found over all stages at once"),

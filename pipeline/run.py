@@ -27,7 +27,6 @@ from pipeline.pools import PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
 from processes import Pool
 from study.errors import StudyError
-from study.schema import Study
 
 
 class Missing(LookupError):
@@ -42,15 +41,18 @@ class Failure:
     reason: str
 
 
+PageOf = Callable[[Any, list[Section], list[Failure]], File]  # what was read, sections, failures
+
+
 @dataclass
 class Run:
     """One run of a graph for one study.
 
-    failures: of this run, in order
+    study: what the sources read: a ``Study``, or a ``MachineFile``; failures: of this run, in order
     """
 
     graph: Graph
-    study: Study
+    study: Any
     results: Results
     pool: Pool
     failures: list[Failure] = field(default_factory=list)
@@ -234,7 +236,7 @@ class Run:
             found[f"{stage.name}.files"] = digest(record["outputs"]) if record else "absent"
         return {**found, "failures": digest(tuple(self.failures)), "code": code_digest(digest, *self.graph.sections)}
 
-    def write_report(self, page_of: Callable[[Study, list[Section], list[Failure]], File]) -> None:
+    def write_report(self, page_of: PageOf) -> None:
         """The report, where anything in it changed."""
 
         def make() -> list[str]:

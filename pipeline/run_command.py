@@ -26,7 +26,7 @@ from pipeline.learning import learned_from
 from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from pipeline.pools import DaskCluster
 from pipeline.results import Results, results_of
-from pipeline.run import Failure, Missing, Run, git_commit
+from pipeline.run import Failure, Missing, PageOf, Run, git_commit
 from pipeline.sentences import EXIT_FAILED, sentences
 from pipeline.stages import graph_of, graph_of_second_design
 from processes import Pool, Processes
@@ -43,13 +43,18 @@ def add_run(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``airgap run``."""
     parser.add_argument("study", help="name of a file in studies/ or a path")
     parser.add_argument("--to", metavar="STAGE", help="the last stage; without it all of them and the report")
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes that work at once (default: the cores)")
-    parser.add_argument("--executor", choices=("processes", "dask"), default="processes", help="where tasks run")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://host:8786")
+    add_pool(parser)
     parser.add_argument("--with", dest="model", metavar="MODEL.toml", help="design again with what a bench has taught")
     parser.add_argument("--out", metavar="DIR", help="of the second design; default results/<study>-learned/")
     add_own_effects(parser)
     parser.set_defaults(run=run_command)
+
+
+def add_pool(parser: argparse.ArgumentParser) -> None:
+    """The arguments that say where tasks run."""
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes that work at once (default: the cores)")
+    parser.add_argument("--executor", choices=("processes", "dask"), default="processes", help="where tasks run")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://host:8786")
 
 
 def run_command(options: argparse.Namespace) -> None:
@@ -60,17 +65,17 @@ def run_command(options: argparse.Namespace) -> None:
     study = read_study(options.study)
     check_study(study)
     graph = graph_of(study)
-    last = _wanted(graph, options.to)
+    last = wanted(graph, options.to)
     learned = _learned(options)
-    with sentences(), _pool(options, graph) as pool:
+    with sentences(), pool_of(options, graph) as pool:
         first = Run(graph, study, results_of(study), pool)
-        _run_all(first, None if learned is not None else last)
+        run_all(first, None if learned is not None else last, page_of)
         if learned is not None:
             again = graph_of_second_design(study, learned, first_design(first))
-            _run_all(Run(again, study, _results_again(study, options.out), pool), last)
+            run_all(Run(again, study, _results_again(study, options.out), pool), last, page_of)
 
 
-def _run_all(run: Run, last: str | None) -> None:
+def run_all(run: Run, last: str | None, page_of: PageOf) -> None:
     """Every stage, or those up to one, and the report; SystemExit where one could not go on."""
     with run.results.held():
         run.all(run.graph.usual if last is None else run.graph.before(run.graph.stage(last)))
@@ -127,17 +132,19 @@ def _if_there(run: Run, kind: type) -> Any:
         return None
 
 
-def _wanted(graph: Graph, name: str | None) -> str | None:
+def wanted(graph: Graph, name: str | None) -> str | None:
+    """The last stage that is asked for, None for all. Raises StudyError for one that is not there."""
     if name is None or name == "report":
         return None
     names = [stage.name for stage in graph.stages]
     if name not in names:
-        raise StudyError(f"--to {name}: this study has no such stage; give one of {', '.join(names)}, report.")
+        raise StudyError(f"--to {name}: there is no such stage; give one of {', '.join(names)}, report.")
     return name
 
 
 @contextmanager
-def _pool(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
+def pool_of(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
+    """Where tasks run, as the arguments of ``add_pool`` say."""
     if options.scheduler and options.executor != "dask":
         raise StudyError("--scheduler goes with --executor dask.")
     if options.jobs is not None and options.jobs < 1:
@@ -154,10 +161,15 @@ def _pool(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
 
 
 def page_of(study: Study, sections: list[Section], failures: list[Failure]) -> File:
-    """The report: what could not go on first, then what was found."""
-    told = [_failed(failures)] if failures else []
-    provenance = {"study": study.path.name, "commit": git_commit() or "unknown", **packages_of(run_command)}
+    """The report of a study."""
     title, subtitle = study.study.title, "From what is asked to a wound machine, stage by stage"
+    return page(title, subtitle, {"study": study.path.name}, sections, failures)
+
+
+def page(title: str, subtitle: str, source: dict[str, str], sections: list[Section], failures: list[Failure]) -> File:
+    """A report: what could not go on first, then what was found; source: of what it is, for its foot."""
+    told = [_failed(failures)] if failures else []
+    provenance = {**source, "commit": git_commit() or "unknown", **packages_of(run_command)}
 
     def write(path: Path) -> None:
         pictures = path.parent  # the temporary file lies where the report will

@@ -10,7 +10,7 @@ from math import sqrt
 from figures.export import write_vtu
 from figures.field_map import field_map
 from figures.whole_field import whole_field
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.mesh_error import refined_solution, torque_error
 from magnetostatics.model import FieldSolution, OperatingPoint
@@ -62,7 +62,7 @@ def solve(options: argparse.Namespace) -> None:
         field_map(whole_field(solution)).savefig(writable(options.png), dpi=150)
 
 
-def _field(study: Study, case: FieldCase, point: OperatingPoint, sweep_mesh: bool) -> FieldSolution:
+def _field(study: Study, case: FamilyCase, point: OperatingPoint, sweep_mesh: bool) -> FieldSolution:
     machine = case.family.reference
     check_mesh(study, machine, case.density if sweep_mesh else case.detail)
     model = (case.model if sweep_mesh else case.detailed_model)(machine)

@@ -29,6 +29,7 @@ from drivetrain.second_design import FirstDesign, lesson_costs_stage
 from drivetrain.whole_search import optimise_stage
 from electrical.braking_stage import braking_stage
 from electrical.drive_stage import drive_stage
+from electrical.driven_machine import driven_machine
 from electrical.flux_map_machine import FluxMapMachineError
 from electrical.magnets_stage import magnets_stage
 from electrical.winding_selection import WindingError
@@ -39,6 +40,7 @@ from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.errors import GeometryError
 from losses.stage import LossError, current_losses_stage, loss_law, losses_stage
+from magnetostatics.case import field_case, stated_machine
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
 from magnetostatics.gap_stress_stage import gap_stress_stage
@@ -127,7 +129,8 @@ _SOURCES = (
     flux_map_grid, gear_inputs, output, copper_heat, heat_inputs, mechanics_inputs, part_prices,
 )  # fmt: skip
 _AS_LEARNED = (
-    field_case_as_learned, winding_inputs_as_learned, loss_inputs_as_learned, outcome_inputs_as_learned,
+    field_case_as_learned, field_case, stated_machine, winding_inputs_as_learned, loss_inputs_as_learned,
+    outcome_inputs_as_learned,
     demand_as_learned,
 )  # fmt: skip
 _VEHICLE: tuple[Node, ...] = (
@@ -181,6 +184,7 @@ _MACHINE: tuple[Node, ...] = (
     Stage("flux_map", flux_map_stage, "per turn and metre", flux_map.files),
     View(transmission),
     Stage("winding", winding_stage, "wires, turns, connection, length", winding.files, remarks=winding.remarks),
+    View(driven_machine),
     Stage("drive", drive_stage, "over speed, current and voltage", drive.files),
     View(braking_demand),
     Stage("braking", braking_stage, "shorted and controlled, over speed", braking.files, remarks=braking.remarks),

@@ -49,7 +49,7 @@ def turn(options: argparse.Namespace) -> None:
     angles = _angles(options, read.machine.pole_pairs)
     supply = Supply(
         finite("--current-A", options.current_A), finite("--current-angle-deg", options.current_angle_deg) * DEGREE,
-        read.turns,
+        read.equivalent_turns,
     )  # fmt: skip
     model = _model(options.machine, read)
     found = turned(model, supply, read.active_length, tqdm(angles, unit="position", disable=None))
@@ -81,10 +81,10 @@ def _print(read: MachineFile, found: Turned, is_period: bool) -> None:
 
 
 def _lines(read: MachineFile, found: Turned, is_period: bool) -> Iterator[str]:
-    (ring, fluxes), ripple = found.torque.mean(axis=0), np.ptp(found.torque[:, 0])
+    ring, fluxes = found.torque.mean(axis=0)
     yield read.title
     yield f"torque, mean        {ring:.6g} Nm (ring average), {fluxes:.6g} Nm (consistent fluxes)"
-    yield f"torque, peak to peak {ripple:.6g} Nm over {len(found.angle)} positions"
+    yield f"torque, peak to peak {found.ripple:.6g} Nm over {len(found.angle)} positions"
     d, q = found.dq_linkage.mean(axis=0)
     yield f"flux linkage, mean  d {1e3 * d:.6g} mWb, q {1e3 * q:.6g} mWb"
     if is_period:

@@ -141,9 +141,14 @@ def section(sheet: DataSheet) -> Section:
                 "Cross-section with its dimensions in mm; coil sides in the colours of phases A, B and C, light where "
                 "a positive phase current flows away from the viewer.",
             ),
-            *(Table(_shown(group), f"{group.title}.", {PLUS_MINUS: "±"}) for group in sheet.groups),
+            *group_tables(sheet),
         ),
     )
+
+
+def group_tables(sheet: DataSheet) -> Iterator[Table]:
+    """A table a group, for a report."""
+    return (Table(_shown(group), f"{group.title}.", {PLUS_MINUS: "±"}) for group in sheet.groups)
 
 
 # ---- groups ---------------------------------------------------------------------------------------------------------
@@ -151,7 +156,7 @@ def section(sheet: DataSheet) -> Section:
 
 def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Iterator[Row]:
     """What is bought and cut."""
-    machine, envelope, magnet = wound.machine, machine_envelope(wound), case.materials.magnet
+    machine, envelope, magnet = wound.dimensions, machine_envelope(wound), case.materials.magnet
     yield row("slots", machine.slots, "")
     yield row("poles", machine.poles, "")
     yield row("stator outer diameter", 2 * machine.stator_outer_radius, "mm")

@@ -14,7 +14,7 @@ from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.winding_design import WindingDesign
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
-from figures.flux_map import Curve, field_envelope, flux_maps
+from figures.flux_map import field_envelope, flux_maps
 from figures.report import Picture, Section, Table
 from figures.winding import RequiredPoint, WheelPoint, force_velocity, torque_speed
 from magnetostatics.flux_map_stage import FluxMap
@@ -37,15 +37,14 @@ def files(
     """Torque over speed, windings by both models, and the figures."""
     yield table_file(ENVELOPE, envelope_table(found))
     yield table_file(WINDINGS, windings_table(found, winding))
-    mtpa, mtpv = Curve(found.mtpa_direct, found.mtpa_quadrature), Curve(found.mtpv_direct, found.mtpv_quadrature)
     machine, limits = winding.wound.on_map(flux_map.data), winding.limits
-    yield figure_file("flux_map", flux_maps(machine, mtpa, mtpv, found.envelope, limits.current_peak))
+    yield figure_file("flux_map", flux_maps(machine, found.field, limits.current_peak))
     title = _name(found.neighbour(winding.chosen.design))
-    yield figure_file("field_envelope", field_envelope(found.envelope, found.constant_envelope, title=title))
+    yield figure_file("field_envelope", field_envelope(found.field.envelope, found.constant.envelope, title=title))
     demand = _demand(required, transmission, output)
     yield figure_file("torque_speed", torque_speed(*_envelopes(found, winding), demand))
     shown: dict[str, Any] = {"output": output, "title": title, "required": demands(required, output), "limits": limits}
-    planes = {"force_velocity": found.plane_of_constant_parameters, "force_velocity_field": found.plane}
+    planes = {"force_velocity": found.constant.plane, "force_velocity_field": found.field.plane}
     for name, plane in planes.items():
         yield figure_file(name, force_velocity(plane, transmission.nominal, **shown))
 
@@ -81,9 +80,10 @@ def section(found: DriveOutcome, winding: WindingOutcome, output: Output) -> Sec
 
 def envelope_table(found: DriveOutcome) -> pd.DataFrame:
     """Torque over speed of the flux map and of the constant parameters, and the MTPV current of the flux map."""
-    columns: dict[str, object] = {"speed_rpm": found.envelope.speed / RPM}
-    columns |= _envelope_columns("field", found.envelope) | _envelope_columns("constant", found.constant_envelope)
-    return pd.DataFrame({**columns, "i_d_mtpv_A": found.mtpv_direct, "i_q_mtpv_A": found.mtpv_quadrature})
+    field, constant = found.field, found.constant
+    columns: dict[str, object] = {"speed_rpm": field.envelope.speed / RPM}
+    columns |= _envelope_columns("field", field.envelope) | _envelope_columns("constant", constant.envelope)
+    return pd.DataFrame({**columns, "i_d_mtpv_A": field.mtpv_direct, "i_q_mtpv_A": field.mtpv_quadrature})
 
 
 def windings_table(found: DriveOutcome, winding: WindingOutcome) -> pd.DataFrame:

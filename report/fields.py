@@ -94,8 +94,8 @@ def _of_machine(name: str, seen: Rotation, case: FieldCase) -> Iterator[File]:
     yield figure_file(f"cross_section_{name}", cross_section(section, seen.null_angle))
     table = rotation_table(seen)
     yield table_file(f"rotation_{name}.csv", table)
-    angles = {"null_angle_deg": seen.null_angle / DEGREE, "q_axis_angle_deg": seen.q_axis_angle / DEGREE}
-    yield figure_file(f"rotation_{name}", rotation_figure(table, **angles))
+    null, q_axis = seen.null_angle / DEGREE, seen.q_axis_angle / DEGREE
+    yield figure_file(f"rotation_{name}", rotation_figure(table, null_angle_deg=null, q_axis_angle_deg=q_axis))
     for state in STATES:
         field = null_field(seen.fields, case, state)
         yield _vtu(f"{name}_{state}.vtu", field)

@@ -9,6 +9,7 @@ import pandas as pd
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gap_stress import gap_stress as gap_stress_figure
 from figures.report import Picture, Section, Table
+from geometry.machine import dimensions_of
 from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import amplitude_of, classical_pull, effective_gap, moving
 from magnetostatics.gap_stress_stage import GapStress
@@ -108,7 +109,7 @@ def _stress(found: GapStress) -> str:
 
 
 def _pull(found: GapStress, case: FieldCase) -> str:
-    machine = found.machine
+    machine = dimensions_of(found.machine)
     gap = effective_gap(machine, case.materials.magnet.recoil_permeability)
     classical = classical_pull(found.mean_stress, machine.mid_gap_radius, gap)
     idle, overload, formula = (one * found.shift / _KN for one in (*found.pull_per_shift, classical))

@@ -87,7 +87,7 @@ def designs_table(first: FirstDesign, outcome: Outcome, winding: WindingOutcome,
         for name, old, new in zip(before.feature, before.ours, after.ours, strict=True)
     ]
     lengths = (one.wound.active_length / MILLIMETRE for one in (first.winding, winding))
-    radii = (one.wound.machine.stator_outer_radius / MILLIMETRE for one in (first.winding, winding))
+    radii = (one.wound.dimensions.stator_outer_radius / MILLIMETRE for one in (first.winding, winding))
     rows.append(_both(labelled("active length", "mm"), lengths))
     rows.append(_both(labelled("stator outer radius", "mm"), radii))
     rows.append(_both("turns of a coil", (one.chosen.turns for one in (first.winding, winding))))

@@ -43,7 +43,7 @@ def files(package: Package, winding: WindingOutcome, sheet: DataSheet) -> Iterat
     yield table_file(TABLE, sheet.table)
     yield table_file(CONNECTIONS, connections_table(package, winding))
     yield table_file(COSTS, costs_table(package))
-    drawing = lamination(winding.wound.machine, package.layout)
+    drawing = lamination(winding.wound.dimensions, package.layout)
     yield figure_file(DRAWING_PICTURE, drawing)
     yield drawing_file(DRAWING, drawing)
     yield figure_file(
@@ -56,7 +56,7 @@ def files(package: Package, winding: WindingOutcome, sheet: DataSheet) -> Iterat
 
 def _for_the_workshop(winding: WindingOutcome) -> Iterator[File]:
     """Outlines to cut by, and the solids."""
-    outline, length = outline_of(winding.wound.machine), winding.wound.active_length
+    outline, length = outline_of(winding.wound.dimensions), winding.wound.active_length
     for name, layers in laminations(outline).items():
         yield File(name, partial(write_dxf, layers=layers))
     yield File(SOLIDS, partial(write_step, parts=active_parts(outline), length=length))

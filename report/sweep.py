@@ -14,7 +14,7 @@ from figures.files import File, figure_file, picture_name, table_file
 from figures.limits import limits as limits_figure
 from figures.report import Picture, Remark, Section, Table
 from geometry.family import Combination
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from optimisation.limits import LimitComparison
 from optimisation.optima import Optima, Optimum
 from optimisation.sweep import DesignMaps
@@ -37,7 +37,7 @@ _LARGE = "Torque and probe flux densities over back-iron width and rotor radius.
 _TORQUES = ("torque", "torque_null")
 
 
-def optima_files(optima: Optima, maps: DesignMaps, case: FieldCase) -> Iterator[File]:
+def optima_files(optima: Optima, maps: DesignMaps, case: FamilyCase) -> Iterator[File]:
     """Table of the optima and the design maps; the large one is that closest to the machine of the study."""
     table = optima_table(optima)
     yield table_file("optima.csv", table)
@@ -65,7 +65,7 @@ def remarks(optima: Optima) -> Iterator[str]:
     yield from (edge.sentence for edge in optima.edges)
 
 
-def section(case: FieldCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
+def section(case: FamilyCase, maps: DesignMaps, optima: Optima, limits: LimitComparison | None) -> Section:
     """Sweep, feasible domain, refined optima and what the limit costs."""
     caption = (
         "Refined optima. Torque per metre of active length, mean over one electrical period; flux densities are means "
@@ -145,7 +145,7 @@ def _of(table: pd.DataFrame, combination: Combination) -> pd.DataFrame:
     return table[(table.slots == combination.slots) & (table.poles == combination.poles)]
 
 
-def _closest(maps: DesignMaps, case: FieldCase) -> tuple[Combination, float]:
+def _closest(maps: DesignMaps, case: FamilyCase) -> tuple[Combination, float]:
     """Slot-pole combination and stator diameter [mm] of the sweep that are closest to the machine of the study."""
     own = case.family
 
@@ -179,7 +179,7 @@ def _freed(optima: Optima) -> tuple[str, ...]:
     )
 
 
-def _overload(case: FieldCase, optima: Optima) -> str:
+def _overload(case: FamilyCase, optima: Optima) -> str:
     over = [(one.torque_overload_linear / one.torque_overload - 1) * 100 for one in optima.found]
     amplitudes = case.nominal_density, case.overload_density
     nominal, overload = (amplitude / np.sqrt(2) / AMPERE_PER_SQUARE_MILLIMETRE for amplitude in amplitudes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from electrical.braking_stage import CopperHeat
-from electrical.winding_connection import Delta, Star
+from electrical.winding_connection import CLOSINGS
 from electrical.winding_selection import WindingLimits
 from electrical.winding_stage import WindingInputs
 from electrical.wire import Wire
@@ -24,7 +24,6 @@ CLASS = "F"  # of the insulation, where the study names none: usual for enamelle
 INSULATED_FILL = 0.55
 CIRCULATING_SHARE = 0.05  # of the copper loss; half of it is what the continuous torque falls by (estimate)
 PATHS, CONNECTIONS = (1,), ("star",)  # where the study allows no others: all coils of a phase in series, in star
-_CLOSINGS: dict[str, Star | Delta] = {"star": Star(), "delta": Delta()}
 
 
 def flux_map_grid(study: Study) -> FluxMapGrid:
@@ -43,7 +42,7 @@ def winding_inputs(study: Study) -> WindingInputs:
     return WindingInputs(
         wires=wires(study),
         paths=section.parallel_paths or PATHS,
-        closings=tuple(_CLOSINGS[name] for name in section.connections or CONNECTIONS),
+        closings=tuple(CLOSINGS[name] for name in section.connections or CONNECTIONS),
         limits=winding_limits(study),
         insulation=winding_class(study),
         nominal_density=study.sweep.si.j_nominal_rms,

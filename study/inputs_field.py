@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from geometry.half_cell import MeshDensity
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.model import MachineMaterials
 from materials.library import load_steel
 from optimisation.states import READINGS
@@ -18,10 +18,10 @@ from study.schema import Study
 _DETAIL = MeshDensity(gap_edges=360, longest_gap_edge=0.75, gap_layers=2, across_iron=3.0)
 
 
-def field_case(study: Study) -> FieldCase:
+def field_case(study: Study) -> FamilyCase:
     """Machines, materials, winding, meshes and current densities; MaterialError where the steel cannot be read."""
     density = mesh_density(study.mesh)
-    return FieldCase(
+    return FamilyCase(
         family=machine_family(study.machine),
         materials=machine_materials(study),
         layers=study.winding.layers,

@@ -9,7 +9,7 @@ from drivetrain.outcome import OutcomeInputs
 from electrical.magnets_stage import MagnetInputs
 from electrical.winding_stage import WindingInputs
 from losses.stage import LossInputs
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from study.inputs_electrical import loss_inputs, winding_inputs
 from study.inputs_field import field_case
 from study.inputs_magnets import magnet_inputs
@@ -22,7 +22,7 @@ def study_itself(study: Study) -> Study:
     return study
 
 
-def field_case_as_learned(study: Study, learned: Learned) -> FieldCase:
+def field_case_as_learned(study: Study, learned: Learned) -> FamilyCase:
     """Magnets, steel and end leakage as the bench has shown them."""
     return case_as_learned(field_case(study), learned)
 

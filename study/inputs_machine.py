@@ -6,7 +6,7 @@ from itertools import product
 
 from geometry.family import Combination, MachineFamily
 from geometry.half_cell import MeshDensity
-from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import PATTERNS
 from study.schema import MachineSection, MeshSection, Study
 
 # Keys of [mesh] by what ``geometry.half_cell.MeshDensity`` calls them.
@@ -15,7 +15,6 @@ MESH_NAMES = {
     "gap_layers": "gap_layers",
     "across_iron": "elements_across_tooth",
 }
-_MAGNETISATIONS: dict[str, Magnetisation] = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 
 
 def machine_family(section: MachineSection) -> MachineFamily:
@@ -34,7 +33,7 @@ def machine_family(section: MachineSection) -> MachineFamily:
         shoe_aspect_ratio=si.shoe_aspect_ratio,
         shaft_radius=si.shaft_radius,
         magnet_arc_fraction=si.magnet_arc_fraction,
-        magnetisation=_MAGNETISATIONS[si.magnetisation],
+        magnetisation=PATTERNS[si.magnetisation],
         tooth_width=si.tooth_width,
         shoe_d1=si.shoe_d1,
         shoe_d2=si.shoe_d2,

@@ -44,7 +44,7 @@ POSITION = 0.1 * MILLIMETRE  # estimate, glued against a fixture
 
 def tolerances(study: Study, matched: MatchedMachine, case: FieldCase, mechanics: MechanicsInputs) -> Tolerances:
     """Half widths of every dimension and property; the eccentricity is the one that the strength is reckoned with."""
-    machine, remanence = matched.machine, case.materials.magnet.remanence
+    machine, remanence = matched.dimensions, case.materials.magnet.remanence
     si = study.tolerances.si
     position = _stated(si.magnet_position, POSITION) / machine.rotor_core_radius
     scatter = MagnetScatter(_stated(si.magnet_scatter, SCATTER) * remanence, position)
@@ -53,7 +53,7 @@ def tolerances(study: Study, matched: MatchedMachine, case: FieldCase, mechanics
 
 def _of_the_section(study: Study, matched: MatchedMachine) -> tuple[Deviation, ...]:
     """Of the cross-section; the study states tolerances of diameters, a radius has half of them."""
-    si, m = study.tolerances.si, matched.machine
+    si, m = study.tolerances.si, matched.dimensions
     magnet_length, magnet_arc = (_stated(one, MAGNET) for one in (si.magnet_length, si.magnet_width))
     return (
         BoreRadius(_of_radius(si.bore_diameter, m.stator_inner_radius, TURNED)),

@@ -7,15 +7,19 @@ from dataclasses import MISSING, Field, dataclass, fields
 from difflib import get_close_matches
 from math import isfinite
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any
 
+from electrical.kind_search import KindSearch
+from electrical.winding_connection import CLOSINGS, WindingConnection
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
 from geometry.kinds import ROTORS, STATORS, Kinds
-from geometry.magnetisation import Magnetisation, ParallelMagnetisation, RadialMagnetisation
-from geometry.parts import ComposedMachine, Part
+from geometry.magnetisation import PATTERNS, Magnetisation
+from geometry.moves import Move
+from geometry.parts import ComposedMachine, Part, part_units
 from geometry.winding import WindingLayout, star_of_slots
+from magnetostatics.flux_map_stage import ANGLES, CURRENTS
 from magnetostatics.model import MachineMaterials
 from materials.errors import MaterialError
 from materials.library import load_steel
@@ -24,28 +28,60 @@ from study.errors import StudyError
 from study.toml_file import read_table
 from units import to_si
 
+VARIABLES = "variables"
 MACHINES = Path(__file__).resolve().parent.parent / "machines"
-_MAGNETISATIONS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 # Sections and keys beside those of the two parts; those with a value may be left out.
 _OTHERS: dict[str, dict[str, Any]] = {
     "machine": {"title": "", "active_length_mm": None},
-    "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None},
-    "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05},
+    "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None, "parallel_paths": 1, "connection": "star",
+                "wires_in_hand": 1, "wire_diameter_mm": None},
+    "drive": {"dc_bus_voltage_V": None, "line_current_peak_A": None, "speed_max_rpm": None,
+              "winding_temperature_degC": 20.0},
+    "flux_map": {"angles": ANGLES, "currents": CURRENTS},
+    "search": {"flux_density_max_T": None, "samples": 64},
+    "materials": {"stator_steel": None, "rotor_steel": None, "remanence_T": None, "recoil_permeability": 1.05,
+                  "loss_grade": None},
     "mesh": {"gap_edges_per_revolution": 720, "gap_layers": 2, "elements_across_iron": 2.0},
 }
 
 
 @dataclass(frozen=True, eq=False)
 class MachineFile:
-    """title; turns: of every coil, all coils of a phase in series, dimensionless; active_length [m]"""
+    """A machine as it is drawn and wound, and what stands beside it in the file.
 
+    turns: of every coil, dimensionless; active_length [m]
+    conductors, supply: what is stated of the wires and of the drive, by key with unit; None where a key is left out
+    map_points: angles over 60 electrical degrees and currents along an axis of the flux map
+    steel: of the stator, as the file names it; loss_grade: whose loss data stand for it, None without
+    search: what may vary of the machine, None where nothing may
+    """
+
+    path: Path
     title: str
     machine: ComposedMachine
     layout: WindingLayout
+    connection: WindingConnection
     turns: float
     active_length: float
     materials: MachineMaterials
     density: MeshDensity
+    conductors: Mapping[str, Any]
+    supply: Mapping[str, Any]
+    map_points: tuple[int, int]
+    steel: str
+    loss_grade: str | None
+    search: KindSearch | None
+
+    @property
+    def equivalent_turns(self) -> float:
+        """Of a coil of the equivalent star, all coils of a phase in series."""
+        return float(self.connection.equivalent_turns(self.turns))
+
+    def number(self, section: str, key: str) -> float:
+        """What [winding] or [drive] states, in SI. Raises StudyError where it is left out or no number."""
+        stated = self.supply if section == "drive" else self.conductors
+        found = _number(_Table(self.path, {}), section, key, stated[key])
+        return to_si(key, found)[1]
 
 
 def read_machine(path_or_name: str | Path) -> MachineFile:
@@ -80,22 +116,45 @@ class _Table:
 
 
 def _machine(table: _Table) -> MachineFile:
-    _check_names(table, "the file", "section", table.sections, (*_OTHERS, "stator", "rotor"))
+    _check_names(table, "the file", "section", table.sections, (*_OTHERS, VARIABLES, "stator", "rotor"))
     values = {name: _values(table, name) for name in _OTHERS}
     machine = ComposedMachine(_part(table, "stator", STATORS), _part(table, "rotor", ROTORS))  # type: ignore[arg-type]
     check_machine(machine)
     winding, mesh = values["winding"], values["mesh"]
     return MachineFile(
+        table.path,
         values["machine"]["title"],
         machine,
         star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"]),
+        _connection(table, winding),
         _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
         _materials(table, values["materials"], machine.rotor.magnets_per_pole),
         MeshDensity(
             mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
         ),
+        winding,
+        values["drive"],
+        (_count(table, "flux_map", values, "angles", 1), _count(table, "flux_map", values, "currents", 4)),
+        values["materials"]["stator_steel"],
+        values["materials"]["loss_grade"],
+        _search(table, machine, values) if VARIABLES in table.sections else None,
     )
+
+
+def _connection(table: _Table, stated: Mapping[str, Any]) -> WindingConnection:
+    if stated["connection"] not in CLOSINGS:
+        raise table.wrong("winding", f"connection = {stated['connection']!r} is unknown; take {' or '.join(CLOSINGS)}")
+    return WindingConnection(
+        _count(table, "winding", {"winding": stated}, "parallel_paths", 1), CLOSINGS[stated["connection"]]
+    )
+
+
+def _count(table: _Table, section: str, values: Mapping[str, Any], key: str, least: int) -> int:
+    number = _number(table, section, key, values[section][key])
+    if number < least or number != int(number):
+        raise table.wrong(section, f"{key} = {number:g} is not a whole number of {least} or more")
+    return int(number)
 
 
 def _values(table: _Table, name: str) -> dict[str, Any]:
@@ -134,6 +193,51 @@ def _materials(table: _Table, stated: Mapping[str, Any], magnets_per_pole: int) 
     )
 
 
+# ---- what may vary ---------------------------------------------------------------------------------------------------
+
+
+def _search(table: _Table, machine: ComposedMachine, values: Mapping[str, Any]) -> KindSearch:
+    found = table.sections[VARIABLES]
+    if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+        raise StudyError(f"{table.path}: {VARIABLES} must be tables, each headed [[{VARIABLES}]].")
+    limit = _number(table, "search", "flux_density_max_T", values["search"]["flux_density_max_T"])
+    return KindSearch(
+        tuple(_move(table, machine, one) for one in found), limit, _count(table, "search", values, "samples", 8)
+    )
+
+
+def _move(table: _Table, machine: ComposedMachine, stated: Mapping[str, Any]) -> Move:
+    """One of [[variables]]: a name, the dimensions that move together, and by how much, ``by_mm`` or ``by``."""
+    name, dimensions = str(stated.get("name", "")), stated.get("moves", [])
+    bounds = [key for key in stated if key == "by" or key.startswith("by_")]
+    if not name or not isinstance(dimensions, list) or not dimensions or len(bounds) != 1:
+        raise table.wrong(VARIABLES, 'needs name = "...", moves = ["stator.tooth_width", ...] and by_mm = [-0.2, 0.2]')
+    unit = bounds[0].removeprefix("by").removeprefix("_")
+    moves = tuple(_dimension(table, machine, name, str(one), unit) for one in dimensions)
+    low, high = _bounds(table, name, bounds[0], stated[bounds[0]])
+    return Move(name, moves, unit, low, high)
+
+
+def _dimension(table: _Table, machine: ComposedMachine, name: str, stated: str, unit: str) -> tuple[str, str]:
+    part, _, dimension = stated.partition(".")
+    parts = {"stator": machine.stator, "rotor": machine.rotor}
+    units = part_units(type(parts[part])) if part in parts else {}
+    if units.get(dimension) != unit:
+        known = ", ".join(f"{where}.{one}" for where, own in parts.items() for one, has in part_units(type(own)).items()
+                          if has == unit)  # fmt: skip
+        raise table.wrong(VARIABLES, f"{name!r}: {stated} is no dimension in {unit or 'pure numbers'}; take of {known}")
+    return part, dimension
+
+
+def _bounds(table: _Table, name: str, key: str, stated: Any) -> tuple[float, float]:
+    if not isinstance(stated, list) or len(stated) != 2:
+        raise table.wrong(VARIABLES, f"{name!r}: {key} = {stated!r} is not a pair of bounds")
+    low, high = (to_si(key, _number(table, VARIABLES, key, one))[1] for one in stated)
+    if low >= high:
+        raise table.wrong(VARIABLES, f"{name!r}: the bounds of {key} must rise, found {stated}")
+    return low, high
+
+
 # ---- a stator or a rotor from its section ----------------------------------------------------------------------------
 
 
@@ -151,9 +255,7 @@ def _part(table: _Table, section: str, kinds: Kinds) -> Part:
 
 def part_keys(cls: type[Part]) -> dict[str, str]:
     """Keys of a part in a file by the names of its fields: the unit is the end of the key, none for a pure number."""
-    hints = get_type_hints(cls, include_extras=True)
-    units = {one.name: next(iter(get_args(hints[one.name])[1:]), "") for one in fields(cls)}  # type: ignore[arg-type]
-    return {name: f"{name}_{unit}" if unit else name for name, unit in units.items()}
+    return {name: f"{name}_{unit}" if unit else name for name, unit in part_units(cls).items()}
 
 
 def _must_be_stated(one: Field[Any]) -> bool:
@@ -175,6 +277,6 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
 
 
 def _magnetisation(table: _Table, section: str, name: object) -> Magnetisation:
-    if name not in _MAGNETISATIONS:
-        raise table.wrong(section, f"magnetisation = {name!r} is unknown; take {' or '.join(_MAGNETISATIONS)}")
-    return _MAGNETISATIONS[str(name)]
+    if name not in PATTERNS:
+        raise table.wrong(section, f"magnetisation = {name!r} is unknown; take {' or '.join(PATTERNS)}")
+    return PATTERNS[str(name)]

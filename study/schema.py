@@ -102,7 +102,7 @@ class MachineSection(Section):
     shaft_radius_mm: Annotated[float, Quantity("shaft radius", 0.3, 900)]
     magnet_arc_fraction: Annotated[float, Quantity("magnet arc over pole pitch", 0.1, 1)]
     stacking_factor: Annotated[float, Quantity("steel over stack length of the laminations, of their mass", 0.5, 1)]
-    magnetisation: Literal["parallel", "radial"]
+    magnetisation: Literal["parallel", "radial", "halbach"]
     # optional: stated instead of derived from the back iron (eqs 3.53, 3.57, 3.58)
     tooth_width_mm: Annotated[float | None, Quantity("tooth width w_tb", 0.3, 200)] = None
     shoe_d1_mm: Annotated[float | None, Quantity("depth of the parallel-sided slot opening d_1", 0.05, 50)] = None

@@ -21,7 +21,7 @@ from electrical.final_length import ContinuousNeed
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.winding_design import WindingDesign
 from electrical.wound_machine import WoundMachine
-from geometry.machine import Machine
+from geometry.parts import DrawnMachine
 from losses.map import FieldLossTable
 from magnetostatics.flux_map_stage import FluxMap
 from thermal.errors import NoSteadyState
@@ -70,7 +70,7 @@ class LengthByTemperature(ContinuousNeed):
     """
 
     flux_map: FluxMap
-    machine: Machine
+    machine: DrawnMachine
     table: FieldLossTable | None
     enclosure: Enclosure
     inputs: HeatInputs

@@ -135,7 +135,7 @@ class LoadedMachine:
         their own; iron loss counts in proportion to the mass of teeth and yoke, and what circulates in a delta as at
         the temperature of the loss map."""
         wound = self.machine.wound
-        ends, yoke = wound.end_turn_share, yoke_share(wound.machine)
+        ends, yoke = wound.end_turn_share, yoke_share(wound.dimensions)
         square, fast = self.loading.squares(temperature[MAGNETS])
         slot, outside = (self.copper.factor(temperature[name]) for name in (SLOT, ENDS))
         direct = copper_loss(wound.phase_resistance, 0.0, square**0.5)

@@ -83,13 +83,13 @@ class CooledMachine:
     @cached_property
     def slot(self) -> SlotPaths:
         """Ways out of the copper in the slots."""
-        machine = self.wound.machine
+        machine = self.wound.dimensions
         return slot_paths(machine, self.wound.active_length, self.filling.conductivity, self.cooling.liner)
 
     @cached_property
     def filling(self) -> Filling:
         """What lies in the slots."""
-        machine, wound, cooling = self.wound.machine, self.wound, self.cooling
+        machine, wound, cooling = self.wound.dimensions, self.wound, self.cooling
         copper = self._sides * wound.copper_area / (2 * machine.slots * machine.half_slot_area)
         enamel = copper * wound.design.wire.enamel_area / wound.design.wire.area
         return Filling(copper, enamel, COPPER_CONDUCTIVITY, cooling.filler_conductivity)
@@ -117,7 +117,7 @@ class CooledMachine:
     @cached_property
     def _nodes(self) -> tuple[Node, ...]:
         weights, ends = self.weights, self.wound.end_turn_share
-        copper, yoke = weights.copper * COPPER_HEAT, yoke_share(self.wound.machine)
+        copper, yoke = weights.copper * COPPER_HEAT, yoke_share(self.wound.dimensions)
         stores = {
             SLOT: copper * (1 - ends),
             ENDS: copper * ends,
@@ -133,7 +133,7 @@ class CooledMachine:
     @property
     def _end_volume(self) -> float:
         """Of the air on both sides [m^3]; the end windings in it are left out."""
-        return 2 * pi * self.wound.machine.stator_outer_radius**2 * self.casing.end_space
+        return 2 * pi * self.wound.dimensions.stator_outer_radius**2 * self.casing.end_space
 
     # ---- ways -------------------------------------------------------------------------------------------------------
 
@@ -160,7 +160,7 @@ class CooledMachine:
 
     def _iron_links(self) -> tuple[Link, ...]:
         """Along the teeth and from their roots around the yoke; outwards through the yoke and its contact."""
-        machine, length = self.wound.machine, self.wound.active_length
+        machine, length = self.wound.dimensions, self.wound.active_length
         middle = (machine.slot_bottom_radius + machine.stator_outer_radius) / 2
         steel = STEEL_CONDUCTIVITY * self.stacking
         inner = shell_resistance(machine.slot_bottom_radius, middle, steel, length)
@@ -170,7 +170,7 @@ class CooledMachine:
         return Link(TEETH, YOKE, 1 / (along + inner)), Link(YOKE, CASING, 1 / (outer + self.cooling.casing_gap / gap))
 
     def _rotor_links(self, temperature: Temperatures) -> tuple[Link, ...]:
-        machine, length = self.wound.machine, self.wound.active_length
+        machine, length = self.wound.dimensions, self.wound.active_length
         gap = air_gap_film(
             machine.airgap, machine.mid_gap_radius, self.speed, (temperature[TEETH] + temperature[MAGNETS]) / 2
         )
@@ -186,14 +186,14 @@ class CooledMachine:
 
     def _shaft_conductance(self, temperature: float) -> float:
         """Along the shaft out of the rotor and through the bearing, both sides [W/K]."""
-        radius, casing = self.wound.machine.shaft_radius, self.casing
+        radius, casing = self.wound.dimensions.shaft_radius, self.casing
         shaft = (casing.end_space + casing.bearing_seat / 2) / (SHAFT_CONDUCTIVITY * pi * radius**2)
         bearing = BEARING_GAP / (Air(temperature).conductivity * 2 * pi * radius * casing.bearing_seat)
         return 2 / (shaft + bearing)
 
     def _end_links(self) -> tuple[Link, ...]:
         """End windings, faces of the rotor and inside of the casing, each with the air beside the stack."""
-        wound, machine = self.wound, self.wound.machine
+        wound, machine = self.wound, self.wound.dimensions
         film = end_space_film(self.speed * machine.rotor_outer_radius)
         bundle = equal_area_perimeter(wound.copper_area / self.filling.copper)
         covers = 2 * pi * machine.stator_outer_radius * (machine.stator_outer_radius + 2 * self.casing.end_space)

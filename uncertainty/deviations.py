@@ -68,7 +68,7 @@ class SectionDimension(Deviation):
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
         """With it; change: [m]."""
-        return replace(wound, machine=self.moved(wound.machine, change))
+        return replace(wound, machine=self.moved(wound.dimensions, change))
 
 
 class BoreRadius(SectionDimension):

@@ -11,7 +11,7 @@ from drivetrain.requirements import Linkage, Requirements
 from electrical.braking_stage import BrakingOutcome
 from electrical.winding_stage import WindingOutcome
 from losses.stage import LossMap
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from optimisation.fits import SectionFits
 from tasks import Workers
 from thermal.stage import HeatOutcome
@@ -30,7 +30,7 @@ class Uncertainty:
 
 def uncertainty_stage(
     found: ToleranceOutcome,
-    case: FieldCase,
+    case: FamilyCase,
     fits: SectionFits,
     matched: MatchOutcome,
     requirements: Requirements,

@@ -111,7 +111,7 @@ def tolerances_stage(
     losses: whose sheet counts, None where the study has no loss data; parts: what they are made of
     Raises FieldSolutionError, and GeometryError for a tolerance that the machine cannot be built with.
     """
-    operated, machine = operated_machine(flux_map, winding, windings), winding.wound.machine
+    operated, machine = operated_machine(flux_map, winding, windings), winding.wound.dimensions
     states = _states(operated, losses)
     found = workers.map("tolerances", solve_slopes, _slope_tasks(case, machine, states, tolerances.deviations))
     looked_at = {name: StateTask(case, machine, states[name]) for name in (NO_LOAD, FULL)}

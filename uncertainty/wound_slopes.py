@@ -173,7 +173,7 @@ def relative_slopes(
 
 def _of_wound(deviation: Deviation, wound: WoundMachine, read: Callable[[WoundMachine], float]) -> float:
     """d ln(read)/d(deviation) of what length, wire and drawing make [1 per unit of the deviation]."""
-    middle = replace(wound, machine=deviation.centre(wound.machine))
+    middle = replace(wound, machine=deviation.centre(wound.dimensions))
     more, less = (read(deviation.wound(middle, way * deviation.step)) for way in (1, -1))
     return (more - less) / (2 * deviation.step * read(middle))
 

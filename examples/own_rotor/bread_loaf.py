@@ -25,8 +25,6 @@ class BreadLoaf(Rotor):
     shaft_radius: Length
 
     rim_radius = property(lambda self: self.outer_radius)
-    grounded_radius = property(lambda self: None)
-    magnets_per_pole = property(lambda self: 1)
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
         """Along the axis of the pole."""

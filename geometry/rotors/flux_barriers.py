@@ -44,6 +44,10 @@ class FluxBarriers(Rotor):
         return self.shaft_radius
 
     @property
+    def bore_radius(self) -> float:
+        return self.shaft_radius
+
+    @property
     def magnets_per_pole(self) -> int:
         return 0
 

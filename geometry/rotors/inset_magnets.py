@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from geometry.errors import GeometryError, in_mm
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Length, Rim, Rotor, Share
+from geometry.parts import Length, MagnetOnAxis, Rim, Share
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class InsetMagnets(Rotor):
+class InsetMagnets(MagnetOnAxis):
     """Magnets of constant thickness with radial sides, flush with the round rotor. Lengths in m."""
 
     poles: int
@@ -31,18 +29,6 @@ class InsetMagnets(Rotor):
     @property
     def rim_radius(self) -> float:
         return self.outer_radius
-
-    @property
-    def grounded_radius(self) -> None:
-        return None
-
-    @property
-    def magnets_per_pole(self) -> int:
-        return 1
-
-    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """As it is magnetised [rad], of any shape, that of position_angle: [rad], of any shape; axis: [rad]"""
-        return self.magnetisation.direction_angle(position_angle, axis)
 
     def check(self) -> None:
         if not 0 < self.arc_fraction < 1:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import numpy as np
+from typing import ClassVar
 
 from geometry.errors import GeometryError, in_mm
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Length, Rim, Rotor, Share
+from geometry.parts import Length, MagnetOnAxis, Rim, Share
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class OuterMagnets(Rotor):
+class OuterMagnets(MagnetOnAxis):
     """Magnets of constant thickness with radial sides in a cup of finite thickness, lengths in m; beyond it there is
     air up to a circle on which the field has died away.
 
@@ -27,6 +26,7 @@ class OuterMagnets(Rotor):
     air_radius: Length
     arc_fraction: Share  # of the pole pitch, below 1
     magnetisation: Magnetisation = PARALLEL
+    gap_outside: ClassVar[bool] = False
 
     @property
     def cup_radius(self) -> float:
@@ -45,14 +45,6 @@ class OuterMagnets(Rotor):
     @property
     def grounded_radius(self) -> float:
         return self.air_radius
-
-    @property
-    def magnets_per_pole(self) -> int:
-        return 1
-
-    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """As it is magnetised [rad], of any shape, that of position_angle: [rad], of any shape; axis: [rad]"""
-        return self.magnetisation.direction_angle(position_angle, axis)
 
     def check(self) -> None:
         if self.arc_fraction >= 1:

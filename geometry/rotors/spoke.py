@@ -32,10 +32,6 @@ class Spoke(Rotor):
         return self.outer_radius
 
     @property
-    def grounded_radius(self) -> None:
-        return None
-
-    @property
     def magnets_per_pole(self) -> int:
         return 2
 

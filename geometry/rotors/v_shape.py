@@ -51,6 +51,10 @@ class VShape(Rotor):
         return self.shaft_radius
 
     @property
+    def bore_radius(self) -> float:
+        return self.shaft_radius
+
+    @property
     def magnets_per_pole(self) -> int:
         return 2
 

@@ -31,8 +31,9 @@ class OutwardTeeth(Stator):
         return self.outer_radius
 
     @property
-    def grounded_radius(self) -> None:
-        return None
+    def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
+        return self.slot_bottom_radius, self.flank_radius
 
     @property
     def tooth_probe(self) -> Segment:

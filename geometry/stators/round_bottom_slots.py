@@ -40,6 +40,11 @@ class RoundBottomSlots(Stator):
         return self.outer_radius
 
     @property
+    def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
+        return self._top, self._bottom
+
+    @property
     def tooth_probe(self) -> Segment:
         """Where the straight sides are half way out [m]."""
         corner = self._at(self._circle - self.side_depth / 2, (self.top_width + self.bottom_width) / 4)

@@ -39,6 +39,11 @@ class StraightTeeth(Stator):
         return self.outer_radius
 
     @property
+    def slot_radii(self) -> tuple[float, float]:
+        """Of the ends of the coil sides [m]."""
+        return self.shoe_top_radius, self.slot_bottom_radius
+
+    @property
     def tooth_probe(self) -> Segment:
         """At mid height [m]."""
         distance = (self.shoe_top_radius + self.slot_bottom_radius) / 2

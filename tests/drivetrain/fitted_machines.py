@@ -8,7 +8,7 @@ import numpy as np
 from geometry.family import Combination, MachineFamily
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import ParallelMagnetisation
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.model import MachineMaterials
 from materials.library import load_steel
 from materials.magnet import Magnet
@@ -70,7 +70,7 @@ FAMILY = MachineFamily(
     slot_opening=2.0 * MILLIMETRE, shoe_depth_fraction=0.52, shoe_aspect_ratio=1.0, shaft_radius=5.0 * MILLIMETRE,
     magnet_arc_fraction=1.0, magnetisation=ParallelMagnetisation(),
 )  # fmt: skip
-CASE = FieldCase(
+CASE = FamilyCase(
     family=FAMILY, materials=MachineMaterials(STEEL, STEEL, Magnet(1.3, 1.0)), layers=2, coil_pitch=None, packing=0.3,
     density=MeshDensity(), detail=MeshDensity(), nominal_density=6e6 * sqrt(2), overload_density=20e6 * sqrt(2),
 )  # fmt: skip

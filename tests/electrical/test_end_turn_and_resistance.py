@@ -15,8 +15,8 @@ from units import MILLIMETRE, MILLIOHM, SQUARE_MILLIMETRE
 
 SLOT = dict(
     slots=12,
-    shoe_top_radius=(15.7 + 0.5 + 2 * 1.43) * MILLIMETRE,
-    slot_bottom_radius=(42.5 - 3.3) * MILLIMETRE,
+    slot_inner_radius=(15.7 + 0.5 + 2 * 1.43) * MILLIMETRE,
+    slot_outer_radius=(42.5 - 3.3) * MILLIMETRE,
     tooth_width=5.5 * MILLIMETRE,
 )
 TOOTH_COIL = SLOT | {"coil_pitch": 1}
@@ -36,7 +36,7 @@ def test_end_turn_keeps_the_shoe():
 
 
 def test_end_turn_without_the_shoe_is_the_printed_equation():
-    bare = TOOTH_COIL | {"shoe_top_radius": (15.7 + 0.5) * MILLIMETRE}
+    bare = TOOTH_COIL | {"slot_inner_radius": (15.7 + 0.5) * MILLIMETRE}
     assert end_turn_length(**bare) == pytest.approx(15.72 * MILLIMETRE, abs=0.01 * MILLIMETRE)
 
 
@@ -44,7 +44,7 @@ def test_end_turn_without_the_shoe_is_the_printed_equation():
 def test_a_distributed_coil_has_the_end_turn_over_its_slots():
     """Two poles in 12 slots: a pitch of three is a quarter of the circumference at mid slot, 45.8 mm, and half a circle
     over it 71.9 mm, where a tooth coil has 16.3 mm."""
-    quarter = 2 * pi * (SLOT["shoe_top_radius"] + SLOT["slot_bottom_radius"]) / 2 / 4
+    quarter = 2 * pi * (SLOT["slot_inner_radius"] + SLOT["slot_outer_radius"]) / 2 / 4
     assert end_turn_length(**SLOT, coil_pitch=3) == pytest.approx(pi / 2 * quarter, rel=1e-14)
     assert end_turn_length(**SLOT, coil_pitch=3) == pytest.approx(71.9 * MILLIMETRE, abs=0.1 * MILLIMETRE)
 
@@ -61,7 +61,7 @@ def test_a_coil_without_pitch_is_refused():
 
 
 def test_centre_distance_spans_the_tooth_and_half_a_slot():
-    mean = (SLOT["shoe_top_radius"] + SLOT["slot_bottom_radius"]) / 2
+    mean = (SLOT["slot_inner_radius"] + SLOT["slot_outer_radius"]) / 2
     tooth_angle = 2 * asin(SLOT["tooth_width"] / (2 * mean))
     slot_angle = 2 * pi / 12 - tooth_angle
     assert slot_centre_distance(**SLOT) == pytest.approx(mean * (tooth_angle + slot_angle / 2), rel=1e-14)
@@ -69,7 +69,7 @@ def test_centre_distance_spans_the_tooth_and_half_a_slot():
 
 def test_a_slot_without_depth_is_refused():
     with pytest.raises(ValueError, match="no depth"):
-        end_turn_length(**TOOTH_COIL | {"slot_bottom_radius": 19 * MILLIMETRE})
+        end_turn_length(**TOOTH_COIL | {"slot_outer_radius": 19 * MILLIMETRE})
 
 
 @pytest.mark.parametrize("tooth_width", [0.0, 20 * MILLIMETRE])

@@ -33,7 +33,7 @@ from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRE
 from tests.magnetostatics.reference_machine import MATERIALS
 
 COARSE = MeshDensity(gap_edges=60, gap_layers=1, across_iron=1.0)
-CASE = FieldCase(None, MATERIALS, 2, None, 0.3, COARSE, COARSE, 6e6, 20e6)
+CASE = FieldCase(MATERIALS, 2, None, 0.3, COARSE, COARSE, 6e6, 20e6)
 STRONG, WEAK, FERRITE = "N42UH", "N42SH", "Y30H-1"
 MAP = flux_map()
 

@@ -14,6 +14,7 @@ from drivetrain.masses import PartMaterials
 from drivetrain.outcome import active_masses
 from drivetrain.output import Shaft, Wheel
 from electrical.braking_stage import CopperHeat, braking_stage
+from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from export.stage import package_stage
 from losses.stage import current_losses_stage, losses_stage
@@ -56,7 +57,8 @@ def outcome(winding):
 
 @pytest.fixture(scope="module")
 def losses(winding):
-    return losses_stage(current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed()), MAP, winding, INPUTS, LOSSES)
+    solved = current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed())
+    return losses_stage(solved, MAP, driven_machine(winding, INPUTS), LOSSES)
 
 
 @pytest.fixture(scope="module")

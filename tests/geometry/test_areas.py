@@ -9,7 +9,9 @@ from geometry.areas import part_areas
 from geometry.cross_section import mesh_cross_section
 from geometry.half_cell import MeshDensity
 from geometry.machine import hanselman_machine
+from geometry.outline import Arc, Contour, Line
 from geometry.winding import star_of_slots
+from study.machine_file import read_machine
 from units import MILLIMETRE
 
 THESIS = hanselman_machine(
@@ -70,3 +72,26 @@ def test_the_parts_and_what_is_between_them_fill_the_circle():
     assert rotor == pytest.approx(np.pi * machine.rotor_outer_radius**2, rel=1e-12)
     moments = found.shaft_moment + found.rotor_laminations_moment + found.magnets_moment
     assert moments == pytest.approx(np.pi / 2 * machine.rotor_outer_radius**4, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["outrunner_9_12", "prius_2004", "synrm_48_4", "inset_ferrite_6_4"])
+def test_areas_of_every_kind_are_those_of_the_meshed_regions(name):
+    """Iron, copper and magnets; a shaft that is not drawn is a circle."""
+    machine = read_machine(name).machine
+    found, (areas, shaft, core) = part_areas(machine), meshed(machine)
+    for part, area in areas.items():
+        assert getattr(found, part) == pytest.approx(area, rel=3e-3), part
+    drawn = found.shaft if machine.rotor.bore_radius == 0 else 0.0
+    assert found.rotor_laminations + drawn == pytest.approx(core + shaft, rel=3e-3)
+
+
+def test_moments_of_a_circle_and_of_a_square_off_the_axis():
+    """Steiner: of a circle pi R^2 (c^2 + R^2/2), of a square of side a a^2 (c^2 + a^2/6)."""
+    radius, centre, side = 2.0, complex(5.0, -3.0), 1.4
+    circle = Contour((Arc(radius, 0.3, 2.0, centre), Arc(radius, 2.3, 2 * np.pi - 2.0, centre)))
+    assert circle.area == pytest.approx(np.pi * radius**2)
+    assert circle.moment == pytest.approx(np.pi * radius**2 * (abs(centre) ** 2 + radius**2 / 2))
+    corners = [centre + side / 2 * complex(x, y) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    square = Contour(tuple(Line(a, b) for a, b in zip(corners, corners[1:] + corners[:1])))
+    assert square.area == pytest.approx(side**2)
+    assert square.moment == pytest.approx(side**2 * (abs(centre) ** 2 + side**2 / 6))

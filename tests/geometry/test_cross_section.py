@@ -92,8 +92,8 @@ def test_magnet_arc_below_one_leaves_room_between_the_magnets():
 
 
 def test_magnetisation_patterns():
-    assert ParallelMagnetisation().direction_angle(0.3, 0.1) == pytest.approx(0.1)
-    assert RadialMagnetisation().direction_angle(0.3, 0.1) == pytest.approx(0.3)
+    assert ParallelMagnetisation().direction_angle(0.3, 0.1, 0.6) == pytest.approx(0.1)
+    assert RadialMagnetisation().direction_angle(0.3, 0.1, 0.6) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def parts(outline):
     return (outline.stator, outline.rotor, outline.shaft, *outline.magnets, *outline.coil_sides.values())
 
 
-def test_areas_are_those_in_closed_form(drawn):
+def test_the_whole_has_the_areas_of_its_copies(drawn):
     made, outline = drawn
     found = part_areas(made)
     assert outline.stator.area == pytest.approx(found.stator_laminations, rel=1e-12)

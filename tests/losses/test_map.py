@@ -12,7 +12,7 @@ from electrical.winding_connection import Delta, WindingConnection
 from electrical.wound_machine import WoundMachine
 from losses.iron import FrequencyTerms, iron_loss
 from losses.loci import HALF_WAVE, rotor_loci, stator_loci
-from losses.map import FieldLosses, current_point, field_losses, grid, power_losses, table_of
+from losses.map import FieldLosses, LossGrid, current_point, field_losses, power_losses
 from magnetostatics.torque import arkkio_torque
 from materials.iron_loss import iron_loss_law
 from tests.electrical.wires import series_star
@@ -36,7 +36,8 @@ def planar(direct, quadrature):
     )
 
 
-TABLE = table_of(LARGEST, [planar(d, q) for d, q in grid(LARGEST)])
+GRID = LossGrid.of(WOUND.machine.rotor, LARGEST)
+TABLE = GRID.table([planar(d, q) for d, q in GRID.points])
 
 
 @pytest.mark.physics

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from figures.losses import loss_maps
 from figures.style import png_bytes
 from losses.iron import FrequencyTerms
-from losses.map import FieldLosses, grid
+from losses.map import DIRECT, QUADRATURE, FieldLosses
 from losses.stage import LossError, LossInputs, current_losses_stage, loss_law, losses_stage, torques_of
 from report.losses import dataset, files, section
 from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
@@ -23,7 +24,7 @@ class Computed:
     """Workers whose field losses are given: in proportion to the currents, without a solve."""
 
     def map(self, what, function, tasks):
-        assert what == "current_losses" and len(tasks) == len(grid(1.0))
+        assert what == "current_losses" and len(tasks) == len(DIRECT) * len(QUADRATURE)
         return {name: self.losses(task) for name, task in tasks.items()}
 
     @staticmethod
@@ -41,7 +42,8 @@ def winding():
 
 @pytest.fixture(scope="module")
 def found(winding):
-    return losses_stage(current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed()), MAP, winding, INPUTS, LOSSES)
+    solved = current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed())
+    return losses_stage(solved, MAP, driven_machine(winding, INPUTS), LOSSES)
 
 
 @pytest.mark.parametrize("grade", [None, "", "35PN270"])

@@ -53,7 +53,7 @@ NAMED = {"outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SP
 
 
 def section_of(machine: ComposedMachine, density: MeshDensity, whole: bool = False) -> CrossSection:
-    layout = star_of_slots(machine.slots, machine.pole_pairs, 2, PITCHES[machine])
+    layout = star_of_slots(machine.slots, machine.pole_pairs, 2, PITCHES.get(machine, 1))
     return mesh_cross_section(machine, layout, density, whole)
 
 

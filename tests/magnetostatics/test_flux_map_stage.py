@@ -10,7 +10,7 @@ import xarray as xr
 from geometry.family import MachineFamily, MatchedMachine
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import ParallelMagnetisation
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.flux_map import flux_and_torque, operating_point
 from magnetostatics.flux_map_stage import FluxMap, FluxMapGrid, best_current, flux_map_stage, kept_model
 from magnetostatics.model import MachineMaterials
@@ -21,7 +21,7 @@ from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE
 
 DENSITY = sqrt(2) * 20 * AMPERE_PER_SQUARE_MILLIMETRE
 STEEL = load_steel("35PN270")
-CASE = FieldCase(
+CASE = FamilyCase(
     family=MachineFamily(
         slots=12, pole_pairs=5, stator_outer_radius=42.5 * MILLIMETRE, rotor_outer_radius=15.7 * MILLIMETRE,
         back_iron_width=3.3 * MILLIMETRE, magnet_length=2.5 * MILLIMETRE, airgap=0.5 * MILLIMETRE,

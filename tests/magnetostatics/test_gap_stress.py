@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from math import pi
 
@@ -13,7 +14,7 @@ from geometry.defects import StaticEccentricity
 from geometry.family import MatchedMachine
 from geometry.half_cell import MeshDensity
 from magnetostatics import gap_stress_stage as stage
-from magnetostatics.case import FieldCase
+from magnetostatics.case import FamilyCase
 from magnetostatics.gap_stress import (
     amplitude_of,
     classical_pull,
@@ -130,10 +131,10 @@ def test_spatial_orders_are_multiples_of_what_slots_and_poles_share():
     assert nine[1] > 1e-2 * nine[0], "9 slots and 8 poles share nothing: the rotor is pulled aside"
 
 
-def coarse_case() -> FieldCase:
+def coarse_case() -> FamilyCase:
     case = field_case(read_study("motorcycle"))
     coarse = MeshDensity(gap_edges=120, longest_gap_edge=2.0, gap_layers=1, across_iron=1.0)
-    return FieldCase(**{**vars(case), "density": coarse})
+    return replace(case, density=coarse)
 
 
 @pytest.fixture(scope="module")

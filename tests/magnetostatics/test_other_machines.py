@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
+from geometry.magnetisation import HalbachMagnetisation, RadialMagnetisation
 from geometry.parts import ComposedMachine
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.newton import NewtonSettings
@@ -104,3 +105,14 @@ def test_what_cannot_be_built_is_said(machine, part, change, words):
 def test_no_gap_is_said():
     with pytest.raises(GeometryError, match="no air gap"):
         check_machine(ComposedMachine(STATOR, replace(INSET.rotor, outer_radius=STATOR.bore_radius)))
+
+
+def test_a_halbach_pattern_gathers_the_flux_on_the_side_of_the_gap():
+    """Inside of a cup as outside of a core: more linkage than of radial magnets."""
+
+    def linkage(magnetisation):
+        rotor = replace(OUTRUNNER.rotor, magnetisation=magnetisation, arc_fraction=0.95)
+        model = model_of(replace(OUTRUNNER, rotor=rotor), replace(COARSE, gap_edges=144))
+        return np.abs(phase_flux_linkage(model.solve(currents(model, 0.0, 0.0, 0.0, 1.0)))).max()
+
+    assert linkage(HalbachMagnetisation()) > 1.08 * linkage(RadialMagnetisation())

@@ -5,7 +5,7 @@ import pytest
 
 import magnetostatics.rotation_stage as module
 from figures.whole_field import null_field, whole_field
-from geometry.family import Combination, MatchedMachine
+from geometry.family import Combination, MatchedMachine, StatedMachine
 from magnetostatics.model import OperatingPoint
 from magnetostatics.rotation_stage import STATES, null_points, rotations_stage
 from magnetostatics.torque import arkkio_torque
@@ -23,7 +23,7 @@ def found():
         patch.setattr(module, "_STEPS", 12)
         patch.setattr("magnetostatics.arc._TOGETHER", 5)
         machine = CASE.family.machine(Combination(9, 10), back_iron_width=2.6e-3, rotor_outer_radius=17e-3)
-        return rotations_stage(CASE, MatchedMachine(machine), InThisProcess())
+        return rotations_stage(CASE, StatedMachine(CASE.family.reference), MatchedMachine(machine), InThisProcess())
 
 
 def test_mean_ripple_and_cogging_of_the_reference(found):
@@ -66,7 +66,7 @@ def test_kept_fields_are_drawn_as_if_just_solved(found):
 
 def test_without_a_match_there_is_the_reference_alone(monkeypatch):
     monkeypatch.setattr(module, "_STEPS", 1)
-    assert rotations_stage(CASE, None, InThisProcess()).matched is None
+    assert rotations_stage(CASE, StatedMachine(CASE.family.reference), None, InThisProcess()).matched is None
 
 
 def test_it_can_be_kept(found):

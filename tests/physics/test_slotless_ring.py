@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from math import pi
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import HalbachMagnetisation, ParallelMagnetisation, RadialMagnetisation
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import FieldModel, OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque
@@ -91,6 +92,20 @@ def test_magnets_that_cover_two_thirds_of_a_pole(magnetisation):
     found = [radial_harmonic(solution, k) for k in (5, 15, 25)]
     exact = [exact_radial_harmonic(ring, k, angle=BETWEEN_NODES) for k in (5, 15, 25)]
     assert_allclose(found, exact, rtol=1e-4, atol=1e-4 * abs(exact[0]))
+
+
+@pytest.mark.parametrize("angle", (0.0, BETWEEN_NODES))
+def test_an_ideal_halbach_ring_has_one_harmonic_on_the_side_of_the_gap(angle):
+    """M = B_r (cos(p phi), -sin(p phi)) in polar components: exact, and hardly any flux in the core."""
+    ring = ring_of(HalbachMagnetisation(), 1.0)
+    solution = FieldModel(section_of(ring.machine, 12, 2), ring.materials, EXACT).solve(OperatingPoint(angle))
+    core, magnet, *outside = ring.layers(5, angle=angle)
+    turned, gap = ring.remanence * np.exp(-5j * angle), (ring.machine.mid_gap_radius, ring.machine.stator_inner_radius)
+    exact = solve_layers(5, (core, replace(magnet, radial=turned, tangential=1j * turned), *outside))
+    found = [radial_harmonic(solution, k) for k in (5, 15, 25)]
+    assert_allclose(found[0], exact.ring_mean(exact.radial, *gap), rtol=1e-5)
+    assert max(map(abs, found[1:])) < 1e-4 * abs(found[0])
+    assert abs(exact.radial(0.9 * ring.machine.rotor_core_radius)) < 0.1 * abs(found[0])
 
 
 @pytest.mark.parametrize("iron", (20.0, 1e3))

@@ -11,6 +11,7 @@ from drivetrain.gear_views import braking_demand
 from drivetrain.output import Wheel
 from electrical.braking_stage import CopperHeat, braking_stage
 from electrical.drive_stage import drive_stage
+from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from figures.report import render_report
 from report import braking, drive
@@ -38,7 +39,7 @@ def winding():
 
 @pytest.fixture(scope="module")
 def driven(winding):
-    return drive_stage(MAP, winding, INPUTS)
+    return drive_stage(MAP, winding, driven_machine(winding, INPUTS), INPUTS)
 
 
 def written(files, folder):

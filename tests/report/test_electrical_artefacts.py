@@ -5,6 +5,7 @@ import json
 import pytest
 
 from electrical.drive_stage import drive_stage
+from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from pipeline.codec import decoded, encoded
 from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
@@ -38,8 +39,8 @@ def test_the_map_and_what_is_read_from_it(winding):
 
 
 def test_the_drive_is_small(winding):
-    drive = drive_stage(MAP, winding, INPUTS)
+    drive = drive_stage(MAP, winding, driven_machine(winding, INPUTS), INPUTS)
     found, text = again(drive)
-    assert found.plane.current_peak == pytest.approx(drive.plane.current_peak, nan_ok=True)
-    assert found.envelope.torque == pytest.approx(drive.envelope.torque, nan_ok=True)
+    assert found.field.plane.current_peak == pytest.approx(drive.field.plane.current_peak, nan_ok=True)
+    assert found.field.envelope.torque == pytest.approx(drive.field.envelope.torque, nan_ok=True)
     assert len(text) < 500_000

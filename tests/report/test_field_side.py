@@ -9,7 +9,7 @@ import report.fields
 import report.fits
 import report.sweep
 from figures.export import read_vtu
-from geometry.family import Combination
+from geometry.family import Combination, StatedMachine
 from magnetostatics.rotation_stage import STATES, rotations_stage
 from optimisation.fits import fits_stage
 from optimisation.freedom import AS_SWEPT
@@ -120,7 +120,7 @@ def test_fits_in_the_units_of_their_columns(tmp_path):
 
 def test_fields_as_files(tmp_path, monkeypatch):
     monkeypatch.setattr(rotation_module, "_STEPS", 2)
-    found = rotations_stage(CASE, None, InThisProcess())
+    found = rotations_stage(CASE, StatedMachine(CASE.family.reference), None, InThisProcess())
     figures = ("cross_section_reference", "rotation_reference", "field_reference_nominal")
     expected = {f"reference_{state}.vtu" for state in STATES} | {f"figures/{name}.png" for name in figures}
     assert written(report.fields.files(found, CASE), tmp_path) == expected | {"rotation_reference.csv"}

@@ -52,7 +52,7 @@ ONE_THING_WRONG = {
     "number for a list": ("slots = [9, 12] ", "slots = 9 ", ["sweep.slots = 9", "a list"]),
     "fraction for a count": ("poles = 10 ", "poles = 10.5 ", ["machine.poles = 10.5", "an integer"]),
     "odd number of poles": ("poles = 10 ", "poles = 9 ", ["machine.poles = 9", "even"]),
-    "unknown word": ('"parallel" ', '"halbach" ', ['"halbach"', '"parallel" or "radial"']),
+    "unknown word": ('"parallel" ', '"axial" ', ['"axial"', '"parallel" or "radial" or "halbach"']),
     "number for a name": ('loss_grade = "M235-35A"', "loss_grade = 5", ["loss_grade = 5", "a text in quotes"]),
     "text for true or false": ("enforce_damping = false", 'enforce_damping = "no"', ['"no"', "true or false"]),
     "ends exchanged": ("back_iron_fraction_max = 0.115", "back_iron_fraction_max = 0.03", ["0.045", "0.03"]),

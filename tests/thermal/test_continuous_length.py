@@ -11,7 +11,7 @@ from electrical.dq import DriveLimits
 from electrical.winding_connection import Delta, WindingConnection
 from electrical.winding_stage import over_copper
 from losses.iron import FrequencyTerms
-from losses.map import FieldLosses, grid, table_of
+from losses.map import FieldLosses, LossGrid
 from tests.electrical.analytic_map import ERROR, MATCHED, AnyLength, Saturating, flux_map
 from tests.electrical.wires import series_star
 from tests.thermal.test_stage import BUILT, HEAT
@@ -27,8 +27,8 @@ DESIGN = series_star(10, 15)
 SPEED = 100.0  # rad/s
 IRON = 0.4  # W s/m, hysteresis of the stator at any current
 NOTHING = FrequencyTerms(0.0, 0.0, 0.0)
-REACHED = 1.02 * MAP.overload_ampere_turns
-TABLE = table_of(REACHED, [FieldLosses(FrequencyTerms(IRON, 0.0, 0.0), NOTHING, NOTHING) for _ in grid(REACHED)])
+GRID = LossGrid.of(MATCHED.machine.rotor, 1.02 * MAP.overload_ampere_turns)
+TABLE = GRID.table([FieldLosses(FrequencyTerms(IRON, 0.0, 0.0), NOTHING, NOTHING) for _ in GRID.points])
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,7 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("active_length_mm", "length of the stack"),
         DeviceKey("turns_per_coil", "turns of a coil"),
         DeviceKey("steel", "grade of the laminations, in quotes"),
-        DeviceKey("magnetisation", '"parallel" or "radial"; default "parallel"', False),
+        DeviceKey("magnetisation", '"parallel", "radial" or "halbach"; default "parallel"', False),
         DeviceKey("magnet_arc_fraction", "magnet arc over pole pitch; default 1", False),
         DeviceKey("remanence_coefficient_percent_per_K", "relative change of the remanence; default -0.11", False),
         DeviceKey("remanence_reference_degC", "temperature at which the remanence holds; default 22", False),

@@ -6,7 +6,7 @@ slot_opening_mm, shoe_d1_mm, shoe_d2_mm, shaft_radius_mm), remanence_T, active_l
 
 If known:
     magnet_arc_fraction           of the pole pitch (1)
-    magnetisation                 "parallel" or "radial" ("parallel")
+    magnetisation                 "parallel", "radial" or "halbach" ("parallel")
     remanence_reference_degC      at which the remanence is stated (22)
     remanence_coefficient_percent_per_K   (-0.11)
     magnet_temperature_degC       of the magnets on the bench where no column magnet_T_degC says it (the reference)
@@ -28,7 +28,7 @@ from effects.machine_design import MachineAsBuilt
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.machine import Machine
-from geometry.magnetisation import ParallelMagnetisation, RadialMagnetisation
+from geometry.magnetisation import PATTERNS
 from materials.errors import MaterialError
 from materials.iron_loss import iron_loss_law
 from materials.library import load_steel
@@ -63,7 +63,6 @@ _OPTIONAL = (
     "magnet_temperature",
     "end_winding_inductance",
 )
-_PATTERNS = {"parallel": ParallelMagnetisation(), "radial": RadialMagnetisation()}
 
 
 def machine_of_device(device: Mapping[str, object]) -> MachineAsBuilt:
@@ -92,13 +91,13 @@ def _without_unit_traps(device: Mapping[str, object]) -> dict[str, object]:
 
 def _machine_of(values: Mapping[str, float], device: Mapping[str, object]) -> Machine:
     pattern = str(device.get("magnetisation", "parallel"))
-    if pattern not in _PATTERNS:
-        raise WorkbenchError(f"[device] magnetisation must be one of {', '.join(_PATTERNS)}, found {pattern!r}")
+    if pattern not in PATTERNS:
+        raise WorkbenchError(f"[device] magnetisation must be one of {', '.join(PATTERNS)}, found {pattern!r}")
     return Machine(
         slots=int(values["slots"]),
         pole_pairs=int(values["poles"]) // 2,
         magnet_arc_fraction=values.get("magnet_arc_fraction", 1.0),
-        magnetisation=_PATTERNS[pattern],
+        magnetisation=PATTERNS[pattern],
         **{name: values[name] for name in _DIMENSIONS},
     )
 

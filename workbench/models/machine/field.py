@@ -50,7 +50,7 @@ class PartlyRadial(Magnetisation):
 
     share: float
 
-    def direction_angle(self, position_angle, centre_angle):
+    def direction_angle(self, position_angle, centre_angle, pitch):
         off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
         return centre_angle + self.share * off
 
