@@ -59,6 +59,7 @@ class LengthByDensity(ContinuousNeed):
 
     @property
     def density(self) -> float:
+        """density: the stated one [A/m^2]"""
         return self.stated
 
     def length(self, design: WindingDesign) -> float:

@@ -30,18 +30,18 @@ LINE = LifeLine(
 
 @dataclass(frozen=True, eq=False)
 class LoadCycles:
-    """Cycles of a load over the life; amplitude, mean: magnitudes [any unit], (n,); number: of each, (n,)."""
+    """Cycles of a load over the life; amplitude, mean: magnitudes [any unit], (n,); number: dimensionless, (n,)"""
 
     amplitude: np.ndarray
     mean: np.ndarray
     number: np.ndarray
 
-    def times(self, factor: float) -> LoadCycles:
-        """Of something in proportion to the load; factor: [its unit per unit of the load]."""
-        return LoadCycles(factor * self.amplitude, factor * self.mean, self.number)
+    def times(self, constant: float) -> LoadCycles:
+        """Of something in proportion to the load; constant: [its unit per unit of the load]."""
+        return LoadCycles(constant * self.amplitude, constant * self.mean, self.number)
 
     def with_amplitude(self, other: float) -> LoadCycles:
-        """Another reversed amplitude [same unit] at right angles to every one, as stresses of von Mises add up."""
+        """With other: a reversed amplitude [same unit] at right angles, as stresses of von Mises add up."""
         return LoadCycles(np.hypot(self.amplitude, other), self.mean, self.number)
 
 
@@ -52,12 +52,12 @@ def recorded_cycles(history: np.ndarray, step: float, life: float) -> LoadCycles
 
 
 def reversed_cycles(peak: float, number: float) -> LoadCycles:
-    """Between minus and plus a peak [any unit]."""
+    """Between minus and plus a peak [any unit]; number: of cycles, dimensionless."""
     return LoadCycles(np.array([peak]), np.zeros(1), np.array([number]))
 
 
 def cycles_from_rest(peak: float, number: float) -> LoadCycles:
-    """Between nothing and a peak [any unit]."""
+    """Between nothing and a peak [any unit]; number: of cycles, dimensionless."""
     return LoadCycles(np.array([peak / 2]), np.array([peak / 2]), np.array([number]))
 
 

@@ -162,7 +162,7 @@ class LengthByTemperature(ContinuousNeed):
 def first_root(beyond: Callable[[float], float], low: float, high: float) -> float:
     """The smallest length [m] between low and high at which a function is zero or less; infinite where it stays above.
 
-    beyond: length [m] -> any unit
+    low, high: [m]; beyond: length [m] -> any unit
     """
     length, value = low, beyond(low)
     while value > 0:
