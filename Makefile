@@ -4,7 +4,7 @@ STUDY ?= motorcycle
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
 # The stages of the graph that pipeline/stages.py declares; a test holds the two together.
-STAGES := requirements linkage sweep optima limits fits match flux_map gap_stress gearbox winding drive braking magnets mechanics losses heat fields outcome tolerances uncertainty package ride energy
+STAGES := requirements linkage sweep optima limits fits match flux_map current_losses gap_stress gearbox winding drive braking magnets mechanics losses heat fields outcome tolerances uncertainty package ride energy
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
 export OPENBLAS_NUM_THREADS := 1

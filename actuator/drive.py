@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, sqrt
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from actuator.errors import ActuatorError, require_not_negative, require_positive
+from electrical.shunted_machine import bridge_current, bridge_torque
 
 UNBOUNDED = 1e200  # Nm and rad/s, of a motor without limits
 
@@ -164,11 +164,8 @@ class DcLoad:
 class DiodeBridge(LossLaw):
     """A machine that feeds a load through a six-pulse bridge, without control.
 
-    U_d0 = 3 sqrt(3) / pi K_e w,   I = (U_d0 - 2 V_d - V) / (2 R_ph + 3/pi p w L + R),   T = (U_d0 - 3/pi p w L I) I / w
-
-    Mean values with a smooth direct current; the overlap of the commutation costs voltage and no power (standard
-    textbook formulas of the line-commutated bridge, e.g. Mohan, Undeland, Robbins, Power Electronics, ch. 5).
-    torque_constant: K_t [Nm/A] of the peak phase current, K_e = 2/3 K_t; phase_resistance: R_ph [ohm]
+    Current and torque of ``electrical.shunted_machine.bridge_current``, over 2 R_ph + R and against 2 V_d + V.
+    torque_constant: K_t [Nm/A] of the peak phase current; phase_resistance: R_ph [ohm]; load: R [ohm] and V [V]
     phase_inductance: L [H]; pole_pairs: p; diode_drop: V_d of one diode [V]; fastest: rotor speed up to which it is
     known [rad/s]
     Valid below the speed where the overlap exceeds 60 degrees.
@@ -191,28 +188,26 @@ class DiodeBridge(LossLaw):
         )
         require_not_negative("diode bridge", phase_inductance=self.phase_inductance, diode_drop=self.diode_drop)
 
-    def open_voltage(self, speed: np.ndarray) -> np.ndarray:
-        """U_d0, mean without current [V], of that shape; speed: [rad/s], any shape."""
-        return 3 * sqrt(3) / pi * (2 / 3 * self.torque_constant) * np.abs(speed)
-
     def current(self, speed: np.ndarray) -> np.ndarray:
         """Mean direct current [A], of that shape; speed: [rad/s], any shape."""
-        drive = self.open_voltage(speed) - 2 * self.diode_drop - self.load.voltage
-        return np.maximum(drive, 0.0) / (2 * self.phase_resistance + self._overlap(speed) + self.load.resistance)
+        flux = self.torque_constant / (1.5 * self.pole_pairs)
+        omega = self.pole_pairs * np.abs(speed)
+        return bridge_current(omega, flux=flux, inductance=self.phase_inductance, **self._circuit)
 
     def torque(self, speed: np.ndarray) -> np.ndarray:
         """Steady braking torque [Nm], of that shape, magnitude; speed: [rad/s], any shape."""
-        current = self.current(speed)
-        power = (self.open_voltage(speed) - self._overlap(speed) * current) * current
-        return np.divide(power, np.abs(speed), out=np.zeros_like(power), where=np.abs(speed) > 0)
+        return bridge_torque(self.current(speed), np.abs(speed), **self._circuit)
 
     def at(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Power that does not reach the load [W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape."""
         current = self.current(speed)
         return torque * speed - self.load.resistance * current**2 - self.load.voltage * current
 
-    def _overlap(self, speed: np.ndarray) -> np.ndarray:
-        return 3 / pi * self.pole_pairs * np.abs(speed) * self.phase_inductance
+    @property
+    def _circuit(self) -> dict[str, float]:
+        """Resistance [ohm] and voltage [V] that the current meets."""
+        resistance = 2 * self.phase_resistance + self.load.resistance
+        return {"resistance": resistance, "voltage": 2 * self.diode_drop + self.load.voltage}
 
     @property
     def limit(self) -> TorqueLimit:

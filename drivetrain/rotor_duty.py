@@ -6,12 +6,14 @@ from drivetrain.outcome import OutcomeInputs, active_masses, machine_envelope
 from drivetrain.requirements import Requirements, Transmission
 from electrical.winding_stage import WindingOutcome
 from mechanics.stage import RotorDuty
+from thermal.stage import Duty
 
 
 def rotor_duty(
-    winding: WindingOutcome, required: Requirements, transmission: Transmission, inputs: OutcomeInputs
+    winding: WindingOutcome, required: Requirements, transmission: Transmission, duty: Duty, inputs: OutcomeInputs
 ) -> RotorDuty:
-    """Bearings sit in the middle of their seats beside the end windings; speeds with the nominal transmission."""
+    """Bearings sit in the middle of their seats beside the end windings; speeds with the nominal transmission, torques
+    with the largest."""
     wound, materials = winding.wound, inputs.materials
     masses, envelope = active_masses(wound, materials), machine_envelope(wound)
     return RotorDuty(
@@ -25,4 +27,7 @@ def rotor_duty(
         speed_max=required.velocity_peak / transmission.nominal,
         speed_rms=required.velocity_rms / transmission.nominal,
         peak_torque=winding.peak_torque,
+        torque=duty.effort * transmission.largest,
+        speed=duty.speed / transmission.nominal,
+        step=duty.step,
     )

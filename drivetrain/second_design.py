@@ -17,7 +17,8 @@ from drivetrain.learned import IRON_LOSS, NOTHING_LEARNED, RESISTANCE, Learned, 
 from drivetrain.outcome import Outcome
 from drivetrain.requirements import Requirements, Transmission
 from electrical.dq import mtpa_currents
-from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.final_length import ContinuousNeed
+from electrical.winding_stage import WindingOutcome
 from geometry.machine import Machine
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
@@ -25,6 +26,7 @@ from magnetostatics.flux_linkage import flux_linkage_torque
 from magnetostatics.flux_map import map_angles, operating_point
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from tasks import Workers
+from thermal.stage import HeatOutcome
 
 AS_DESIGNED, ALL_TOGETHER = "as it was designed", "all together"
 
@@ -33,17 +35,33 @@ AS_DESIGNED, ALL_TOGETHER = "as it was designed", "all together"
 class FirstDesign:
     """The design that was made before anything was learned: inputs and artefacts of its run.
 
+    continuous: what its length for good was made by; heat: its temperatures
     losses: None where the study has no loss data
     """
 
     case: FieldCase
-    windings: WindingInputs
     flux_map: FluxMap
     winding: WindingOutcome
     outcome: Outcome
     required: Requirements
     transmission: Transmission
+    continuous: ContinuousNeed
+    heat: HeatOutcome
     losses: LossMap | None
+
+    @property
+    def continuous_current(self) -> float:
+        """For good, peak of a phase [A]: of the density that is stated, else of the temperatures at the RMS speed."""
+        density = self.continuous.density
+        return self.heat.at_speed.current if density is None else self.winding.wound.current_peak(density)
+
+    @property
+    def warm_share(self) -> float:
+        """Torque for good over that of the same current with magnets as they are mapped, dimensionless."""
+        if self.continuous.density is not None:
+            return 1.0
+        machine = self.winding.wound.on_map(self.flux_map.data)
+        return self.heat.at_speed.torque / float(machine.torque(*mtpa_currents(machine, self.continuous_current)))
 
 
 @dataclass(frozen=True)
@@ -99,7 +117,11 @@ def lesson_costs_stage(first: FirstDesign, learned: Learned, workers: Workers) -
         for number, (name, _, part) in enumerate(cases)
     }
     torques = workers.map("lessons", mean_torques, tasks).values()
-    rows = (_cost(name, words, part, first, found) for (name, words, part), found in zip(cases, torques, strict=True))
+    warm = first.warm_share
+    rows = (
+        _cost(name, words, part, first, (peak, warm * continuous))
+        for (name, words, part), (peak, continuous) in zip(cases, torques, strict=True)
+    )
     return LessonCosts(tuple(rows))
 
 
@@ -113,7 +135,7 @@ def _ampere_turns(first: FirstDesign) -> tuple[tuple[float, float], ...]:
     """(i_d, i_q) of one coil [A peak] at the peak torque and at the continuous one."""
     wound, winding = first.winding.wound, first.winding
     machine = wound.on_map(first.flux_map.data)
-    continuous = mtpa_currents(machine, wound.current_peak(first.windings.nominal_density))
+    continuous = mtpa_currents(machine, first.continuous_current)
     peak = winding.direct_current, winding.quadrature_current
     return tuple(wound.ampere_turns(float(i_d), float(i_q)) for i_d, i_q in (peak, continuous))
 
@@ -146,7 +168,7 @@ def _length(part: Learned, first: FirstDesign, torques: tuple[float, ...]) -> fl
 
 
 def _efficiency(part: Learned, first: FirstDesign, continuous: float) -> float:
-    """Output over input power at the RMS effort and speed; continuous: torque at the nominal current [Nm].
+    """Output over input power at the RMS effort and speed; continuous: torque at the current for good [Nm].
 
     The current is in proportion to the torque, the iron loss that of the first loss map at this torque and speed.
     """
@@ -156,7 +178,7 @@ def _efficiency(part: Learned, first: FirstDesign, continuous: float) -> float:
     torque = part.friction.needed(required.force_rms, required.velocity_rms, ratio) * ratio
     speed = required.velocity_rms / ratio
     wound = first.winding.wound
-    current = torque / continuous * wound.current_peak(first.windings.nominal_density)
+    current = torque / continuous * first.continuous_current
     copper = 1.5 * part.of(RESISTANCE) * wound.phase_resistance * current**2
     iron = part.of(IRON_LOSS) * _iron_loss(first.losses, torque, speed)
     return required.force_rms * required.velocity_rms / (torque * speed + copper + iron)

@@ -42,6 +42,21 @@ class BrakingDemand:
     ratio: float
 
 
+@dataclass(frozen=True)
+class ShortCircuit:
+    """The machine with shorted phases.
+
+    current_peak: largest phase current over the speeds of the brake, peak [A]
+    torque: largest against the motion [Nm], the same cold and hot
+    best_speed_cold, best_speed_hot: of the rotor, at which it brakes most [rad/s]
+    """
+
+    current_peak: float
+    torque: float
+    best_speed_cold: float
+    best_speed_hot: float
+
+
 @dataclass(frozen=True, eq=False)
 class BrakingOutcome:
     """Braking of the rotor at each speed of the output.
@@ -73,6 +88,13 @@ class BrakingOutcome:
         """Speed of the output at which the shorted machine brakes most, cold and hot [m/s or rad/s]."""
         cold, hot = (self.speed[int(np.nanargmax(one.torque))] for one in (self.cold, self.hot))
         return float(cold), float(hot)
+
+    @property
+    def shorted(self) -> ShortCircuit:
+        """The brake with shorted phases at the rotor."""
+        cold, hot = (speed / self.demand.ratio for speed in self.poles)
+        current = max(float(np.nanmax(one.current_peak)) for one in (self.cold, self.hot))
+        return ShortCircuit(current, float(np.nanmax(self.cold.torque)), cold, hot)
 
 
 def braking_stage(

@@ -11,7 +11,7 @@ class ShaftDemand:
 
     base_speed: up to which the full torque is asked [rad/s]; power: to be reached at the base speed [W]
     torque_peak: for short times, at the overload current density [Nm]
-    torque_rms: for good, at the nominal current density [Nm]
+    torque_rms: for good [Nm]
     damping: of the short-circuited machine [Nms/rad], 0 where none is asked for
     """
 

@@ -100,6 +100,29 @@ class LinearStar(Star):
         return np.asarray(self.slope(machine, shunt) / pole + 0.0 * np.asarray(top_speed))
 
 
+def bridge_current(
+    omega: Values, *, flux: float, inductance: float, resistance: Values, voltage: float
+) -> np.ndarray:
+    """Mean direct current of a six-pulse bridge [A], (3 sqrt(3)/pi omega psi_m - V) / (R + 3/pi omega L), 0 below V.
+
+    bridge_current: of the shape of its arguments, which broadcast. omega: electrical, magnitude [rad/s], any shape;
+    flux: psi_m [Wb]; inductance: L of a phase [H]; resistance: R of the whole circuit [ohm]; voltage: V, which the
+    current must overcome, of diodes and load [V]. See ``Bridge``.
+    """
+    left = np.maximum(BRIDGE_MEAN * flux * np.asarray(omega) - voltage, 0.0)
+    return np.asarray(left / (resistance + OVERLAP * omega * inductance))
+
+
+def bridge_torque(current: np.ndarray, speed: Values, *, resistance: Values, voltage: float) -> np.ndarray:
+    """I (I R + V) / w [Nm], 0 at rest, with the sign of the speed, of the shape of the current.
+
+    bridge_torque, current: direct [A], any shape; speed: mechanical [rad/s]; resistance [ohm] and voltage [V] as in
+    ``bridge_current``. The overlap costs voltage and no power.
+    """
+    power, speed = current * (current * resistance + voltage), np.asarray(speed)
+    return power * np.divide(1.0, speed, out=np.zeros_like(power), where=speed != 0)
+
+
 @dataclass(frozen=True)
 class Bridge:
     """A six-pulse diode bridge with the shunt behind it.
@@ -124,16 +147,14 @@ class Bridge:
 
     def current(self, machine: SynchronousMachine, speed: Values, shunt: Values) -> np.ndarray:
         """Direct current [A] at mechanical speed [rad/s] and shunt [ohm], which broadcast."""
-        omega = machine.pole_pairs * np.abs(speed)
-        left = np.maximum(BRIDGE_MEAN * machine.psi_m * omega - 2 * self.drop, 0.0)
         inductance = 0.5 * (machine.inductance_d + machine.inductance_q)
-        return np.asarray(left / (self._whole(machine, shunt) + OVERLAP * omega * inductance))
+        omega, whole = machine.pole_pairs * np.abs(speed), self._whole(machine, shunt)
+        return bridge_current(omega, flux=machine.psi_m, inductance=inductance, resistance=whole, voltage=2 * self.drop)
 
     def torque(self, machine: SynchronousMachine, speed: Values, shunt: Values) -> Values:
         """Power that the resistances and diodes take over the speed [Nm]; speed: [rad/s], shunt: [ohm]."""
-        current, speed = self.current(machine, speed, shunt), np.asarray(speed)
-        power = current * (current * self._whole(machine, shunt) + 2 * self.drop)
-        return power * np.divide(1.0, speed, out=np.zeros_like(power), where=speed != 0)
+        current, whole = self.current(machine, speed, shunt), self._whole(machine, shunt)
+        return bridge_torque(current, speed, resistance=whole, voltage=2 * self.drop)
 
     def dynamic_damping(
         self, machine: SynchronousMachine, frequency: Values, top_speed: Values, shunt: Values

@@ -1,26 +1,38 @@
 """The winding of the matched machine, chosen on its flux map, and the active length it needs behind the real gears.
 
-The match counts on a packing factor and a ratio that are any number; turns, wires and teeth are whole ones. So the
-length is made again for the torque that the flux map gives at the current of the real winding: every winding that could
-be chosen is valued at the length that it would need. No field is solved for it.
+The match counts on a packing factor and a ratio that are any number, and on a current density for good that is stated;
+turns, wires and teeth are whole ones, and what may be asked for good is a matter of temperatures. So the length is made
+again: for the peak torque that the flux map gives at the current of the real winding, and for the torque for good, by
+the temperatures that a ``ContinuousNeed`` knows. Every winding that could be chosen is valued at the length that it
+would need. No field is solved for it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from electrical.circulating import ZeroSequence
 from electrical.dq import DriveLimits, mtpa_currents
-from electrical.final_length import FinalLength, LengthNeed, final_length, length_for_damping, length_for_torque
+from electrical.final_length import (
+    ContinuousNeed,
+    FinalLength,
+    LengthNeed,
+    final_length,
+    length_for_damping,
+    length_for_torque,
+)
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
 from electrical.shaft_demand import ShaftDemand
 from electrical.short_circuit import shaft_damping
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_connection import Delta, Star, WindingConnection
+from electrical.winding_design import WindingDesign
 from electrical.winding_reason import choice_reason, verdict
 from electrical.winding_selection import (
     PerTurnMachine,
@@ -43,6 +55,7 @@ from magnetostatics.flux_map_stage import FluxMap
 from materials.insulation import InsulationClass
 
 NEIGHBOURS = 3  # turns either side of the chosen winding that are shown beside it
+_COPPERS = 4  # copper sections of a gauge and closing at which the length for good is found; cubic between them
 
 
 @dataclass(frozen=True)
@@ -51,7 +64,8 @@ class WindingInputs:
 
     wires: allowed gauges, their copper at the temperature of the winding; paths: allowed numbers of parallel paths;
     closings: whether star, delta or both are allowed; limits: of workshop, bus and power electronics
-    insulation: thermal class; nominal_density: current density of the continuous force, RMS in the copper [A/m^2]
+    insulation: thermal class; nominal_density: current density that the match counts on for good, RMS in the copper
+        [A/m^2]
     longest: active length that is allowed [m]
     damping_asked: whether the length must also give the regenerative damping that is required
     """
@@ -123,6 +137,7 @@ def winding_stage(
     matched: MatchedMachine,
     demand: ShaftDemand,
     inputs: WindingInputs,
+    continuous: ContinuousNeed,
 ) -> WindingOutcome:
     """Choose turns, wires in hand, gauge, connection and active length on the flux map.
 
@@ -134,13 +149,17 @@ def winding_stage(
     machine = per_turn_machine(flux_map, matched)
     connections = possible_connections(layout_of(flux_map, matched), inputs)
     designs = full_designs(machine.coil_side_area, inputs.wires, connections, inputs.limits)
-    copper = np.array([one.copper_area for one in designs])
-    needed = Lengths(machine, flux_map.torque_error, demand, inputs).of(copper)
+    needed = Lengths(machine, flux_map.torque_error, demand, inputs, continuous).of(designs)
     windings = evaluate_windings(machine, inputs.limits, designs, needed)
     windings = _with_circulation(machine, flux_map, windings, inputs, requirement)
     choice = select_winding(windings, inputs.limits, requirement)
     length = needed[designs.index(choice.chosen.design)]
     return _outcome(flux_map, matched, machine, choice, length, requirement, inputs)
+
+
+def rated_speed(winding: WindingOutcome, limits: WindingLimits) -> float:
+    """The base speed, or the largest allowed one where that is lower [rad/s]."""
+    return min(winding.chosen.base_speed, limits.maximum_speed)
 
 
 def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine) -> PerTurnMachine:
@@ -176,7 +195,7 @@ def possible_connections(layout: WindingLayout, inputs: WindingInputs) -> tuple[
 
 @dataclass(frozen=True, eq=False)
 class Lengths:
-    """What a wound machine must be long for, by the copper that it holds alone: the ampere-turns follow from it.
+    """What a wound machine must be long for, whatever its turns: the ampere-turns follow from the copper.
 
     torque_error: share of the torque that the mesh may have put on top
     """
@@ -185,28 +204,34 @@ class Lengths:
     torque_error: float
     demand: ShaftDemand
     inputs: WindingInputs
+    continuous: ContinuousNeed
 
-    def of(self, copper: np.ndarray) -> tuple[FinalLength, ...]:
-        """For copper sections of one coil side [m^2] (n,), rounded up to what can be cut."""
-        areas, places = np.unique(copper, return_inverse=True)
-        peak = self._torque_per_length(areas, self.inputs.limits.overload_current_density)
-        nominal = self._torque_per_length(areas, self.inputs.nominal_density)
-        found = [
-            final_length(self._needs(*one), self.inputs.longest)
-            for one in zip(areas.tolist(), peak.tolist(), nominal.tolist())
-        ]
-        return tuple(found[place] for place in places)
+    def of(self, designs: tuple[WindingDesign, ...]) -> tuple[FinalLength, ...]:
+        """Of every design, rounded up to what can be cut."""
+        copper = np.array([one.copper_area for one in designs])
+        peak, good = self._peak_torque_per_length(copper), self._lengths_for_good(designs)
+        rows = zip(copper.tolist(), peak.tolist(), good, strict=True)
+        return tuple(final_length(self._needs(*row), self.inputs.longest) for row in rows)
 
-    def _torque_per_length(self, copper: np.ndarray, density: float) -> np.ndarray:
-        """Surely [Nm/m], at a density in the copper, RMS [A/m^2]."""
-        dq = self.machine.dq
+    def _peak_torque_per_length(self, copper: np.ndarray) -> np.ndarray:
+        """Surely [Nm/m]; copper: sections of a coil side [m^2]."""
+        dq, density = self.machine.dq, self.inputs.limits.overload_current_density
         return (1 - self.torque_error) * np.asarray(dq.torque(*mtpa_currents(dq, 2**0.5 * density * copper)))
 
-    def _needs(self, copper: float, peak: float, nominal: float) -> tuple[LengthNeed, ...]:
-        """copper: [m^2]; peak, nominal: torque [Nm/m]."""
+    def _lengths_for_good(self, designs: tuple[WindingDesign, ...]) -> list[float]:
+        """[m], over the copper of each gauge and closing."""
+        kinds: dict[object, list[WindingDesign]] = {}
+        for one in designs:
+            kinds.setdefault(_kind(one), []).append(one)
+        laws = {kind: over_copper(self.continuous, tuple(some)) for kind, some in kinds.items()}
+        with np.errstate(divide="ignore"):
+            return [float(1 / np.float64(laws[_kind(one)](one.copper_area))) for one in designs]
+
+    def _needs(self, copper: float, peak: float, good: float) -> tuple[LengthNeed, ...]:
+        """copper: [m^2]; peak: torque [Nm/m]; good: length for the continuous torque [m]."""
         torques = (
             LengthNeed("the peak torque", length_for_torque(self.demand.torque_peak, peak)),
-            LengthNeed("the RMS torque", length_for_torque(self.demand.torque_rms, nominal)),
+            LengthNeed(self.continuous.name, good),
         )
         if not self.inputs.damping_asked:
             return torques
@@ -232,6 +257,27 @@ class Lengths:
     def _constant(self) -> float:
         """Of one turn and one metre, without current [Nm/A]."""
         return 1.5 * self.machine.dq.pole_pairs * float(self.machine.dq.flux_linkage(0.0, 0.0)[0])
+
+
+def _kind(design: WindingDesign) -> tuple[Wire, Star | Delta]:
+    """What a length for good depends on beside the copper."""
+    return design.wire, design.connection.closing
+
+
+def over_copper(continuous: ContinuousNeed, designs: tuple[WindingDesign, ...]) -> Callable[[float], float]:
+    """Inverse of the length for good [1/m] over the copper of a coil side [m^2], of one gauge and closing.
+
+    Found at ``_COPPERS`` sections; between them, where it is smooth, by cubics that do not overshoot.
+    """
+    one_of = {one.copper_area: one for one in designs}
+    sections = sorted(one_of)
+    places = dict.fromkeys(np.linspace(0, len(sections) - 1, _COPPERS).round().astype(int).tolist())
+    known = [sections[place] for place in places]
+    inverse = [1 / continuous.length(one_of[area]) for area in known]
+    if len(known) == 1:
+        return lambda area: inverse[0]
+    law = PchipInterpolator(known, inverse)
+    return lambda area: float(law(area))
 
 
 def _with_circulation(

@@ -11,11 +11,11 @@ import numpy as np
 
 from drivetrain.costs import PartCost, PartPrices, part_costs
 from drivetrain.outcome import Outcome
-from electrical.braking_stage import BrakingOutcome
+from electrical.braking_stage import BrakingOutcome, ShortCircuit
 from electrical.dq import mtpa_currents
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.synchronous_machine import SynchronousMachine
-from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.winding_stage import WindingInputs, WindingOutcome, rated_speed
 from geometry.connections import Connection, connections
 from geometry.winding import WindingLayout
 from losses.map import PowerLosses
@@ -44,21 +44,6 @@ class OperatingState:
     def current_peak(self) -> float:
         """Peak phase current [A]."""
         return float(np.hypot(self.i_d, self.i_q))
-
-
-@dataclass(frozen=True)
-class ShortCircuit:
-    """The machine with shorted phases.
-
-    current_peak: largest phase current over the speeds of the brake, peak [A]
-    torque: largest against the motion [Nm], the same cold and hot
-    best_speed_cold, best_speed_hot: of the rotor, at which it brakes most [rad/s]
-    """
-
-    current_peak: float
-    torque: float
-    best_speed_cold: float
-    best_speed_hot: float
 
 
 @dataclass(frozen=True)
@@ -98,7 +83,7 @@ def package_stage(
     """Read the artefacts at the rated speed: the base speed, or the largest allowed one where that is lower."""
     wound = winding.wound
     machine, layout = wound.on_map(flux_map.data), case.layout(wound.machine)
-    speed = min(winding.chosen.base_speed, inputs.limits.maximum_speed)
+    speed = rated_speed(winding, inputs.limits)
     continuous = least_current_state(machine, wound.current_peak(inputs.nominal_density), speed)
     return Package(
         layout=layout,
@@ -108,7 +93,7 @@ def package_stage(
         continuous=continuous,
         overload=least_current_state(machine, winding.limits.current_peak, speed),
         losses=None if losses is None else losses.losses.at(continuous.torque, continuous.speed),
-        short_circuit=short_circuit_of(braking),
+        short_circuit=braking.shorted,
         cogging=gap_stress.cogging * wound.active_length,
         unsaturated=unsaturated_machine(machine),
     )
@@ -130,11 +115,3 @@ def unsaturated_machine(machine: FluxMapMachine) -> SynchronousMachine:
     (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
     psi_m = float(machine.flux_linkage(0.0, 0.0)[0])
     return SynchronousMachine(machine.pole_pairs, psi_m, float(l_dd), float(l_qq), machine.resistance)
-
-
-def short_circuit_of(braking: BrakingOutcome) -> ShortCircuit:
-    """The brake with shorted phases at the rotor."""
-    cold, hot = (speed / braking.demand.ratio for speed in braking.poles)
-    both = braking.cold, braking.hot
-    current = max(float(np.nanmax(one.current_peak)) for one in both)
-    return ShortCircuit(current, float(np.nanmax(braking.cold.torque)), cold, hot)

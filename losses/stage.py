@@ -1,4 +1,5 @@
-"""Loss and efficiency map of the wound machine on its flux map, as motor and as generator."""
+"""Losses of the cross-section over its currents, and the loss and efficiency map of the wound machine, as motor and as
+generator."""
 
 from __future__ import annotations
 
@@ -10,9 +11,18 @@ import xarray as xr
 from electrical.dq import OperatingMap, operating_map, peak_torque, torque_speed_envelope
 from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
+from geometry.family import MatchedMachine
 from geometry.parts import DrawnMachine
 from losses.magnet import NDFEB_RESISTIVITY
-from losses.map import FieldLosses, LossGrid, PowerLosses, current_point, field_losses, power_losses
+from losses.map import (
+    FieldLosses,
+    FieldLossTable,
+    LossGrid,
+    PowerLosses,
+    current_point,
+    field_losses,
+    power_losses,
+)
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from materials.errors import MaterialError
@@ -20,7 +30,7 @@ from materials.iron_loss import IronLossLaw, iron_loss_law
 from tasks import Workers
 
 _TORQUES, _SPEEDS = 161, 121  # of the motoring half; the generating half has as many torques again
-_LARGEST = 1.02  # of the winding's peak ampere-turns: the corner of the map lies on the current limit
+_LARGEST = 1.02  # of the fullest coil side's peak ampere-turns: the corner of the map lies on the current limit
 
 
 class LossError(ValueError):
@@ -51,6 +61,15 @@ class BestPoint:
     efficiency: float
     torque: float
     speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class CurrentLosses:
+    """Iron and magnet losses of the cross-section over the ampere-turns of a coil, whatever is wound; law: iron loss of
+    the sheet that they rest on."""
+
+    table: FieldLossTable
+    law: IronLossLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,29 +116,30 @@ class LossTask:
     resistivity: float = NDFEB_RESISTIVITY
 
 
-def losses_stage(
-    case: FieldCase,
-    flux_map: FluxMap,
-    driven: DrivenMachine,
-    inputs: LossInputs,
-    workers: Workers,
-) -> LossMap:
-    """Solve the losses over the currents and read them along the operating map; a task is one current.
+def current_losses_stage(
+    case: FieldCase, flux_map: FluxMap, matched: MatchedMachine, inputs: LossInputs, workers: Workers
+) -> CurrentLosses:
+    """Solve the losses over the currents up to the overload of the fullest coil side; a task is one current.
 
     Raises LossError for a study whose steel has no loss data and that names no grade to stand in.
     """
-    law, wound = loss_law(inputs), driven.wound
-    grid = LossGrid.of(wound.machine.rotor, _LARGEST * wound.equivalent_turns * driven.limits.current_peak)
-    resistivity = inputs.magnet_resistivity
+    law, machine = loss_law(inputs), matched.machine
+    grid = LossGrid.of(machine.rotor, _LARGEST * flux_map.overload_ampere_turns)
     tasks = {
-        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, wound.machine, d, q, law, resistivity) for d, q in grid.points
+        f"d {d:.0f} A, q {q:.0f} A": LossTask(case, machine, d, q, law, inputs.magnet_resistivity)
+        for d, q in grid.points
     }
-    found = workers.map("losses", losses_at_current, tasks)
-    operating = both_senses(flux_map, driven)
-    losses = power_losses(operating, wound, grid.table(list(found.values())), flux_map.data)
+    found = workers.map("current_losses", losses_at_current, tasks)
+    return CurrentLosses(grid.table(list(found.values())), law)
+
+
+def losses_stage(found: CurrentLosses, flux_map: FluxMap, driven: DrivenMachine, inputs: LossInputs) -> LossMap:
+    """The losses over the currents, read along the operating map of the wound machine."""
+    wound, operating = driven.wound, both_senses(flux_map, driven)
+    losses = power_losses(operating, wound, found.table, flux_map.data)
     return LossMap(
         plane_dataset(losses),
-        law,
+        found.law,
         inputs.steel,
         inputs.winding_temperature,
         wound.end_turn_share,

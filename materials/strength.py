@@ -13,22 +13,22 @@ STEEL_YOUNGS_MODULUS, STEEL_POISSON_RATIO = 210 * GPA, 0.3  # Pa and dimensionle
 
 
 @dataclass(frozen=True)
-class YieldBySection:
-    """Yield strength of a bar, less in a thick one: it is hardened less deeply.
+class StrengthBySection:
+    """Yield or tensile strength of a bar, less in a thick one: it is hardened less deeply.
 
-    rows: (largest diameter [m], yield strength [Pa]), by rising diameter
+    rows: (largest diameter [m], strength [Pa]), by rising diameter
     """
 
     name: str
     rows: tuple[tuple[float, float], ...]
 
     @classmethod
-    def stated(cls, strength: float) -> YieldBySection:
+    def stated(cls, strength: float) -> StrengthBySection:
         """One strength [Pa] for every diameter."""
         return cls("stated", ((inf, strength),))
 
     def at(self, diameter: float) -> float:
-        """Yield strength [Pa] at a diameter [m]. Raises MaterialError beyond the table."""
+        """Strength [Pa] at a diameter [m]. Raises MaterialError beyond the table."""
         for largest, strength in self.rows:
             if diameter <= largest:
                 return strength
@@ -38,14 +38,23 @@ class YieldBySection:
         )
 
 
-# Quenched and tempered, least yield strength, EN 10083-3.
-SHAFT_STEEL = YieldBySection(
+# Quenched and tempered, least yield and tensile strength, EN 10083-3.
+SHAFT_STEEL = StrengthBySection(
     "42CrMo4+QT",
     ((16e-3, 900 * MPA), (40e-3, 750 * MPA), (100e-3, 650 * MPA), (160e-3, 550 * MPA), (250e-3, 500 * MPA)),
 )
+SHAFT_TENSILE = StrengthBySection(
+    "42CrMo4+QT",
+    ((16e-3, 1100 * MPA), (40e-3, 1000 * MPA), (100e-3, 900 * MPA), (160e-3, 800 * MPA), (250e-3, 750 * MPA)),
+)
 # Core of a case-hardened pinion. EN 10084 gives no strength of the core; these are of its predecessor 17CrNiMo6, for
 # bars of 11, 30 and 63 mm, of the withdrawn DIN 17210.
-GEAR_STEEL = YieldBySection("18CrNiMo7-6, core", ((11e-3, 835 * MPA), (30e-3, 785 * MPA), (63e-3, 685 * MPA)))
+GEAR_STEEL = StrengthBySection("18CrNiMo7-6, core", ((11e-3, 835 * MPA), (30e-3, 785 * MPA), (63e-3, 685 * MPA)))
+GEAR_TENSILE = StrengthBySection(
+    "18CrNiMo7-6, core", ((11e-3, 1180 * MPA), (30e-3, 1080 * MPA), (63e-3, 980 * MPA))
+)  # fmt: skip
+# Reversed amplitude of normal stress that is endured over the tensile strength: FKM guideline.
+ENDURED_SHARE, ENDURED_SHARE_CASE_HARDENED = 0.45, 0.40
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,31 @@ radial force; what a direct load adds at the end of the shaft is not known here.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from math import prod
+from dataclasses import dataclass, replace
+from math import pi, prod
+
+import numpy as np
 
 from gearbox.stage import GearboxOutcome
 from geometry.machine import Machine
 from magnetostatics.gap_stress_stage import GapStress
-from materials.strength import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS, YieldBySection
+from materials.strength import (
+    ENDURED_SHARE,
+    ENDURED_SHARE_CASE_HARDENED,
+    STEEL_POISSON_RATIO,
+    STEEL_YOUNGS_MODULUS,
+    StrengthBySection,
+)
 from mechanics.bearings import Bearing
 from mechanics.checks import LoadCheck
+from mechanics.fatigue import (
+    FatigueStrength,
+    LoadCycles,
+    cycles_from_rest,
+    recorded_cycles,
+    reversed_cycles,
+    together,
+)
 from mechanics.retention import MagnetRing, Retention
 from mechanics.rotating_ring import RotatingRing
 from mechanics.shaft import BentShaft, equivalent_stress, torsion_stress
@@ -25,7 +41,31 @@ _THICKER_SHAFT = "more machine.shaft_radius_mm"
 _SHORTER_SHAFT = "more machine.shaft_radius_mm, or less assembly.bearing_seat_mm"
 _SLOWER_ROTOR = "a slower rotor (less match.speed_max_rad_per_s), or a steel of more mechanics.lamination_yield_MPa"
 _LARGER_SUN = "a larger sun by more match.gearbox_stages, or a steel of more mechanics.sun_yield_MPa"
+_TOUGHER_SUN = "a larger sun by more match.gearbox_stages, or a steel of more mechanics.sun_tensile_MPa"
+_TOUGHER_ROTOR = "a slower rotor (less match.speed_max_rad_per_s), or a steel of more mechanics.lamination_tensile_MPa"
 _LARGER_BEARING = "more mechanics.bearing_capacity_kN"
+
+
+@dataclass(frozen=True)
+class FatigueInputs:
+    """What fatigue is rated by.
+
+    shaft, sun: tensile strength of rotor shaft and sun gears; lamination: of the electrical steel [Pa]
+    notch: factor of notch, surface and size; safety: on amplitudes; both dimensionless
+    life: operating time [s]; peaks: how often the peak torque comes and goes in it where no history tells
+    """
+
+    shaft: StrengthBySection
+    sun: StrengthBySection
+    lamination: float
+    notch: float
+    safety: float
+    life: float
+    peaks: float
+
+    def strength(self, tensile: float, share: float) -> FatigueStrength:
+        """Of a part with this tensile strength [Pa] and share of it that is endured, dimensionless."""
+        return FatigueStrength(tensile, share, self.notch)
 
 
 @dataclass(frozen=True)
@@ -42,21 +82,24 @@ class MechanicsInputs:
     overspeed: float
     retention: Retention
     lamination_yield: float
-    shaft_steel: YieldBySection
-    sun_steel: YieldBySection
+    shaft_steel: StrengthBySection
+    sun_steel: StrengthBySection
     yield_safety: float
     critical_speed_factor: float
     eccentricity: float
     bearing: Bearing | None
+    fatigue: FatigueInputs
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RotorDuty:
     """The rotor as it is built, and what it must do.
 
     active_length, bearing_span: between the middles of the bearings [m]; mass: of the rotor with its shaft [kg]
     lamination_density, magnet_density [kg/m^3]; stacking: steel over stack length, dimensionless
     speed_max, speed_rms: of the rotor [rad/s]; peak_torque: of the machine [Nm]
+    torque [Nm] (n,), speed [rad/s] (n,): of the rotor in service, each for the same time step [s], 0 where no history
+        is known
     """
 
     machine: Machine
@@ -69,6 +112,14 @@ class RotorDuty:
     speed_max: float
     speed_rms: float
     peak_torque: float
+    torque: np.ndarray
+    speed: np.ndarray
+    step: float
+
+    @property
+    def is_recorded(self) -> bool:
+        """Whether a history is known."""
+        return self.step > 0
 
 
 @dataclass(frozen=True)
@@ -79,6 +130,7 @@ class MechanicsOutcome:
     shaft: with the magnetic stiffness of the whole machine; eccentricity [m]; deflection: of the shaft [m]
     steady_load: weight, and the pull on a rotor in the middle [N]; bearing_load: of either bearing, radial [N]
     bearing_life: L_10 [s], None where no bearing is stated
+    recorded: whether fatigue is that of a history, else of so many peaks; life: operating time [s]
     """
 
     checks: tuple[LoadCheck, ...]
@@ -90,6 +142,9 @@ class MechanicsOutcome:
     deflection: float
     bearing_load: float
     bearing_life: float | None
+    recorded: bool
+    peaks: float
+    life: float
 
 
 def mechanics_stage(
@@ -117,6 +172,7 @@ def mechanics_stage(
         *_sun_checks(gears, duty, inputs),
         _critical_speed_check(shaft, duty, inputs),
         *_bearing_check(inputs.bearing, life),
+        *_fatigue_checks(gears, duty, inputs, magnets, bending),
     )
     return MechanicsOutcome(
         checks=checks,
@@ -128,6 +184,9 @@ def mechanics_stage(
         deflection=shaft.deflection(load, eccentricity),
         bearing_load=bearing_load,
         bearing_life=life,
+        recorded=duty.is_recorded,
+        peaks=inputs.fatigue.peaks,
+        life=inputs.fatigue.life,
     )
 
 
@@ -143,16 +202,20 @@ def _shaft(stress: GapStress, duty: RotorDuty) -> BentShaft:
 
 def _rotor_check(magnets: MagnetRing, duty: RotorDuty, inputs: MechanicsInputs) -> LoadCheck:
     """The laminations at their bore; insulation between the sheets carries none of the magnets' pull."""
-    ring = RotatingRing(
+    part, stress = "laminations of the rotor, at the bore", _bore_stress(magnets, duty, inputs)
+    return LoadCheck(part, inputs.yield_safety, stress, inputs.lamination_yield, "MPa", _SLOWER_ROTOR)
+
+
+def _bore_stress(magnets: MagnetRing, duty: RotorDuty, inputs: MechanicsInputs) -> float:
+    """Of the laminations at the speed of the magnets [Pa]."""
+    return RotatingRing(
         inner=duty.machine.shaft_radius,
         outer=duty.machine.rotor_core_radius,
         density=duty.lamination_density,
         poisson_ratio=STEEL_POISSON_RATIO,
         speed=magnets.speed,
         rim_pull=inputs.retention.rim_pull(magnets) / duty.stacking,
-    )
-    part, stress, strength = "laminations of the rotor, at the bore", ring.largest_stress, inputs.lamination_yield
-    return LoadCheck(part, inputs.yield_safety, stress, strength, "MPa", _SLOWER_ROTOR)
+    ).largest_stress
 
 
 def _shaft_check(bending: float, duty: RotorDuty, inputs: MechanicsInputs) -> LoadCheck:
@@ -173,16 +236,76 @@ def _sun_checks(gears: GearboxOutcome, duty: RotorDuty, inputs: MechanicsInputs)
 
     The sun of a slower stage turns with the carrier before it and has its torque; lossless, without notch.
     """
+    for number, faster, diameter in _suns(gears):
+        stress = equivalent_stress(0.0, torsion_stress(duty.peak_torque * faster, diameter))
+        part = f"sun of stage {number}, at its root circle"
+        yield LoadCheck(part, inputs.yield_safety, stress, inputs.sun_steel.at(diameter), "MPa", _LARGER_SUN)
+
+
+def _suns(gears: GearboxOutcome) -> Iterator[tuple[int, float, float]]:
+    """Number of the stage, torque over that of the machine and root circle [m] of every sun."""
     stages = gears.train.stages
     for number, stage in enumerate(stages):
         faster = prod(float(other.gears.ratio) for other in stages[number + 1 :])
-        diameter = 2 * float(stage.gears.sun.root_radius)
-        stress = equivalent_stress(0.0, torsion_stress(duty.peak_torque * faster, diameter))
-        part = f"sun of stage {number + 1}, at its root circle"
-        yield LoadCheck(part, inputs.yield_safety, stress, inputs.sun_steel.at(diameter), "MPa", _LARGER_SUN)
+        yield number + 1, faster, 2 * float(stage.gears.sun.root_radius)
 
 
 def _bearing_check(bearing: Bearing | None, life: float | None) -> Iterator[LoadCheck]:
     """None where no bearing, or no life, is stated."""
     if bearing is not None and bearing.life is not None and life is not None:
         yield LoadCheck("life of the bearings", 1.0, bearing.life, life, "h", _LARGER_BEARING)
+
+
+# ---- fatigue --------------------------------------------------------------------------------------------------------
+
+
+def _fatigue_checks(
+    gears: GearboxOutcome, duty: RotorDuty, inputs: MechanicsInputs, magnets: MagnetRing, bending: float
+) -> Iterator[LoadCheck]:
+    """Shaft, suns and laminations over the life; bending: stress of the shaft, reversed with every turn [Pa].
+
+    Teeth are rated with the gears, by ISO 6336 over the spectrum of the same loads.
+    """
+    fatigue, torque = inputs.fatigue, torque_cycles(duty, inputs.fatigue)
+    shaft = fatigue.strength(fatigue.shaft.at(2 * duty.machine.shaft_radius), ENDURED_SHARE)
+    yield _tired("rotor shaft", shaft, _shaft_cycles(torque, duty, fatigue, bending), fatigue, _THICKER_SHAFT)
+    for number, faster, diameter in _suns(gears):
+        sun, stress = fatigue.strength(fatigue.sun.at(diameter), ENDURED_SHARE_CASE_HARDENED), _twist(diameter) * faster
+        yield _tired(f"sun of stage {number}", sun, torque.times(stress), fatigue, _TOUGHER_SUN)
+    sheet = fatigue.strength(fatigue.lamination, ENDURED_SHARE)
+    stress = _bore_stress(magnets, duty, inputs) / magnets.speed**2
+    yield _tired(
+        "laminations of the rotor", sheet, square_speed_cycles(duty, fatigue).times(stress), fatigue, _TOUGHER_ROTOR
+    )
+
+
+def _tired(part: str, strength: FatigueStrength, stress: LoadCycles, fatigue: FatigueInputs, helps: str) -> LoadCheck:
+    """The amplitude that does as much as all cycles against what is endured."""
+    return LoadCheck(f"{part}, fatigue", fatigue.safety, strength.acting(stress), strength.endured, "MPa", helps)
+
+
+def _twist(diameter: float) -> float:
+    """Equivalent stress of a torque [Pa/Nm]; diameter [m]."""
+    return equivalent_stress(0.0, torsion_stress(1.0, diameter))
+
+
+def torque_cycles(duty: RotorDuty, fatigue: FatigueInputs) -> LoadCycles:
+    """Of the rotor's torque [Nm] over the life: those of its history, else the peak torque, there and back."""
+    if duty.is_recorded:
+        return recorded_cycles(duty.torque, duty.step, fatigue.life)
+    return reversed_cycles(duty.peak_torque, fatigue.peaks)
+
+
+def square_speed_cycles(duty: RotorDuty, fatigue: FatigueInputs) -> LoadCycles:
+    """Of the rotor's squared speed [rad^2/s^2], which the centrifugal stress goes with."""
+    if duty.is_recorded:
+        return recorded_cycles(duty.speed**2, duty.step, fatigue.life)
+    return cycles_from_rest(duty.speed_max**2, fatigue.peaks)
+
+
+def _shaft_cycles(torque: LoadCycles, duty: RotorDuty, fatigue: FatigueInputs, bending: float) -> LoadCycles:
+    """Equivalent stress [Pa]: every cycle of the torque with the bending, and every turn under the mean torque."""
+    twist = _twist(2 * duty.machine.shaft_radius)
+    turning = reversed_cycles(bending, fatigue.life * duty.speed_rms / (2 * pi))
+    mean = twist * float(np.sqrt(np.mean(duty.torque**2)))
+    return together((torque.times(twist).with_amplitude(bending), replace(turning, mean=np.array([mean]))))

@@ -12,7 +12,7 @@ from electrical.kind_search import (
 from electrical.performance import performance_stage
 from electrical.turning_stage import turning_stage
 from geometry.errors import GeometryError
-from losses.stage import LossError, losses_stage
+from losses.stage import LossError, current_losses_stage, losses_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
 from magnetostatics.newton import FieldSolutionError
@@ -55,6 +55,7 @@ _SEARCHED: tuple[Node, ...] = (
 )
 _LOSSES: tuple[Node, ...] = (
     Source(loss_inputs),
+    Stage("current_losses", current_losses_stage, "per metre, over the currents"),
     Stage("losses", losses_stage, "loss and efficiency map", report.losses_files),
 )
 

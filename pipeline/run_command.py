@@ -13,7 +13,8 @@ from drivetrain.learned import Learned
 from drivetrain.outcome import Outcome
 from drivetrain.requirements import Requirements, Transmission
 from drivetrain.second_design import FirstDesign
-from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.final_length import ContinuousNeed
+from electrical.winding_stage import WindingOutcome
 from figures.files import File
 from figures.report import Part, Picture, Remark, Section, write_report
 from losses.stage import LossMap
@@ -33,6 +34,7 @@ from study.errors import StudyError
 from study.read import read_study
 from study.schema import Study
 from study.usable import check_study
+from thermal.stage import HeatOutcome
 
 REPORT = "report.html"
 
@@ -112,12 +114,13 @@ def first_design(run: Run) -> FirstDesign:
     """The artefacts and inputs of a run that came to its end."""
     return FirstDesign(
         case=run.value(FieldCase),
-        windings=run.value(WindingInputs),
         flux_map=run.value(FluxMap),
         winding=run.value(WindingOutcome),
         outcome=run.value(Outcome),
         required=run.value(Requirements),
         transmission=run.value(Transmission),
+        continuous=run.value(ContinuousNeed),
+        heat=run.value(HeatOutcome),
         losses=_if_there(run, LossMap),
     )
 

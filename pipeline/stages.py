@@ -11,7 +11,13 @@ from actuator.errors import ActuatorError
 from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
-from drivetrain.heat_views import built_machine, mapped_loss, stated_duty
+from drivetrain.heat_views import (
+    built_machine,
+    length_by_density,
+    length_by_temperature,
+    mapped_loss,
+    stated_duty,
+)
 from drivetrain.learned import NOTHING_LEARNED, Learned, demand_as_learned
 from drivetrain.linkage_stage import chosen_linkage, linkage_stage
 from drivetrain.match import MatchError
@@ -33,7 +39,7 @@ from export.step import StepError
 from gearbox.errors import GearError
 from gearbox.stage import gearbox_stage
 from geometry.errors import GeometryError
-from losses.stage import LossError, loss_law, losses_stage
+from losses.stage import LossError, current_losses_stage, loss_law, losses_stage
 from magnetostatics.case import field_case, stated_machine
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
@@ -76,7 +82,7 @@ from report import (
     winding,
 )
 from report import learned as learned_report
-from study.chain import drives, searches_linkage
+from study.chain import drives, rates_by_density, searches_linkage
 from study.inputs_actuator import actuator_inputs
 from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
@@ -159,10 +165,12 @@ _MAGNETS: tuple[Node, ...] = (
     Stage("magnets", magnets_stage, "what they stand", magnets.files, remarks=magnets.remarks),
 )
 _LOSSES: tuple[Node, ...] = (
+    Stage("current_losses", current_losses_stage, "per metre, over the currents"),
     Stage("losses", losses_stage, "loss and efficiency map", losses.files),
     View(mapped_loss),
 )
 _NO_LOSSES: tuple[Node, ...] = (
+    Stage("current_losses", current_losses_stage, "per metre, over the currents", on_request=True),
     Stage("losses", losses_stage, "loss and efficiency map", losses.files, on_request=True),
     Source(no_loss_data),
 )
@@ -228,6 +236,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_ENERGY if driven and _has_loss_data(study) else ()),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
+        View(length_by_density if rates_by_density(study) else length_by_temperature),
         *(_GEARS if study.match.gearbox_stages else (View(direct_drive),)),
     )
 

@@ -124,7 +124,7 @@ def data_sheet(
         Group("Magnets", tuple(magnet_rows(magnets))),
         Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat, budget))),
         Group("Constants", tuple(constants(package, winding, budget))),
-        Group("Braking with shorted phases", tuple(braking_rows(package, braking, output))),
+        Group("Braking with shorted phases", tuple(braking_rows(package, braking, output, budget))),
         Group("Masses and inertia", tuple(mass_rows(outcome.masses, budget))),
     )
     return DataSheet(tuple(group for group in groups if group.rows))
@@ -218,7 +218,8 @@ def constants(package: Package, winding: WindingOutcome, budget: Budget) -> Iter
     yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis")
     no_load = chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load"
     yield row("torque constant", *no_load, budget.torque_constant)
-    yield row("torque constant", chosen.torque_constant, "mNm_per_A", f"per peak ampere, {full} on the q axis")
+    loaded = f"per peak ampere, {full} on the q axis"
+    yield row("torque constant", chosen.torque_constant, "mNm_per_A", loaded, budget.loaded_constant)
     emf = sqrt(3) * idle.pole_pairs * idle.psi_m * _THOUSAND_RPM
     yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm", budget.torque_constant)
     rms = "line to line, RMS of the fundamental, at 1000 rpm"
@@ -235,11 +236,12 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("cogging torque", package.cogging, "Nm", "peak to peak, without current, magnets alike", budget.cogging)
     yield row("continuous torque", rated.torque, "Nm", nominal, budget.continuous_torque)
     yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given", budget.base_speed)
-    yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque")
+    yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque", budget.power_at_base_speed)
     if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
         fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
         yield row("largest power", chosen.maximum_power, "W", fastest)
-    yield row("rated speed", rated.speed, "rpm", "base speed, or the largest of the study where that is lower")
+    lower = "base speed, or the largest of the study where that is lower"
+    yield row("rated speed", rated.speed, "rpm", lower, budget.rated_speed)
     yield row("bus voltage", bus, "V", "direct")
     connection = chosen.design.connection
     yield row("peak line current", chosen.current_peak, "A", f"amplitude, {overload}")
@@ -257,7 +259,7 @@ def warm_rows(warm: HeatOutcome, budget: Budget) -> Iterator[Row]:
     slow, limits = warm.slow, warm.inputs.limits
     at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
     yield row("continuous torque", slow.torque, "Nm", at, budget.continuous_effort)
-    yield row("continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}")
+    yield row("continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}", budget.continuous_current)
     yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
     yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
 
@@ -284,33 +286,37 @@ def loss_rows(
         return
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     hot = replace(losses, copper=losses.copper * heat.hot_resistance)
-    yield row("power", losses.mechanical, "W", f"mechanical, {at}")
+    yield row("power", losses.mechanical, "W", f"mechanical, {at}", budget.rated_power)
     cold = f"{steel.winding_temperature:g} °C, direct current"
     yield row("copper loss", losses.copper, "W", cold, budget.copper_loss)
     if losses.circulating:
         yield row("loss round the delta", losses.circulating, "W", f"{steel.winding_temperature:g} °C, third harmonic")
-    yield row("stator iron loss", losses.stator_iron, "W", f"by the loss data of {steel.loss_grade}")
-    yield row("rotor iron loss", losses.rotor_iron, "W", f"by the loss data of {steel.loss_grade}")
+    grade = f"by the loss data of {steel.loss_grade}"
+    yield row("stator iron loss", losses.stator_iron, "W", grade, budget.iron_loss)
+    yield row("rotor iron loss", losses.rotor_iron, "W", grade)
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
-    yield row("losses", losses.total, "W", "without bearings, windage and inverter")
-    yield row("efficiency", losses.efficiency, "percent", f"{at}, copper at {steel.winding_temperature:g} °C")
-    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C")
+    yield row("losses", losses.total, "W", "without bearings, windage and inverter", budget.losses)
+    cold = f"{at}, copper at {steel.winding_temperature:g} °C"
+    yield row("efficiency", losses.efficiency, "percent", cold, budget.efficiency)
+    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C", budget.efficiency)
     yield row("bus current", losses.electrical / inputs.limits.dc_voltage, "A", at)
 
 
-def braking_rows(package: Package, braking: BrakingOutcome, output: Output) -> Iterator[Row]:
+def braking_rows(package: Package, braking: BrakingOutcome, output: Output, budget: Budget) -> Iterator[Row]:
     """The machine as a brake."""
     found, (cold, hot) = package.short_circuit, braking.poles
     asked = output.at_speed(braking.demand.speed_peak)
-    yield row("short-circuit current", found.current_peak, "A", f"peak, largest up to {asked} {output.place}")
-    yield row("largest braking torque", found.torque, "Nm", "shorted, without iron loss and friction")
+    largest, shorted = f"peak, largest up to {asked} {output.place}", "shorted, without iron loss and friction"
+    yield row("short-circuit current", found.current_peak, "A", largest, budget.short_circuit_current)
+    yield row("largest braking torque", found.torque, "Nm", shorted, budget.braking_torque)
     for speed, at, degrees in (
         (found.best_speed_cold, cold, braking.heat.cold),
         (found.best_speed_hot, hot, braking.heat.hot),
     ):
         where = f"{degrees:g} °C, {output.at_speed(at)} {output.place}"
-        yield row("speed of the largest braking torque", speed, "rpm", where)
-    yield row("back-EMF at the largest speed", braking.back_emf, "V", f"line to line, peak, at {asked} {output.place}")
+        yield row("speed of the largest braking torque", speed, "rpm", where, budget.braking_speed)
+    line = f"line to line, peak, at {asked} {output.place}"
+    yield row("back-EMF at the largest speed", braking.back_emf, "V", line, budget.torque_constant)
 
 
 def mass_rows(masses: PartMasses, budget: Budget) -> Iterator[Row]:

@@ -17,6 +17,7 @@ from units import written
 
 TEMPERATURES, FLOWS, OVERLOAD, FIGURE = "heat_temperatures.csv", "heat_flows.csv", "heat_overload.csv", "heat"
 HOTTEST = "hottest copper"
+_OTHER_DENSITY = 0.1  # relative, from which on another nominal current density is worth a sentence
 _TEMPERATURES = "Mean temperatures and heat (friction: in the casing) in the end, at both continuous ratings and"
 _BOUND = {
     COPPER_LIMIT: "the winding",
@@ -69,6 +70,7 @@ def remarks(found: HeatOutcome, output: Output) -> Iterator[str]:
         f"{in_unit(found.nominal_density, 'A_per_mm2'):g} A/mm² with cold magnets would be "
         f"{amount(found.nominal_effort, output.effort_unit)}."
     )
+    yield from _other_density(found, output)
     if found.duty is None:
         yield f"The duty {output.duty} warms the machine without end: no temperature balances its loss."
     elif not found.warm_is_possible:
@@ -79,6 +81,18 @@ def remarks(found: HeatOutcome, output: Output) -> Iterator[str]:
         )
     if not found.field_known:
         yield "Losses in iron and magnets are not counted: the steel has no loss data (materials.loss_grade)."
+
+
+def _other_density(found: HeatOutcome, output: Output) -> Iterator[str]:
+    """Where the temperatures allow another current density than cross-section and match were made for."""
+    allowed = found.slow_density * found.at_speed.current / found.slow.current if found.slow.current else 0.0
+    if abs(allowed / found.nominal_density - 1) > _OTHER_DENSITY:
+        counted, allowed = (in_unit(one, "A_per_mm2") for one in (found.nominal_density, allowed))
+        yield (
+            f"Cross-section and match count on {counted:g} A/mm² for good, the temperatures allow {allowed:.3g} A/mm² "
+            f"{_speed(found, output)}: the length is made for that, and with sweep.j_nominal_rms_A_per_mm2 = "
+            f"{allowed:.2g} the rest would be."
+        )
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------

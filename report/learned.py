@@ -18,11 +18,11 @@ from units import MILLIMETRE
 
 _METHOD = (
     "The first design with each lesson alone, nothing else changed: its field solved again at the current of its peak "
-    "torque and at the nominal current density, which stands for the continuous {effort} here, the mean over the rotor "
-    "angles of its flux map. Friction, resistance, iron loss and end leakage act by their laws. The active length is "
-    "the one that would meet peak and continuous {effort} with the same winding and currents; the efficiency is at the "
-    "RMS {effort} and speed that are asked, with the current in proportion to the torque and the iron loss of the "
-    "first loss map."
+    "torque and at that for good, which the temperatures allow (or the nominal current density, where the study says "
+    "so), the mean over the rotor angles of its flux map. Friction, resistance, iron loss and end leakage act by their "
+    "laws. The active length is the one that would meet peak and continuous {effort} with the same winding and "
+    "currents; the efficiency is at the RMS {effort} and speed that are asked, with the current in proportion to the "
+    "torque and the iron loss of the first loss map."
 )
 
 

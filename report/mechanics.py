@@ -90,10 +90,26 @@ def _text(found: MechanicsOutcome) -> str:
     held = sum(one.holds for one in found.checks)
     return (
         f"{held} of {len(found.checks)} checks hold. Magnets and laminations turn at {amount(found.overspeed, 'rpm')}, "
-        "shafts carry the peak torque of the machine, once: fatigue is not rated. The rotor sits in the middle of its "
+        f"shafts carry the peak torque of the machine, once. {_fatigue(found)} The rotor sits in the middle of its "
         f"shaft between two rigid bearings, {amount(found.eccentricity, 'um')} off centre, bent by its weight and by "
-        "the pull of the field solution. Heat, shrink fits, keyways and notches are not in these numbers; the safety "
-        "factors stand for them."
+        "the pull of the field solution. Heat and shrink fits are not in these numbers, and notches only in those of "
+        "fatigue; the safety factors stand for them."
+    )
+
+
+def _fatigue(found: MechanicsOutcome) -> str:
+    """By which cycles fatigue is rated."""
+    hours = found.life / FACTORS["h"]
+    cycles = (
+        f"the cycles of the road's history, counted by rainflow and repeated for {hours:g} h"
+        if found.recorded
+        else f"{found.peaks:.3g} peak torques there and back, and as many times from rest to the largest speed, for no "
+        f"history is known; the shaft bends with every turn in {hours:g} h"
+    )
+    return (
+        f"Fatigue is that of {cycles}: Goodman's mean stress and Miner's sum give the reversed amplitude that does as "
+        "much at 10⁶ cycles as all of them, notch factor in, against what the steel endures there. Teeth are rated "
+        "with the gears."
     )
 
 

@@ -7,7 +7,7 @@ from math import floor
 
 import pandas as pd
 
-from drivetrain.asked import Check
+from drivetrain.asked import Check, ContinuousEffort, LowSpeedDamping, PeakEffortAtRest, Requirement
 from drivetrain.nearest import Move, NearestDesign
 from drivetrain.outcome import Features, Outcome
 from drivetrain.output import Output, in_unit, labelled
@@ -18,6 +18,9 @@ from figures.gearbox import axial_section
 from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table
 from gearbox.stage import SafetyCheck
 from mechanics.checks import LoadCheck
+from report.datasheet import plus_minus
+from uncertainty.budget import Budget
+from uncertainty.stage import Uncertainty
 from units import FACTORS, MILLIMETRE, written
 
 DECIDES = 1e-3  # relative margin, up to which a requirement decides about the nearest design
@@ -43,8 +46,8 @@ def files(found: Outcome, output: Output) -> Iterator[File]:
     yield figure_file("axial_section", axial_section(found.layout, title=title, end=output.end))
 
 
-def section(found: Outcome, output: Output) -> Section:
-    """The actuator on one screen, and which requirements hold."""
+def section(found: Outcome, output: Output, uncertainty: Uncertainty | None) -> Section:
+    """The actuator on one screen, and which requirements hold; uncertainty: None where it was not looked at."""
     checks: list[Check | SafetyCheck | LoadCheck] = [*found.checks, *found.gear_checks, *found.strength_checks]
     held = sum(one.holds for one in checks)
     return Section(
@@ -53,7 +56,7 @@ def section(found: Outcome, output: Output) -> Section:
             KeyNumbers(_key_numbers(found.features, output)),
             f"{held} of {len(checks)} requirements hold.",
             *_failures(found, output),
-            Table(checks_table(found, output), f"What is asked and what is reached, {output.place}."),
+            _asked_and_reached(found, output, uncertainty),
             *_remedy_table(found, output),
             *_nearest(found, output),
             Table(features_table(found, output), "Features of the actuator.", headings=_stated_heading(found)),
@@ -62,6 +65,28 @@ def section(found: Outcome, output: Output) -> Section:
             Picture(picture_name("axial_section"), "Axial section with the envelope."),
         ),
     )
+
+
+def _asked_and_reached(found: Outcome, output: Output, uncertainty: Uncertainty | None) -> Table:
+    """Every requirement, with the expanded uncertainty of what is reached where it is known."""
+    table, words = checks_table(found, output), f"What is asked and what is reached, {output.place}."
+    if uncertainty is None:
+        return Table(table, words)
+    known = _known(uncertainty.budget)
+    relative = [known.get(type(one.requirement)) for one in found.checks]
+    shown = ["" if one is None else plus_minus(one * value) for one, value in zip(relative, table.reached)]
+    shown += [""] * (len(table) - len(shown))
+    table.insert(table.columns.get_loc("reached") + 1, "plus_minus", shown)
+    return Table(table, f"{words} Behind ± stands U of the uncertainty.", {"plus_minus": "±"})
+
+
+def _known(budget: Budget) -> dict[type[Requirement], float]:
+    """U of what is reached, relative."""
+    return {
+        PeakEffortAtRest: budget.peak_effort.expanded,
+        ContinuousEffort: budget.continuous_effort.expanded,
+        LowSpeedDamping: budget.low_speed_damping.expanded,
+    }
 
 
 def remarks(found: Outcome, output: Output) -> Iterator[str]:

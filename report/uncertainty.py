@@ -49,6 +49,17 @@ _WORDS = {
     "copper_loss": ("copper loss at the continuous torque", "W"),
     "mass": ("mass of the active parts", "kg"),
     "needed_length": ("active length that the peak torque needs", "mm"),
+    "power_at_base_speed": ("power at base speed", "W"),
+    "rated_speed": ("rated speed", "rpm"),
+    "rated_power": ("power at the rated point", "W"),
+    "iron_loss": ("stator iron loss at the rated point, its mesh not counted", "W"),
+    "losses": ("losses at the rated point", "W"),
+    "efficiency": ("efficiency at the rated point", "percent"),
+    "loaded_constant": ("torque constant at the overload current", "mNm_per_A"),
+    "continuous_current": ("continuous line current by temperature, RMS", "A"),
+    "short_circuit_current": ("short-circuit current, peak", "A"),
+    "braking_torque": ("largest braking torque, shorted", "Nm"),
+    "braking_speed": ("speed of the largest braking torque, cold", "rpm"),
 }
 
 
@@ -84,7 +95,8 @@ def section(found: Uncertainty, output: Output) -> Section:
 def budget_table(budget: Budget, output: Output) -> pd.DataFrame:
     """One headline number a row, in drawing units."""
     words = _words(output)
-    return pd.DataFrame([_row(*words[one.name], getattr(budget, one.name)) for one in fields(budget)])
+    known = {one.name: getattr(budget, one.name) for one in fields(budget)}
+    return pd.DataFrame([_row(*words[name], one) for name, one in known.items() if one is not None])
 
 
 def spread_table(found: Uncertainty, output: Output) -> pd.DataFrame:
@@ -142,6 +154,7 @@ def _words(output: Output) -> dict[str, tuple[str, str]]:
         "transmission_ratio": ("transmission ratio, matched", output.ratio_unit),
         "peak_effort": (f"peak {output.effort} {output.place}, at rest", output.effort_unit),
         "continuous_effort": (f"continuous {output.effort} {output.place}, turning slowly", output.effort_unit),
+        "low_speed_damping": (f"short-circuit damping {output.place}, at low speed", output.damping_unit),
     }
 
 

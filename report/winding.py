@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
 import numpy as np
 import pandas as pd
 
 from drivetrain.matching import MatchOutcome
+from electrical.final_length import FinalLength
 from electrical.winding_selection import Winding
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from figures.files import File, table_file
 from figures.report import KeyNumber, KeyNumbers, Section, Table
-from units import MILLIMETRE, drawn
+from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, drawn
 
 TABLE, ALTERNATIVES = "windings.csv", "winding_alternatives.csv"
 _SHOWN = 6  # turns either side of the chosen winding
@@ -65,12 +67,22 @@ def length_reason(found: WindingOutcome, inputs: WindingInputs, match: MatchOutc
     short = "; the longest that is allowed, too short for it" if found.length.short else ""
     return (
         f"{found.length.length / MILLIMETRE:.1f} mm of active length{instead}, set by "
-        f"{found.length.set_by.name}{short}. "
-        f"The match counts on a packing factor of {inputs.limits.packing_limit:g} and on a ratio that is any number; "
-        f"this winding fills {found.chosen.packing:.3f}, the teeth give "
+        f"{found.length.set_by.name}{short}. {' '.join(_others(found.length))} "
+        f"The match counts on a packing factor of {inputs.limits.packing_limit:g}, on "
+        f"{inputs.nominal_density / AMPERE_PER_SQUARE_MILLIMETRE:g} A/mm² for good and on a ratio that is any number; "
+        f"this winding fills {found.chosen.packing:.3f}, the temperatures decide for good, the teeth give "
         "their own ratio, and the torque is that of the flux map at the best current angle, less "
         f"{100 * found.peak_torque_error / found.peak_torque:.2f} % that the mesh may have put on top."
     )
+
+
+def _others(length: FinalLength) -> Iterator[str]:
+    """What the needs ask for that do not set the length."""
+    for one in length.needs:
+        if one.length == inf:
+            yield f"No length gives {one.name}."
+        elif one != length.set_by:
+            yield f"{one.name.capitalize()} asks for {one.length / MILLIMETRE:.1f} mm."
 
 
 def windings_table(found: WindingOutcome) -> pd.DataFrame:

@@ -103,3 +103,8 @@ def _linkage_problem(study: Study) -> str | None:
     if missing:
         return f'chain.linkage = "optimised" needs linkage.{missing[0]}; add it, or state the ratios and write "stated"'
     return None
+
+
+def rates_by_density(study: Study) -> bool:
+    """Whether the length for the continuous torque is that of the nominal current density, and not of temperatures."""
+    return study.thermal.continuous_length == "density"

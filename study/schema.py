@@ -572,6 +572,12 @@ class MechanicsSection(Section):
     shaft_yield_MPa: Annotated[float | None, Quantity("yield strength of the rotor shaft", 50, 3000)] = None
     sun_yield_MPa: Annotated[float | None, Quantity("yield strength of the sun gears' core", 50, 3000)] = None
     yield_safety: Annotated[float | None, Quantity("safety against yield", 1, 10)] = None
+    lamination_tensile_MPa: Annotated[float | None, Quantity("tensile strength of the sheet", 50, 2000)] = None
+    shaft_tensile_MPa: Annotated[float | None, Quantity("tensile strength of the rotor shaft", 50, 4000)] = None
+    sun_tensile_MPa: Annotated[float | None, Quantity("tensile strength of the sun gears' core", 50, 4000)] = None
+    notch_factor: Annotated[float | None, Quantity("fatigue factor of notch, surface and size", 1, 10)] = None
+    fatigue_safety: Annotated[float | None, Quantity("safety of amplitudes over the life", 1, 10)] = None
+    peak_load_cycles: Annotated[float | None, Quantity("peak torques over the life", 1, 1e12)] = None
     critical_speed_factor: Annotated[float | None, Quantity("critical speed over the largest speed", 1, 10)] = None
     eccentricity_fraction: Annotated[float | None, Quantity("eccentricity of the rotor in the air gap", 0, 0.9)] = None
     bearing_capacity_kN: Annotated[float | None, Quantity("dynamic load rating C of either bearing", 0.01, 1e4)] = None
@@ -683,6 +689,8 @@ class WindingSelectionSection(Section):
 class ThermalSection(Section):
     """How the machine is cooled and how warm it may become; what is not stated has the default of
     ``thermal.cooling``."""
+
+    continuous_length: Literal["temperature", "density"] = "temperature"  # what the length for good is made by
 
     ambient_temperature_degC: Annotated[float | None, Quantity("temperature of the surroundings", -60, 200)] = None
     magnet_temperature_max_degC: Annotated[float | None, Quantity("warmest magnets", 50, 400)] = None

@@ -27,7 +27,7 @@ ALLOWED = {
     "drivetrain": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "mechanics"},
     "uncertainty": {*_FIELD, "optimisation", "electrical", "losses", "thermal", "gearbox", "drivetrain"},
     "control": set(),
-    "actuator": {"control"},
+    "actuator": {"electrical", "control"},
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "study": _DESIGN,
     "effects": {"materials", "geometry"},

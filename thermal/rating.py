@@ -21,7 +21,7 @@ _CURRENT_FOUND = 1e-6  # of the largest current
 _CURVE = 13  # currents between the continuous one and the largest
 _DENSER = 1.7  # towards the continuous one, where the time grows fastest
 _LONGEST = 1e5  # s; a current that heats for a day without reaching a limit counts as continuous
-_FAR_BEYOND = 1e3  # K over the limit, where there is no steady state
+FAR_BEYOND = 1e3  # K over the limit, where there is no steady state
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,7 @@ def continuous(heated: Heated) -> Rating:
         try:
             return heated.excess(settled(heated.load(current), heated.machine.cold()))
         except NoSteadyState:
-            return _FAR_BEYOND
+            return FAR_BEYOND
 
     if beyond(most) <= 0:
         return _rating(heated, most, CURRENT_LIMIT)
@@ -149,7 +149,7 @@ def allowed_for(heated: Heated, start: Temperatures, duration: float) -> float:
 
     def beyond(current: float) -> float:
         found = course(heated.load(current), start, duration, heated.excess)
-        return duration - found.time[-1] if found.stopped else heated.excess(found.end) / _FAR_BEYOND
+        return duration - found.time[-1] if found.stopped else heated.excess(found.end) / FAR_BEYOND
 
     most = heated.largest
     current = most if beyond(most) <= 0 else float(brentq(beyond, 0.0, most, xtol=1e-4 * most))

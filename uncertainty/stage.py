@@ -8,7 +8,9 @@ from drivetrain.masses import DrawnParts
 from drivetrain.matching import Matcher, MatchInputs, MatchOutcome
 from drivetrain.outcome import Outcome
 from drivetrain.requirements import Linkage, Requirements
+from electrical.braking_stage import BrakingOutcome
 from electrical.winding_stage import WindingOutcome
+from losses.stage import LossMap
 from magnetostatics.case import FamilyCase
 from optimisation.fits import SectionFits
 from tasks import Workers
@@ -37,6 +39,8 @@ def uncertainty_stage(
     winding: WindingOutcome,
     outcome: Outcome,
     heat: HeatOutcome,
+    braking: BrakingOutcome,
+    losses: LossMap | None,
     workers: Workers,
 ) -> Uncertainty:
     """Match again what the fits, the mesh and the tolerances leave open, and add up what each headline number carries.
@@ -45,4 +49,4 @@ def uncertainty_stage(
     """
     matcher = Matcher(case, fits, requirements, linkage, inputs, DrawnParts(inputs.masses, case.packing))
     spread = match_spread(matcher, matched.chosen, found, workers)
-    return Uncertainty(spread, budget_of(found, spread, matched.chosen, winding, outcome, heat))
+    return Uncertainty(spread, budget_of(found, spread, matched.chosen, winding, outcome, heat, braking, losses))

@@ -19,7 +19,7 @@ from drivetrain.outcome import active_masses
 from electrical.dq import DriveLimits, corner_speed, mtpa_currents
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.synchronous_machine import SynchronousMachine
-from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.winding_stage import WindingInputs, WindingOutcome, rated_speed
 from electrical.wound_machine import WoundMachine
 from losses.copper import copper_loss
 from magnetostatics.flux_map_stage import FluxMap
@@ -115,7 +115,7 @@ class OperatedMachine:
 
 
 def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: WindingInputs) -> OperatedMachine:
-    """At full current, and at the nominal density; rated speed: the base speed, or the largest allowed."""
+    """At full current, and at the nominal density."""
     wound, limits = winding.wound, winding.limits
     machine = wound.on_map(flux_map.data)
     nominal = mtpa_currents(machine, wound.current_peak(windings.nominal_density))
@@ -125,7 +125,7 @@ def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: Windi
         limits=limits,
         nominal=(float(nominal[0]), float(nominal[1])),
         full=(winding.direct_current, winding.quadrature_current),
-        speed=min(winding.chosen.base_speed, windings.limits.maximum_speed),
+        speed=rated_speed(winding, windings.limits),
     )
 
 

@@ -5,18 +5,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from drivetrain.asked import (
-    ActiveLength,
-    ContinuousEffort,
-    ControlledDamping,
-    EquivalentMass,
-    LowSpeedDamping,
-    PeakEffort,
-    PeakEffortAtRest,
-    PeakPower,
-    PhaseCurrent,
-    RotorSpeed,
-)
+from drivetrain import asked as demands
 from drivetrain.nearest import NearestDesign
 from drivetrain.output import Wheel
 from drivetrain.proof import ceilings, impossibility
@@ -39,7 +28,7 @@ def at_the_bus(design, share):
     """A power of so many times what three times the bus voltage gives at a current limit, at 5 m/s."""
     limit = 0.8 * design.phase_current_rms
     power = share * bus_power(design, LEVER_RANGE * design.dc_voltage, limit)
-    return [PeakPower(power, 5.0), PhaseCurrent(limit)]
+    return [demands.PeakPower(power, 5.0), demands.PhaseCurrent(limit)]
 
 
 # ---- the electric power ---------------------------------------------------------------------------------------------
@@ -59,7 +48,7 @@ def test_a_little_less_power_proves_nothing(design):
 
 def test_the_peak_effort_at_a_speed_is_a_power_too(design):
     power, current = at_the_bus(design, 1.2)
-    proof = impossibility(design, [PeakEffort(power.needed / 5.0, 5.0), current], LEVERS)
+    proof = impossibility(design, [demands.PeakEffort(power.needed / 5.0, 5.0), current], LEVERS)
     assert proof.shortfall == pytest.approx(1 - 1 / sqrt(1.2), rel=1e-6)
 
 
@@ -68,25 +57,25 @@ def test_the_peak_effort_at_a_speed_is_a_power_too(design):
 
 def test_an_effort_beyond_every_length_and_ratio(design):
     """Three times the length and a third of the ratio give nine times the effort: ten times misses by a tenth."""
-    proof = impossibility(design, [PeakEffortAtRest(10 * design.effort_peak)], LEVERS)
+    proof = impossibility(design, [demands.PeakEffortAtRest(10 * design.effort_peak)], LEVERS)
     assert proof.shortfall == pytest.approx(0.1, rel=1e-6)
 
 
 def test_an_effort_with_a_rotor_that_may_not_turn_faster(design):
     """The ratio fixed by the speed, three times the length: four times the effort is shared with the speed."""
-    speed = RotorSpeed(3.0 / design.transmission_ratio, 3.0)
-    proof = impossibility(design, [PeakEffortAtRest(4 * design.effort_peak), speed], LEVERS)
+    speed = demands.RotorSpeed(3.0 / design.transmission_ratio, 3.0)
+    proof = impossibility(design, [demands.PeakEffortAtRest(4 * design.effort_peak), speed], LEVERS)
     assert proof.shortfall == pytest.approx(1 - sqrt(3 / 4), rel=1e-6) and len(proof.requirements) == 2
 
 
 def test_a_direct_drive_has_no_ratio_to_move(design):
-    assert impossibility(design, [PeakEffortAtRest(4 * design.effort_peak)], LEVERS) is None
-    found = impossibility(design, [PeakEffortAtRest(4 * design.effort_peak)], DIRECT_DRIVE_LEVERS)
+    assert impossibility(design, [demands.PeakEffortAtRest(4 * design.effort_peak)], LEVERS) is None
+    found = impossibility(design, [demands.PeakEffortAtRest(4 * design.effort_peak)], DIRECT_DRIVE_LEVERS)
     assert found.shortfall == pytest.approx(1 / 4, rel=1e-6)
 
 
 def test_what_asks_for_nothing_proves_nothing(design):
-    assert impossibility(design, [LowSpeedDamping(0.0)], LEVERS) is None
+    assert impossibility(design, [demands.LowSpeedDamping(0.0)], LEVERS) is None
 
 
 # ---- soundness ------------------------------------------------------------------------------------------------------
@@ -108,11 +97,11 @@ def every(design, hard):
         ("damping", design.low_speed_damping), ("mass", design.equivalent_mass),
     )}  # fmt: skip
     return [
-        PeakEffortAtRest(hard * design.effort_peak), PeakEffort(hard * at["effort"], 1.0),
-        PeakPower(hard * at["power"], 2.0), ContinuousEffort(hard * design.effort_continuous),
-        LowSpeedDamping(hard * at["damping"]), ControlledDamping(hard * at["braking"] / 0.5, 0.5),
-        RotorSpeed(2000.0 / hard, 3.0), PhaseCurrent(design.phase_current_rms / hard),
-        ActiveLength(0.06 / hard), EquivalentMass(at["mass"] / hard),
+        demands.PeakEffortAtRest(hard * design.effort_peak), demands.PeakEffort(hard * at["effort"], 1.0),
+        demands.PeakPower(hard * at["power"], 2.0), demands.ContinuousEffort(hard * design.effort_continuous),
+        demands.LowSpeedDamping(hard * at["damping"]), demands.ControlledDamping(hard * at["braking"] / 0.5, 0.5),
+        demands.RotorSpeed(2000.0 / hard, 3.0), demands.PhaseCurrent(design.phase_current_rms / hard),
+        demands.ActiveLength(0.06 / hard), demands.EquivalentMass(at["mass"] / hard),
     ]  # fmt: skip
 
 
@@ -140,13 +129,14 @@ def test_no_design_of_many_is_better_than_a_proof_allows(design, hard):
 
 def test_the_sums_are_tight_where_they_are_made(design):
     """Equivalent mass and damping have a sum in them: at the present length the bound is the value itself."""
-    mass = EquivalentMass(float(design.equivalent_mass) / 9.0 / 1.5)
-    proof = impossibility(design, [mass, ActiveLength(1.0)], LEVERS)  # ratio to three times: a ninth, length to a third
+    mass = demands.EquivalentMass(float(design.equivalent_mass) / 9.0 / 1.5)
+    # ratio to three times: a ninth, length to a third
+    proof = impossibility(design, [mass, demands.ActiveLength(1.0)], LEVERS)
     exact = (design.rotor_inertia_per_length * design.active_length / 3 + design.gearbox_inertia) / (
         design.rotor_inertia_per_length * design.active_length + design.gearbox_inertia
     )
     assert proof is None and exact < 1 / 1.5
-    beyond = EquivalentMass(0.8 * exact * float(design.equivalent_mass) / 9.0)
+    beyond = demands.EquivalentMass(0.8 * exact * float(design.equivalent_mass) / 9.0)
     assert impossibility(design, [beyond], LEVERS).shortfall == pytest.approx(0.2, rel=1e-6)
 
 

@@ -2,6 +2,7 @@
 
 from math import pi
 
+import numpy as np
 import pytest
 
 from drivetrain.masses import PartMaterials
@@ -13,6 +14,7 @@ from electrical.wound_machine import WoundMachine
 from gearbox.layout import Housing
 from tests.electrical.wires import series_star, wire_of
 from tests.magnetostatics.reference_machine import reference_machine
+from thermal.stage import Duty
 
 WOUND = WoundMachine(reference_machine(), 4, 1, series_star(12, 13, wire_of(0.2e-6)), 45e-3)
 MATERIALS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
@@ -23,7 +25,10 @@ def test_the_duty_of_a_rotor():
     rest = {name: None for name in WindingOutcome.__dataclass_fields__} | {"wound": WOUND, "peak_torque": 6.3}
     blank = {name: 0.0 for name in OutcomeInputs.__dataclass_fields__}
     inputs = OutcomeInputs(**blank | {"materials": MATERIALS, "housing": Housing(0.0, 0.0, 14e-3, 0.0)})
-    duty = rotor_duty(WindingOutcome(**rest), ASKED, Transmission(2.0e-3, 2.1e-3), inputs)
+    asked = Duty(np.array([100.0, -300.0]), np.array([0.1, 0.2]), 0.01)
+    duty = rotor_duty(WindingOutcome(**rest), ASKED, Transmission(2.0e-3, 2.1e-3), asked, inputs)
+    assert duty.torque == pytest.approx([0.21, -0.63]) and duty.speed == pytest.approx([50.0, 100.0])
+    assert duty.is_recorded and duty.step == 0.01
     assert duty.speed_max == pytest.approx(1700.0) and duty.speed_rms == pytest.approx(50.0)
     assert duty.bearing_span == pytest.approx(45e-3 + 2 * machine_envelope(WOUND).end_winding_length + 14e-3)
     m = WOUND.machine

@@ -1,11 +1,13 @@
 """A flux map without a field solution: a saturating machine in closed form, with a ripple over the angle."""
 
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 import xarray as xr
 
 from drivetrain.requirements import Requirements, Transmission, shaft_demand
+from electrical.final_length import ContinuousNeed
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_connection import Star
 from electrical.winding_selection import WindingLimits
@@ -70,6 +72,20 @@ REQUIRED = Requirements(
 )  # fmt: skip
 TRANSMISSION = Transmission(nominal=2.3 * MILLIMETRE, largest=2.4 * MILLIMETRE)
 DEMAND = shaft_demand(REQUIRED, TRANSMISSION)
+
+
+@dataclass(frozen=True)
+class AnyLength(ContinuousNeed):
+    """A length for good [m] that the copper does not change."""
+
+    needed: float = 1 * MILLIMETRE
+    name = "the continuous torque of a test"
+
+    def length(self, design):
+        return self.needed
+
+
+GOOD = AnyLength()
 INPUTS = WindingInputs(
     wires=(HALF_MILLIMETRE,),
     paths=(1,),

@@ -13,7 +13,7 @@ from electrical.winding_connection import Delta, Star, WindingConnection
 from electrical.winding_selection import WindingError, evaluate_windings, with_circulation
 from electrical.winding_stage import winding_stage
 from electrical.wound_machine import WoundMachine
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, flux_map
 from tests.electrical.test_winding_selection import LENGTH, LIMITS, THESIS
 from tests.electrical.wires import given_lengths, series_star
 
@@ -87,8 +87,8 @@ def mapped(third):
 
 def test_a_quiet_delta_may_be_chosen_and_a_loud_one_is_not():
     free = replace(INPUTS, limits=replace(INPUTS.limits, phase_current_rms=400.0), closings=(Star(), Delta()))
-    star = winding_stage(mapped(1e-6), MATCHED, DEMAND, replace(free, closings=(Star(),)))
-    quiet, loud = (winding_stage(mapped(third), MATCHED, DEMAND, free) for third in (1e-6, 2e-3))
+    star = winding_stage(mapped(1e-6), MATCHED, DEMAND, replace(free, closings=(Star(),)), GOOD)
+    quiet, loud = (winding_stage(mapped(third), MATCHED, DEMAND, free, GOOD) for third in (1e-6, 2e-3))
     assert quiet.chosen.design.connection == WindingConnection(1, Delta())
     assert 0 < quiet.chosen.circulating_share < 0.05
     assert loud.chosen.design == star.chosen.design and loud.chosen.circulating_share == 0.0
@@ -98,7 +98,7 @@ def test_a_quiet_delta_may_be_chosen_and_a_loud_one_is_not():
 
 def test_delta_alone_and_too_loud_is_refused():
     with pytest.raises(WindingError, match="allow star"):
-        winding_stage(mapped(2e-3), MATCHED, DEMAND, replace(INPUTS, closings=(Delta(),)))
+        winding_stage(mapped(2e-3), MATCHED, DEMAND, replace(INPUTS, closings=(Delta(),)), GOOD)
 
 
 def test_the_wound_machine_loses_it_by_its_own_resistance():

@@ -6,11 +6,11 @@ import pytest
 from electrical.drive_stage import drive_stage
 from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 
 
 def driven(machine_map):
-    winding = winding_stage(machine_map, MATCHED, DEMAND, INPUTS)
+    winding = winding_stage(machine_map, MATCHED, DEMAND, INPUTS, GOOD)
     return winding, drive_stage(machine_map, winding, driven_machine(winding, INPUTS), INPUTS)
 
 

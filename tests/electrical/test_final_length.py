@@ -1,5 +1,7 @@
 """The length behind whole turns and teeth: each need met exactly, the hardest one decides, the limit is said."""
 
+from math import inf
+
 import pytest
 
 from electrical.final_length import LENGTH_STEP, LengthNeed, final_length, length_for_damping, length_for_torque
@@ -35,6 +37,12 @@ def test_the_hardest_need_decides_and_the_length_is_rounded_up():
 
 def test_a_length_on_a_step_stays():
     assert final_length([LengthNeed("the peak force", 7 * LENGTH_STEP)], 1.0).length == pytest.approx(7 * LENGTH_STEP)
+
+
+def test_what_no_length_gives_leaves_the_length_to_the_others():
+    needs = [LengthNeed("the peak force", 20 * MM), LengthNeed("the continuous force", inf)]
+    found = final_length(needs, 70 * MM)
+    assert found.length == pytest.approx(20 * MM) and found.set_by is needs[0] and found.needs == tuple(needs)
 
 
 def test_what_is_too_long_is_cut_and_said():

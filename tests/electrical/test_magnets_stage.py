@@ -29,7 +29,7 @@ from materials.magnet import Magnet
 from materials.magnet_grade import load_grade
 from report.magnets import remarks
 from tasks import InThisProcess
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRED, TRANSMISSION, flux_map
 from tests.magnetostatics.reference_machine import MATERIALS
 
 COARSE = MeshDensity(gap_edges=60, gap_layers=1, across_iron=1.0)
@@ -40,7 +40,7 @@ MAP = flux_map()
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")

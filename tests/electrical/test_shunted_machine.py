@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from actuator.drive import DcLoad, DiodeBridge
 from electrical.shunted_machine import Bridge, LinearStar, ShortedAtTerminals, Star, seen_in_a_line, steady_fundamental
 from electrical.synchronous_machine import SynchronousMachine
 
@@ -77,10 +76,12 @@ def test_the_bridge_is_that_of_six_switches_without_smoothing():
     assert Bridge().torque(stiff, 100.0, 0.2) * 100.0 == pytest.approx(power, rel=2e-3)  # the ripple is 0.17 % of it
 
 
-def test_the_bridge_is_that_of_the_simulated_actuator():
-    load = DiodeBridge(K_T, R, L, P, DcLoad(resistance=0.135), 0.4, 1000.0)
-    speed = np.array([5.0, 100.0, 500.0])
-    assert Bridge(0.4).torque(MACHINE, speed, 0.135) == pytest.approx(load.torque(speed), rel=1e-12)
+def test_the_overlap_costs_voltage_and_no_power():
+    """What the commutation leaves of the mean voltage, times the current, is the power at the shaft."""
+    speed = np.array([100.0, 500.0])
+    current = Bridge(0.4).current(MACHINE, speed, 0.135)
+    left = 3 / pi * P * speed * (sqrt(3) * MACHINE.psi_m - L * current)
+    assert Bridge(0.4).torque(MACHINE, speed, 0.135) * speed == pytest.approx(left * current, rel=1e-12)
 
 
 def test_a_drop_leaves_a_dead_band_and_a_straight_line_below_it():

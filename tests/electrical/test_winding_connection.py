@@ -13,7 +13,7 @@ from electrical.winding_stage import layout_of, possible_connections, winding_st
 from electrical.wire import Wire
 from electrical.wound_machine import WoundMachine
 from materials.enamelled_wire import gauge
-from tests.electrical.analytic_map import DEMAND, INPUTS, LINEAR, MATCHED, POLE_PAIRS, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, LINEAR, MATCHED, POLE_PAIRS, flux_map
 from tests.electrical.test_winding_selection import LENGTH, LIMITS, THESIS
 from tests.electrical.wires import HALF_MILLIMETRE, given_lengths, series_star
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE
@@ -116,7 +116,7 @@ def test_two_paths_of_twice_the_turns_are_the_same_winding():
 
 
 def choice(**changes):
-    return winding_stage(MAP, MATCHED, DEMAND, replace(INPUTS, **changes))
+    return winding_stage(MAP, MATCHED, DEMAND, replace(INPUTS, **changes), GOOD)
 
 
 def test_more_freedom_never_needs_more_current_or_a_much_longer_machine():

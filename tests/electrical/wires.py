@@ -25,4 +25,4 @@ def series_star(turns, strands, wire=HALF_MILLIMETRE, connection=SERIES_STAR):
 
 def given_lengths(count, length):
     """As many machines of one length [m]."""
-    return (FinalLength(length, LengthNeed("what is given", length), False),) * count
+    return (FinalLength(length, (LengthNeed("what is given", length),), length),) * count

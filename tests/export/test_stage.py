@@ -17,11 +17,11 @@ from electrical.braking_stage import CopperHeat, braking_stage
 from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from export.stage import package_stage
-from losses.stage import losses_stage
+from losses.stage import current_losses_stage, losses_stage
 from materials.magnet_grade import load_grade
 from report import datasheet
 from report import package as package_report
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 from tests.losses.test_stage_and_figure import LOSSES, Computed
 from tests.magnetostatics.test_flux_map_stage import CASE
 from thermal.cooling import HeatLimits
@@ -42,7 +42,7 @@ UNCERTAINTY = SimpleNamespace(budget=Budget(*[KNOWN] * len(fields(Budget))))
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,8 @@ def outcome(winding):
 
 @pytest.fixture(scope="module")
 def losses(winding):
-    return losses_stage(CASE, MAP, driven_machine(winding, INPUTS), LOSSES, Computed())
+    solved = current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed())
+    return losses_stage(solved, MAP, driven_machine(winding, INPUTS), LOSSES)
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,9 @@ from figures.losses import loss_maps
 from figures.style import png_bytes
 from losses.iron import FrequencyTerms
 from losses.map import DIRECT, QUADRATURE, FieldLosses
-from losses.stage import LossError, LossInputs, loss_law, losses_stage, torques_of
+from losses.stage import LossError, LossInputs, current_losses_stage, loss_law, losses_stage, torques_of
 from report.losses import dataset, files, section
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 from tests.magnetostatics.test_flux_map_stage import CASE
 
 MAP = flux_map(Saturating())
@@ -24,7 +24,7 @@ class Computed:
     """Workers whose field losses are given: in proportion to the currents, without a solve."""
 
     def map(self, what, function, tasks):
-        assert what == "losses" and len(tasks) == len(DIRECT) * len(QUADRATURE)
+        assert what == "current_losses" and len(tasks) == len(DIRECT) * len(QUADRATURE)
         return {name: self.losses(task) for name, task in tasks.items()}
 
     @staticmethod
@@ -37,12 +37,13 @@ class Computed:
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
 def found(winding):
-    return losses_stage(CASE, MAP, driven_machine(winding, INPUTS), LOSSES, Computed())
+    solved = current_losses_stage(CASE, MAP, MATCHED, LOSSES, Computed())
+    return losses_stage(solved, MAP, driven_machine(winding, INPUTS), LOSSES)
 
 
 @pytest.mark.parametrize("grade", [None, "", "35PN270"])

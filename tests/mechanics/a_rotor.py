@@ -22,6 +22,7 @@ INPUTS = mechanics_inputs(read_study("motorcycle"))
 DUTY = RotorDuty(
     machine=MACHINE, active_length=40e-3, bearing_span=80e-3, mass=0.2, lamination_density=7650.0,
     magnet_density=7500.0, stacking=0.95, speed_max=1600.0, speed_rms=40.0, peak_torque=4.0,
+    torque=np.array([0.5, -0.5, 0.5]), speed=np.array([0.0, 40.0, 0.0]), step=0.1,
 )  # fmt: skip
 STRESS = GapStress(MACHINE, xr.Dataset(), np.zeros((2, 1)), 50e-6, np.array([16e6, 14e6]), np.zeros(2))
 TEETH = planetary_set((14, 46, -109), (0.483, 0.076), 0.75e-3).plain

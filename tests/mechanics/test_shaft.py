@@ -8,7 +8,7 @@ from math import inf, pi, sqrt
 import pytest
 
 from materials.errors import MaterialError
-from materials.strength import GEAR_STEEL, MPA, SHAFT_STEEL, YieldBySection
+from materials.strength import GEAR_STEEL, MPA, SHAFT_STEEL, StrengthBySection
 from mechanics.bearings import Bearing
 from mechanics.shaft import BentShaft, equivalent_stress, torsion_stress
 from units import FACTORS, RPM
@@ -56,6 +56,6 @@ def test_the_life_of_a_bearing_by_the_table():
 def test_strength_falls_with_the_diameter_and_ends_with_the_table():
     assert [SHAFT_STEEL.at(d) / MPA for d in (10e-3, 16e-3, 16.1e-3, 60e-3)] == pytest.approx([900, 900, 750, 650])
     assert GEAR_STEEL.at(20e-3) == 785 * MPA
-    assert YieldBySection.stated(5.0).at(1e3) == 5.0
+    assert StrengthBySection.stated(5.0).at(1e3) == 5.0
     with pytest.raises(MaterialError, match="shaft of 300 mm, its table ends at 250 mm: state mechanics.shaft_yield"):
         SHAFT_STEEL.at(0.3)

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from figures.report import render_report
-from materials.strength import CARBON_SLEEVE, MPA, YieldBySection
+from materials.strength import CARBON_SLEEVE, MPA, StrengthBySection
 from mechanics.bearings import Bearing
 from mechanics.retention import Sleeve
 from mechanics.rotating_ring import RotatingRing
@@ -27,6 +27,10 @@ PARTS = (
     "sun of stage 1, at its root circle",
     "sun of stage 2, at its root circle",
     "first critical speed",
+    "rotor shaft, fatigue",
+    "sun of stage 1, fatigue",
+    "sun of stage 2, fatigue",
+    "laminations of the rotor, fatigue",
 )
 
 
@@ -91,6 +95,7 @@ def test_a_pull_in_the_middle_counts_beside_the_weight():
         (PARTS[4], {"peak_torque": 90.0}),
         (PARTS[5], {"bearing_span": 0.3}),
         (PARTS[5], {"mass": 20.0}),
+        (PARTS[6], {"bearing_span": 0.6}),
     ),
 )
 def test_every_check_can_fail(part, change):
@@ -130,8 +135,8 @@ def test_a_bearing_is_rated_where_it_is_stated():
 
 
 def test_the_section_says_what_fails_and_what_is_not_counted():
-    weak = strength(inputs=replace(INPUTS, sun_steel=YieldBySection.stated(50 * MPA)))
-    (*_, slow, fast) = report.remarks(weak)
+    weak = strength(inputs=replace(INPUTS, sun_steel=StrengthBySection.stated(50 * MPA)))
+    slow, fast = report.remarks(weak)
     assert slow.startswith("sun of stage 1, at its root circle does not hold: ") and "50 MPa is the limit" in slow
     assert slow.endswith("what would help: a larger sun by more match.gearbox_stages, or a steel of more "
                          "mechanics.sun_yield_MPa.")  # fmt: skip

@@ -70,6 +70,8 @@ def fitted(study, without=(), graph=None):
     Without losses the heat of the machine counts none in iron and magnets.
     """
     graph, gone = graph or graph_of(study), {"sweep", "optima", "limits", "fits", *without}
+    if "losses" in gone:
+        gone.add("current_losses")
     kept = [node for node in graph.nodes if not (isinstance(node, Stage) and node.name in gone)]
     if "losses" in gone:
         kept = [Source(no_loss_data) if node == View(mapped_loss) else node for node in kept]

@@ -19,6 +19,7 @@ from report import flux_map as map_report
 from report import winding as winding_report
 from tests.electrical.analytic_map import (
     DEMAND,
+    GOOD,
     INPUTS,
     MATCHED,
     REQUIRED,
@@ -33,7 +34,7 @@ MAP = flux_map(Saturating())
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +69,7 @@ def test_alternatives_say_what_was_chosen_and_why_the_others_were_not(tmp_path):
     """One row for each gauge and number of paths; paths that the star of slots has not are said."""
     thin = replace(INPUTS.wires[0], copper_diameter=4e-4, outer_diameter=4.39e-4)
     inputs = replace(INPUTS, wires=(thin, *INPUTS.wires), paths=(1, 2, 3))
-    found = winding_stage(MAP, MATCHED, DEMAND, inputs)
+    found = winding_stage(MAP, MATCHED, DEMAND, inputs, GOOD)
     table = pd.read_csv(written(winding_report.files(found), tmp_path) / "winding_alternatives.csv")
     assert sorted(zip(table.wire_mm, table.paths)) == [(0.4, 1), (0.4, 2), (0.5, 1), (0.5, 2)]
     chosen = table[table.verdict == "chosen"]

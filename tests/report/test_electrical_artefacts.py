@@ -8,7 +8,7 @@ from electrical.drive_stage import drive_stage
 from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
 from pipeline.codec import decoded, encoded
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 
 MAP = flux_map(Saturating())
 
@@ -21,7 +21,7 @@ def again(value):
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 def test_the_winding(winding):

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from drivetrain.linkage_choice import SmallestRatio
-from study.chain import drives, searches_linkage
+from study.chain import drives, rates_by_density, searches_linkage
 from study.errors import StudyError
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
 from study.inputs_vehicle import requirements_beside, ride_case, stated_requirements
@@ -142,3 +142,9 @@ def test_without_a_chain_everything_is_as_stated(tmp_path):
     path.write_text(RIGHT[:start] + RIGHT[end:], encoding="utf-8")
     study = read_study(path)
     assert not drives(study) and not searches_linkage(study)
+
+
+def test_a_study_may_rate_by_its_current_density(tmp_path):
+    path = tmp_path / "dense.toml"
+    path.write_text(RIGHT + '\n[thermal]\ncontinuous_length = "density"\n', encoding="utf-8")
+    assert rates_by_density(read_study(path)) and not rates_by_density(read_study("motorcycle"))

@@ -29,6 +29,14 @@ def test_everything_can_be_stated():
     assert inputs.retention.safety == 5.0
 
 
+def test_fatigue_has_the_life_of_the_gears_and_strengths_that_were_stated():
+    assert mechanics_inputs(read_study("motorcycle")).fatigue.life == 750 * 3600
+    texts = ["mechanics.shaft_yield_MPa=400.0", "mechanics.sun_tensile_MPa=900.0", "mechanics.notch_factor=3.0"]
+    plain, stated = (mechanics_inputs(read_study("pump", some)).fatigue for some in ([], texts))
+    assert plain.life == 20000 * 3600 and plain.shaft.at(10e-3) == 1100 * MPA and plain.notch == 2.0
+    assert (stated.shaft.at(10e-3), stated.sun.at(10e-3), stated.notch) == (400 * MPA, 900 * MPA, 3.0)
+
+
 def test_a_sleeve_takes_the_place_of_the_glue():
     inputs = mechanics_inputs(read_study("motorcycle", SLEEVE))
     assert inputs.retention == Sleeve(STEEL_SLEEVE, 0.3e-3, 400 * MPA, 1.2)

@@ -12,7 +12,7 @@ from materials.conductor import COPPER
 from materials.magnet import Magnet
 from pipeline.codec import decoded, digest, encoded
 from report.heat import files, flow_table, overload_table, rating_table, remarks, section, temperature_table
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 from tests.thermal.built import CASING, COOLING, WEIGHTS
 from thermal.air import StillAir
 from thermal.cooling import HeatLimits
@@ -41,7 +41,7 @@ class Turning(FieldLoss):
 
 @pytest.fixture(scope="module")
 def winding():
-    return winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+    return winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 
 
 @pytest.fixture(scope="module")
@@ -174,6 +174,13 @@ def test_without_loss_data_the_run_says_so(winding, found):
     assert sum(one.load(10.0).heat(one.machine.cold())[name] for name in (TEETH, YOKE, MAGNETS, ROTOR)) == 0.0
     assert any("no loss data" in line for line in remarks(replace(found, field_known=False), Wheel()))
     assert not any("no loss data" in line for line in remarks(found, Wheel()))
+
+
+@pytest.mark.parametrize(("share", "said"), ((0.95, False), (0.7, True)))
+def test_another_density_than_was_counted_on_is_said_with_its_key(found, share, said):
+    allowed = found.slow_density * found.at_speed.current / found.slow.current
+    lines = [one for one in remarks(replace(found, nominal_density=share * allowed), Wheel()) if "j_nominal" in one]
+    assert bool(lines) == said and all(f"allow {allowed / 1e6:.3g} A/mm²" in one for one in lines)
 
 
 def test_files_are_written(found, tmp_path):

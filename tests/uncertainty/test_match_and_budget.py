@@ -10,12 +10,14 @@ from drivetrain.masses import DrawnParts
 from drivetrain.match import DampingReported
 from drivetrain.matching import Matcher
 from geometry.family import Combination
+from losses.map import PowerLosses
 from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
 from optimisation.polynomial_fits import fit_polynomial
 from tests.drivetrain.fitted_machines import CASE, POLYNOMIALS
 from tests.drivetrain.test_matching import INPUTS, LINKAGE, REQUIRED
+from uncertainty import budget
 from uncertainty import match_spread as module
-from uncertainty.budget import Uncertain, of_match, of_wound, scatter_of
+from uncertainty.budget import Uncertain, of_match, of_product, of_wound, scatter_of
 from uncertainty.match_spread import DrawTask, drawn_fits, match_draws
 from units import MILLIMETRE
 
@@ -102,6 +104,34 @@ def test_what_cannot_be_matched_is_a_draw_without_a_match():
     assert match_draws(DrawTask(own, (module._scaled(own.fits, (0.1, 0.1)),), CHOSEN)) == (None,)
 
 
+def moved(**standard):
+    """A deviation with these standard uncertainties, relative, signed."""
+    return SimpleNamespace(standard=lambda quantity: standard[quantity])
+
+
+def test_a_product_moves_with_all_its_factors_at_once():
+    """P = T w: a deviation that lifts one and lowers the other does less to the product than either; bounds add."""
+    found = SimpleNamespace(
+        mesh=SimpleNamespace(torque=0.003, speed=0.004, loss=float("nan")),
+        sensitivities=(moved(torque=0.03, speed=-0.03, loss=0.1), moved(torque=0.004, speed=-0.001, loss=0.2)),
+    )
+    power = of_product(found, 5.0, torque=1, speed=1)
+    assert power == Uncertain(5.0, pytest.approx(0.007 / 3**0.5), 0.0, pytest.approx(0.003))
+    assert of_product(found, 1.0, torque=2, speed=-1).tolerance == pytest.approx(np.hypot(0.09, 0.009))
+    assert of_product(found, 1.0, loss=0.5).mesh == 0.0, "what is not known of the mesh is left out"
+    assert of_product(found, 1.0) == Uncertain(1.0, 0.0, 0.0, 0.0)
+
+
+def test_the_efficiency_moves_with_its_losses():
+    """At 90 %, three quarters copper, a fifth iron: d ln eta = -0.1 (0.75 d ln P_cu + 0.2 d ln P_fe)."""
+    at = PowerLosses(*map(np.array, (9.0, 1.0, 0.75, 0.15, 0.05, 0.05, 0.0)))
+    mesh = SimpleNamespace(copper_loss=0.01, iron_loss=float("nan"))
+    found = SimpleNamespace(mesh=mesh, sensitivities=(moved(copper_loss=0.04, iron_loss=-0.03),))
+    known = budget._efficiency(found, at)
+    assert known.value == pytest.approx(0.9) and known.mesh == pytest.approx(0.1 * 0.75 * 0.01 / 3**0.5)
+    assert known.tolerance == pytest.approx(0.1 * (0.75 * 0.04 - 0.2 * 0.03))
+
+
 def test_uncertainties_add_as_the_gum_says():
     known = Uncertain(200.0, 0.003, 0.004, 0.012)
     assert known.combined == pytest.approx(0.013) and known.expanded == pytest.approx(0.026)
@@ -110,7 +140,7 @@ def test_uncertainties_add_as_the_gum_says():
     spread = SimpleNamespace(mesh=draws, fit=draws[1:], tolerance=draws)
     assert of_match(spread, 5.0, lambda one: one.x).fit == pytest.approx(np.std([10, 11], ddof=1) / 10.5)
     found = SimpleNamespace(
-        values=SimpleNamespace(mass=2.0), mesh=SimpleNamespace(mass=0.03), standard=lambda quantity: 0.01
+        values=SimpleNamespace(mass=2.0), mesh=SimpleNamespace(mass=0.03), sensitivities=(moved(mass=-0.01),)
     )
     assert of_wound(found, "mass") == Uncertain(2.0, pytest.approx(0.03 / 3**0.5), 0.0, 0.01)
     assert of_wound(found, "mass", 7.0).value == 7.0

@@ -11,13 +11,13 @@ from drivetrain.outcome import active_masses
 from electrical.dq import corner_speed, mtpa_currents
 from electrical.winding_stage import winding_stage
 from losses.copper import copper_loss
-from tests.electrical.analytic_map import DEMAND, INPUTS, MATCHED, Saturating, flux_map
+from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 from uncertainty.deviations import MagnetRemanence, Stacking, StackLength, ToothWidth, WireDiameter
 from uncertainty.wound_slopes import COGGING, FULL, NO_LOAD, NOMINAL, operated_machine, relative_slopes, values_of
 
 MAP = flux_map(Saturating())
 MATERIALS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
-WINDING = winding_stage(MAP, MATCHED, DEMAND, INPUTS)
+WINDING = winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 OPERATED = operated_machine(MAP, WINDING, INPUTS)
 NOTHING = {NO_LOAD: np.zeros(3), NOMINAL: np.zeros(4), FULL: np.zeros(3), COGGING: np.zeros(1)}
 LITTLE = 1e-3  # relative
