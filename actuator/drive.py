@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from actuator.errors import ActuatorError, require_not_negative, require_positive
-from electrical.shunted_machine import bridge_current, bridge_torque
+from electrical.diode_bridge import bridge_current, bridge_torque
 
 UNBOUNDED = 1e200  # Nm and rad/s, of a motor without limits
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copyfile, copytree, ignore_patterns
 from tempfile import TemporaryDirectory
 
 from pythonfmu.builder import FmuBuilder
@@ -22,7 +22,8 @@ from actuator.text import text_of
 _ROOT = Path(__file__).resolve().parent.parent
 _SLAVE = _ROOT / "export" / "unit" / "airgap_actuator.py"
 _DESCRIPTION = "actuator.json"
-_ROOMS = ("actuator", "control")  # what the slave's imports reach
+_ROOMS = ("actuator", "control")  # what the slave's imports reach, and these files:
+_FILES = ("compiling.py", "units.py", "electrical/__init__.py", "electrical/diode_bridge.py")
 
 
 def write_fmu(path: Path, actuator: Actuator, terminals: Terminals) -> None:
@@ -36,7 +37,16 @@ def write_fmu(path: Path, actuator: Actuator, terminals: Terminals) -> None:
         description = Path(folder) / _DESCRIPTION
         description.write_text(text, encoding="utf-8")
         rooms = [copytree(_ROOT / room, Path(folder) / room, ignore=ignore_patterns("__pycache__")) for room in _ROOMS]
-        FmuBuilder.build_FMU(_SLAVE, path, project_files=[description, *rooms])
+        files = {_copied(name, Path(folder)) for name in _FILES}
+        FmuBuilder.build_FMU(_SLAVE, path, project_files=[description, *rooms, *sorted(files)])
+
+
+def _copied(name: str, folder: Path) -> Path:
+    """A file of the project in its place under a folder; its uppermost part there, which is what goes into the unit."""
+    place = folder / name
+    place.parent.mkdir(exist_ok=True)
+    copyfile(_ROOT / name, place)
+    return folder / Path(name).parts[0]
 
 
 @contextmanager
