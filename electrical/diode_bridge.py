@@ -1,5 +1,6 @@
-"""Mean values of a machine that feeds a six-pulse diode bridge, without control. Nothing else is needed, as it goes into the
-exported actuator.
+"""Mean values of a machine that feeds a six-pulse diode bridge, without control.
+
+It asks for next to nothing, since it goes into the exported actuator.
 """
 
 from __future__ import annotations
