@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get
 
 import numpy as np
 
+from geometry.errors import GeometryError
 from geometry.magnetisation import Magnetisation
 from geometry.plane_mesh import Drawing
 
@@ -156,6 +157,21 @@ class MagnetOnAxis(Rotor):
         return self.magnetisation.direction_angle(
             position_angle, axis, self.pitch if self.gap_outside else -self.pitch
         )
+
+
+class WithoutMagnets(Rotor):
+    """A reluctance rotor: its d axis is that of high permeance."""
+
+    @property
+    def magnets_per_pole(self) -> int:
+        return 0
+
+    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
+        """None of the magnets that there are not [rad], of any shape; position_angle: [rad], of any shape; axis: [rad].
+
+        Raises GeometryError.
+        """
+        raise GeometryError("a reluctance rotor has no magnets")
 
 
 class DrawnMachine(Protocol):

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import acos, cos, sin
 
-import numpy as np
-
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Length, Rim, Rotor
+from geometry.parts import Length, Rim, WithoutMagnets
 from geometry.plane_mesh import Drawing
 
 _ACROSS_BRIDGE = 3  # elements across the thinnest iron, which saturates hard
 
 
 @dataclass(frozen=True)
-class FluxBarriers(Rotor):
+class FluxBarriers(WithoutMagnets):
     """Barriers of equal width between layers of iron of equal width, all of them arcs about a point on the axis of low
     permeance, between two poles. They end at the bridges under the surface. Lengths in m.
 
@@ -46,17 +44,6 @@ class FluxBarriers(Rotor):
     @property
     def bore_radius(self) -> float:
         return self.shaft_radius
-
-    @property
-    def magnets_per_pole(self) -> int:
-        return 0
-
-    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """None of the magnets that there are not [rad], of any shape; position_angle: [rad], of any shape; axis: [rad].
-
-        Raises GeometryError.
-        """
-        raise GeometryError("a reluctance rotor has no magnets")
 
     def check(self) -> None:
         last = self._radii(self.layers - 1)[1]

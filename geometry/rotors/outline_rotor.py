@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from geometry.arrangement import Face, cut_out, drawing_of, is_inside
 from geometry.errors import GeometryError, in_mm
 from geometry.outline import SHAFT, Curve
-from geometry.parts import Angle, Length, Rim, Rotor, Share
+from geometry.parts import Angle, Length, Rim, Share, WithoutMagnets
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class OutlineRotor(Rotor):
+class OutlineRotor(WithoutMagnets):
     """Iron is what an odd number of contours runs round; what is left of the round rotor is air. Lengths in m.
 
     outer_radius: of the whole rotor, where the gap begins; axis: of a pole, the direction of high permeance, in the
@@ -34,17 +32,6 @@ class OutlineRotor(Rotor):
     @property
     def rim_radius(self) -> float:
         return self.outer_radius
-
-    @property
-    def magnets_per_pole(self) -> int:
-        return 0
-
-    def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
-        """None of the magnets that there are not [rad], of any shape; position_angle: [rad], of any shape; axis: [rad].
-
-        Raises GeometryError.
-        """
-        raise GeometryError("a rotor of this kind has no magnets")
 
     def check(self) -> None:
         reach = max(abs(curve.at(share)) for curve in self.outline for share in (0.0, 0.5))
