@@ -690,7 +690,7 @@ class ThermalSection(Section):
     """How the machine is cooled and how warm it may become; what is not stated has the default of
     ``thermal.cooling``."""
 
-    continuous_length: Literal["temperature", "density"] = "temperature"  # what the length for good is made by
+    continuous_length: Literal["temperature", "density"] | None = None  # what the length for good is made by
 
     ambient_temperature_degC: Annotated[float | None, Quantity("temperature of the surroundings", -60, 200)] = None
     magnet_temperature_max_degC: Annotated[float | None, Quantity("warmest magnets", 50, 400)] = None

@@ -26,12 +26,12 @@ class BridgeWidth(DesignEffect):
     designs = (DrawnAsBuilt,)
     signature = FIELD
     base_rate = 0.02
-    base_rate_source = "judgement: bridges are traced from photographs or move with the die, 0.1 to 0.3 mm"
+    base_rate_source = "engineering judgement: bridges are traced from photographs or move with the die, 0.1 to 0.3 mm"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
 
     change: float = parameter(
         0.0, "m", prior=Normal(0.2 * MILLIMETRE), low=-0.8 * MILLIMETRE, high=1.5 * MILLIMETRE,
-        source="estimate: a tenth of a millimetre punched, some tenths traced",
+        source="engineering judgement: a tenth of a millimetre punched, some tenths traced",
     )  # fmt: skip
 
     @classmethod

@@ -142,7 +142,7 @@ def test_nothing_asked_for_holds(winding, field, heat, gears, inputs):
     assert all(one.holds for one in found.checks[:6]) and len(found.checks) == 9
     table = checks_table(found, Wheel())
     assert list(table.margin_percent[:5]) == [np.inf] * 5
-    assert section(found, Wheel()).title == "Outcome"
+    assert section(found, Wheel(), None).title == "Outcome"
 
 
 def test_controlled_damping_asks_for_no_more_than_the_peak_effort(found):
@@ -179,7 +179,7 @@ def test_tables_are_in_drawing_units(found):
 
 
 def test_a_failing_requirement_is_a_remark(found):
-    said = [part.text for part in section(found, Wheel()).content if type(part).__name__ == "Remark"]
+    said = [part.text for part in section(found, Wheel(), None).content if type(part).__name__ == "Remark"]
     assert len(said) == sum(not one.holds for one in (*found.checks, *found.gear_checks, *found.strength_checks))
     assert all("does not hold" in text for text in said)
 
@@ -193,7 +193,7 @@ def test_a_direct_drive_speaks_of_no_wheel(winding, field, heat, inputs):
     assert found.features.effort_peak == pytest.approx(winding.peak_torque)
     assert found.load_inertia_ratio == pytest.approx(1e-3 / found.features.equivalent_mass)
     words = repr([part if isinstance(part, str) else part.frame.to_string() if hasattr(part, "frame") else part
-                  for part in section(found, Shaft()).content])  # fmt: skip
+                  for part in section(found, Shaft(), None).content])  # fmt: skip
     for absent in ("wheel", "lever", "force", "m/s", "linkage", "gears"):
         assert absent not in words
     assert "peak torque" in words and "rpm" in words and "kg m²" in words
@@ -222,7 +222,7 @@ def test_every_requirement_is_said_with_its_verdict(found):
 def test_what_holds_everything_together_is_said(found):
     """By the last sentence of the run, by the section and by a table of its own."""
     (said,) = list(remarks(found, Wheel()))[len(checks_table(found, Wheel())) :]
-    assert said == nearest_in_words(found.nearest, Wheel()) and said in section(found, Wheel()).content
+    assert said == nearest_in_words(found.nearest, Wheel()) and said in section(found, Wheel(), None).content
     assert said.startswith("Nearest design" if found.nearest.holds else "No design")
     assert "outcome_nearest.csv" in [file.name for file in files(found, Wheel())]
     assert [move.now for move in found.nearest.moves][:2] == [found.active_length, found.features.transmission_ratio]

@@ -56,7 +56,9 @@ def quick():
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    return small("pump", tmp_path_factory.mktemp("study"))
+    # one path in star: what the machine bench knows
+    return small("pump", tmp_path_factory.mktemp("study"), winding_selection__parallel_paths="[1]",
+                 winding_selection__connections='["star"]')  # fmt: skip
 
 
 @pytest.fixture(scope="module")

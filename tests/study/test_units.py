@@ -13,7 +13,8 @@ from units import FACTORS, QUANTITIES, converted, drawn, same_quantity, split_un
 PURE_NUMBERS = set(
     """
     machine.slots machine.poles machine.shoe_depth_fraction machine.shoe_aspect_ratio machine.magnet_arc_fraction
-    machine.stacking_factor thermal.emissivity tolerances.recoil_permeability
+    machine.stacking_factor mechanics.notch_factor mechanics.fatigue_safety mechanics.peak_load_cycles
+    thermal.emissivity tolerances.recoil_permeability
     materials.recoil_permeability winding.layers winding.packing_factor winding.coil_pitch
     mesh.gap_edges_per_revolution mesh.gap_layers mesh.elements_across_tooth
     variables.magnet_arc_fraction

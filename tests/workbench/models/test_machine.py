@@ -34,7 +34,7 @@ def test_device():
         ({"airgap_mm": None}, "lacks airgap"),
         ({"airgap_mm": -0.5}, "airgap must be a positive"),
         ({"steel": "tin"}, "unknown steel 'tin'"),
-        ({"magnetisation": "halbach"}, "magnetisation must be one of parallel, radial"),
+        ({"magnetisation": "axial"}, "magnetisation must be one of parallel, radial, halbach"),
         ({"coils_in_series_per_phase": 2}, "must be slots / 3"),
         ({"magnet_arc_fraction": 1.2}, "magnet_arc_fraction must be at most 1"),
     ),

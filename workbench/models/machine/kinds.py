@@ -20,6 +20,7 @@ from workbench.models.machine.drag import lost_torque
 from workbench.models.machine.field import LoadedState
 
 PHASES = "abc"
+_PROBE = 5e-4  # A, of an inductance; half of what still counts as no current
 _ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
 _AROUND = round(2 * pi / _ANGLE_GRID)
 _TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
@@ -117,7 +118,7 @@ def _rotor_frame(answers: Answers, axis: np.ndarray) -> tuple[float, float]:
     turn = np.exp(1j * answers.design.machine.pole_pairs * angle)[:, None] * axis
     found = []
     for unit in (turn.real, (1j * turn).real):
-        change = answers.flux_change(angle, 1e-3 * unit) / 1e-3
+        change = answers.flux_change(angle, _PROBE * unit) / _PROBE
         found.append(float(2 / 3 * (change * unit).sum(axis=1).mean()))
     return found[0], found[1]
 
