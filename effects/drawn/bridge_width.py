@@ -28,6 +28,7 @@ class BridgeWidth(DesignEffect):
     base_rate = 0.02
     base_rate_source = "engineering judgement: bridges are traced from photographs or move with the die, 0.1 to 0.3 mm"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
+    model_error_source = "engineering judgement: as that of the other effects of the field, not measured on its own"
 
     change: float = parameter(
         0.0, "m", prior=Normal(0.2 * MILLIMETRE), low=-0.8 * MILLIMETRE, high=1.5 * MILLIMETRE,
