@@ -303,8 +303,8 @@ class UnknownThinningForce(UnknownLaw, ForceEffect):
 
 @dataclass(frozen=True)
 class UnknownPart(UnknownLaw, ResponseEffect):
-    """A part between spring (power 0), dashpot (1) and mass (2), of impedance Z (j f / f_0)^(power - 1) [N s/m]: rubber,
-    felt, creep, boundary layers (Bagley and Torvik 1983). Its size is over what the shorted winding brakes with.
+    """A part between spring (power 0), dashpot (1) and mass (2), of impedance size scale (j f / f_0)^(power - 1)
+    [N s/m]: rubber, felt, creep, boundary layers (Bagley and Torvik 1983).
 
     Validity: impedance tables; in steady motion it carries nothing, and loops in time are left as they are.
     """
