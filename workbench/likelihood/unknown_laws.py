@@ -102,6 +102,11 @@ def _short_circuit(design: Damper) -> float:
     return design.force_constant * VELOCITY / design.internal_resistance
 
 
+def _braking(design: Damper) -> float:
+    """Force of that current [N]."""
+    return design.force_constant * _short_circuit(design)
+
+
 @dataclass(frozen=True)
 class UnknownForceOfVelocity(UnknownPower, ForceEffect):
     """A force against the motion."""
@@ -110,7 +115,7 @@ class UnknownForceOfVelocity(UnknownPower, ForceEffect):
 
     @staticmethod
     def sized(design):
-        return VELOCITY, design.force_constant * _short_circuit(design)
+        return VELOCITY, _braking(design)
 
     def force(self, position, velocity):
         return self.odd(velocity)
@@ -124,7 +129,7 @@ class UnknownForceOfPosition(UnknownPower, ForceEffect):
 
     @staticmethod
     def sized(design):
-        return TRAVEL, design.force_constant * _short_circuit(design)
+        return TRAVEL, _braking(design)
 
     def force(self, position, velocity):
         return self.odd(position)
@@ -286,7 +291,7 @@ class UnknownThinningForce(UnknownLaw, ForceEffect):
 
     @staticmethod
     def sized(design):
-        return VELOCITY, design.force_constant * _short_circuit(design)
+        return VELOCITY, _braking(design)
 
     def words(self) -> str:
         return f"{self.goes_with} to the power {self.power:.2g} beyond {self.corner:.2g} m/s"
@@ -386,7 +391,7 @@ class UnknownBendOfForce(UnknownLaw, InstrumentEffect):
 
     @staticmethod
     def sized(design):
-        return design.force_constant * _short_circuit(design), 1.0
+        return _braking(design), 1.0
 
     @classmethod
     def variants(cls, design):
