@@ -15,7 +15,7 @@ What the family does not follow is left to the error of the law.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -35,6 +35,7 @@ FREQUENCY = 300.0  # rad/s, electrical, where a law of the speed of a machine ha
 TURNING = 100.0  # rad/s, of the shaft, where a law of the speed of a rotor has its size
 SHEAR = 1e3  # Pa, a tenth of what a small machine makes in its gap, of which such a law is a share
 LOAD = 0.2  # of the current that cancels the magnets, where a law of the current has its size
+LAW_ERRORS = (0.01, 0.1)  # relative, of a family: some truths it follows closely, of others it has only the trend
 MOST = (-1.0, 3.0)  # of minus ln of a factor
 TURN = 0.01  # of where a law has its size, over which its sign turns
 QUARTER = (np.arange(16) + 0.5) * np.pi / 32  # angles of a quarter of a sine, over which a bent reading is averaged
@@ -42,11 +43,14 @@ QUARTER = (np.arange(16) + 0.5) * np.pi / 32  # angles of a quarter of a sine, o
 
 @dataclass(frozen=True)
 class UnknownLaw(Effect):
-    """size: at ``reference``, as a share of ``scale``;  reference, scale: [SI], as the device has them"""
+    """size: at ``reference``, as a share of ``scale``;  reference, scale: [SI], as the device has them
+
+    error: relative, of the family against the law that it stands for [1]
+    """
 
     goes_with: ClassVar[str]
-    model_error = 0.1
-    model_error_source = "a law that nobody knows is followed by a family of few numbers to a tenth"
+    model_error = LAW_ERRORS[-1]
+    model_error_source = "engineering judgement: how well a family of few numbers follows a law is not known before"
     base_rate = LAW_RATE
 
     size: float = parameter(
@@ -54,6 +58,15 @@ class UnknownLaw(Effect):
     )
     reference: float = 1.0
     scale: float = 1.0
+    error: float = LAW_ERRORS[-1]
+
+    @property
+    def law_error(self) -> float:
+        return self.error
+
+    @property
+    def with_errors(self) -> tuple[UnknownLaw, ...]:
+        return tuple(replace(self, error=error) for error in LAW_ERRORS)
 
     @staticmethod
     def sized(design) -> tuple[float, float]:
