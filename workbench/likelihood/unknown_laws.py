@@ -341,7 +341,7 @@ class UnknownPart(UnknownLaw, ResponseEffect):
         return SWING, design.force_constant**2 / design.internal_resistance
 
     def words(self) -> str:
-        return f"{self.goes_with} that goes with the frequency to the power {self.power:.2g}"
+        return f"{self.goes_with} that stands at {self.power:.2g} between spring (0) and dashpot (1)"
 
     def part(self, frequency: np.ndarray) -> np.ndarray:
         """(j f / f_0)^(power - 1) [1]."""
