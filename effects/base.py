@@ -66,6 +66,16 @@ class Effect:
         return not cls.designs or isinstance(design, cls.designs)
 
     @property
+    def law_error(self) -> float:
+        """Relative error of its own law that a fit takes it with [1]."""
+        return self.model_error
+
+    @property
+    def with_errors(self) -> tuple[Effect, ...]:
+        """The effect with every error that its law may have, believed alike; only one where that was measured."""
+        return (self,)
+
+    @property
     def is_null(self) -> bool:
         return all(getattr(self, name) == p.null for name, p in parameters_of(self).items())
 

@@ -5,11 +5,10 @@ is measured in ``likelihood.noise``, and what is asked before a convention is bl
 UNKNOWN_RATE = 0.12  # share of campaigns that show an unknown function of the conditions in a table
 LAW_RATE = 0.01  # the same for each law of the device that no effect of the library is
 TAILS = 4.0  # degrees of freedom of Student's t of an effect's size [prior standard deviations]: far off is a surprise
-MOST = 4  # effects that may be hidden at once
+MOST = 4  # effects that may be hidden at once, and names that may stand for one: with more the data tell nothing
 SURE = 0.95  # probability from which a name is printed, and from which something is said to be missing
 LIKELY = 0.5  # probability from which "something remains" is said, and share of unknown laws that must be noticed
 FALSE_ALARMS = 0.02  # wanted share of campaigns in which something false is said: a thing missing, or a name
 PLAIN = 10.0  # nats that something is expected to gain, from which it would be seen plainly (odds of 20 000 to 1)
-LARGEST_GROUP = 4  # names that may stand for one effect; with more the data tell nothing
 SPARE = 5.0  # readings beside tolerances and one size, below which some effect of the library suits any residual
 DISAGREE = 1e-3  # probability of sealed rows by chance, below which the model does not hold there

@@ -110,6 +110,11 @@ class DamperBench:
         "dead band of the force cell": Hidden(3.0, 3.0, partial(_damper, "dead_band")),
         "force ripple over velocity": Hidden(2.0, 2.0, partial(_damper, "stick_ripple")),
         "second circuit in the iron": Hidden(20.0, 20.0, partial(_damper, "pole_split")),
+        "fluid that thins after Cross": Hidden(2.0, 2.0, partial(_damper, "thinning")),
+        "drag that slips": Hidden(20.0, 20.0, partial(_damper, "slip")),
+        "mount that creeps": Hidden(3e-7, 3e-7, partial(_damper, "creep")),
+        "strap between spring and dashpot": Hidden(500.0, 500.0, partial(_damper, "strap")),
+        "amplifier that compresses": Hidden(0.05, 0.05, partial(_damper, "compression")),
         "drag with sqrt(v)": Hidden(1.0, 1.0, partial(_damper, "root_drag")),
         "shear-thinning lubricant": Hidden(0.5, 0.5, partial(_damper, "grease")),
         "drag from a threshold speed on": Hidden(20.0, 20.0, partial(_damper, "relief")),
@@ -119,7 +124,7 @@ class DamperBench:
         "drag of a boundary layer": Hidden(2.0, 2.0, partial(_damper, "history")),
         "range switch of the force amplifier": Hidden(0.02, 0.02, partial(_damper, "range_step")),
     }
-    tuning_kinds = frozenset(list(outside)[:7])
+    tuning_kinds = frozenset(list(outside)[:12])
     alike = (
         frozenset({"winding_temperature", "contact_resistance"}),
         frozenset({"coulomb_friction", "stribeck_friction"}),

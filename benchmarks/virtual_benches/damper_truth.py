@@ -16,6 +16,7 @@ SAMPLES = 512  # of a period, imposed motion
 STEPS, PERIODS = 360, 3  # of a period and periods of the integration; the last one is read
 MOUNT_LOSS = 2.4e-4  # s, damping over stiffness of the mount (thesis table B.1: 50 N s/m at 2e5 N/m)
 RELAXATION = 0.03  # s, of ``spring_arm``
+CREEP, STRAP_TIME = 0.02, 0.01  # s, of ``creep`` and ``strap``
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)  # of the two-stage Rosenbrock method, which damps stiff parts (Verwer et al. 1999)
 
 
@@ -64,6 +65,11 @@ class TrueDamper:
     stick_ripple: float = 0.0  # force ripple over velocity, amplitude
     pole_split: float = 0.0  # a second circuit in the iron: transformer-coupled winding, N s/m at high frequency
     asymmetry: float = 0.0  # viscous damping more in one direction than in the other
+    thinning: float = 0.0  # drag of a fluid after Cross, F (v / 30 mm/s) / (1 + |v / 30 mm/s|^0.7) [N]
+    slip: float = 0.0  # drag that stays as it is beyond 0.12 m/s [N s/m]
+    creep: float = 0.0  # compliance of a mount of which 60 % come late, after 20 ms [m/N]
+    strap: float = 0.0  # a part between spring and dashpot, k / s (s 10 ms)^0.35 [N/m]
+    compression: float = 0.0  # share of large forces that the amplifier leaves out, half of it at 60 N
 
 
 def steady(d: TrueDamper, velocity: np.ndarray, shunt: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -89,14 +95,21 @@ def impedance(d: TrueDamper, frequency: np.ndarray, amplitude: np.ndarray, shunt
     z = z / (1 + np.sqrt(2) * (s * d.force_lag / np.sqrt(2)) + (s * d.force_lag / np.sqrt(2)) ** 2)
     split = d.pole_split * s / (s + 2 * np.pi * 12.0) + _beside(d, s, amplitude)
     mode = 1.0 + d.rig_resonance / (1.0 - (frequency / 17.0) ** 2 + 0.2j * frequency / 17.0)
-    return (z + split) * (mode if d.rig_resonance else 1.0)
+    return _on_its_mount(d, s, z + split) * (mode if d.rig_resonance else 1.0)
 
 
 def _beside(d: TrueDamper, s, amplitude):
     """What acts beside the damper at a harmonic travel: an arm that relaxes, a bush, a boundary layer [N s/m]."""
     arm = d.spring_arm * RELAXATION / (1 + s * RELAXATION)
     bush = d.bush * (1 + 0.2j) / (1 + amplitude / 1e-3) / s
-    return arm + bush + d.history * np.sqrt(s)
+    strap = d.strap / s * (s * STRAP_TIME) ** 0.35
+    return arm + bush + strap + d.history * np.sqrt(s)
+
+
+def _on_its_mount(d: TrueDamper, s, z):
+    """A mount that creeps, in series with all the rest [N s/m]."""
+    compliance = d.creep * (0.4 + 0.6 / (1 + s * CREEP))
+    return z / (1 + z * s * compliance)
 
 
 def _motion_of(d: TrueDamper):
@@ -121,6 +134,8 @@ def _mechanical(d: TrueDamper, x, v, hysteresis):
     force = force + d.stick_ripple * np.sin(2 * np.pi * v / 0.13)
     force = force + d.root_drag * np.sqrt(np.abs(v) / 0.1) * direction + d.grease * np.arcsinh(v / 0.015)
     force = force + d.relief * np.maximum(np.abs(v) - 0.18, 0.0) * direction
+    force = force + d.thinning * (v / 0.03) / (1.0 + np.abs(v / 0.03) ** 0.7)
+    force = force + d.slip * np.clip(v, -0.12, 0.12)
     force = force + d.bump * np.maximum(np.abs(x) - 1.6e-3, 0.0) * np.sign(x)
     return force + hysteresis
 
@@ -132,6 +147,7 @@ def _coupled(d: TrueDamper, v, electric):
 
 def _through_cell(d: TrueDamper, force):
     force = force * (1.0 + d.range_step * 0.5 * (1.0 + np.tanh((np.abs(force) - 12.0) / 0.2)))
+    force = force * (1.0 - d.compression * force**2 / (force**2 + 3600.0))
     if not d.dead_band:
         return force
     return np.sign(force) * np.sqrt(np.maximum(force**2 - d.dead_band**2, 0.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from math import log
 
 import numpy as np
@@ -56,13 +57,23 @@ def null_of(bench: Bench) -> Hypothesis:
 
 
 def fitted_from(bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray) -> Hypothesis:
-    """Effects fitted from a start, with the errors of their laws at their most probable sizes integrated out; evidence
-    by Laplace, for one parameter by integration over it.
+    """Effects fitted from a start, with the errors of their laws integrated out; where it is not known how large an
+    error is, the most probable one, and the evidence of all.
 
     effects: null effects;  x: nuisances (m,);  z: parameters of all effects one after the other (k,)
     Raises:
         WorkbenchError: the model has no answer at the start.
     """
+    found = []
+    for each in product(*(effect.with_errors for effect in effects)):
+        found.append(_fitted_from(bench, each, x, z))
+        x, z = found[-1].fit.x, found[-1].fit.z
+    evidence = float(logsumexp([h.log_evidence for h in found])) - log(len(found))
+    return replace(max(found, key=lambda h: h.log_evidence), log_evidence=evidence)
+
+
+def _fitted_from(bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray) -> Hypothesis:
+    """With the errors that the effects have; evidence by Laplace, for one parameter by integration over it."""
     problem, log_det = with_law_error(bench.fit, with_parameters(effects, z), x)
     fit = fitted(problem, tuple(effects), x, z)
     for _ in range(LAW_ROUNDS):
@@ -79,14 +90,14 @@ def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -
     """The problem with the declared errors of the effects' own laws integrated out, and half the ln determinant of
     that.
 
-    The change that an effect makes is wrong by a smooth function of the conditions of relative size ``model_error``:
-        covariance_ij += (model_error change_i) (model_error change_j) exp(-d_ij^2 / 2)
+    The change that an effect makes is wrong by a smooth function of the conditions of relative size ``law_error``:
+        covariance_ij += (law_error change_i) (law_error change_j) exp(-d_ij^2 / 2)
     """
-    wrong = [effect for effect in effects if effect.model_error > 0]
+    wrong = [effect for effect in effects if effect.law_error > 0]
     if not wrong:
         return problem, 0.0
     base = problem.predictor.predict(x)
-    changes = [effect.model_error * (problem.predictor.predict(x, (effect,)) - base) for effect in wrong]
+    changes = [effect.law_error * (problem.predictor.predict(x, (effect,)) - base) for effect in wrong]
     return _without_laws(problem, [_law(problem, number, changes) for number in range(len(problem.stack.channels))])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from workbench.believed import LARGEST_GROUP, LIKELY
+from workbench.believed import LIKELY, MOST
 from workbench.explain.explore import Posterior
 
 NOTHING_MISSING, EFFECT, GROUP, PAIR, SEVERAL = "nothing_missing", "effect", "group", "pair", "several"
@@ -74,7 +74,7 @@ def _group_of(p: Posterior, name: str, sure: float, taken: frozenset[str]) -> fr
     group = frozenset((name,))
     while p.any_of(group) < sure:
         others = [n for n in p.names if n not in group and n not in taken]
-        if len(group) == LARGEST_GROUP or not others:
+        if len(group) == MOST or not others:
             return None
         group |= {max(others, key=lambda n: p.any_of(group | {n}))}
     return group

@@ -150,6 +150,28 @@ def test_the_error_of_a_law_is_that_of_the_fitted_size_wherever_the_fit_began(tm
     assert start > far.log_det + 2.0, "the start was indeed far"
 
 
+class Close(Hardening):
+    """Its law is good to a hundredth."""
+
+    model_error = 0.01
+
+
+class Unsure(Hardening):
+    """Nobody knows how good its law is: as one or the other of these."""
+
+    with_errors = property(lambda self: (Close(self.cubic), Wrong(self.cubic)))
+
+
+def test_an_unknown_error_of_a_law_is_averaged_over(tmp_path):
+    bench = sure_of_noise(tmp_path, extra=lambda x: 4.0 * (x / 0.01) ** 3)
+    close, wrong, unsure = (
+        fitted_from(bench, (kind(),), bench.null.x, np.array([2.0])) for kind in (Close, Wrong, Unsure)
+    )
+    both = np.logaddexp(close.log_evidence, wrong.log_evidence) - np.log(2)
+    assert unsure.log_evidence == pytest.approx(both, abs=0.02), "fits end within 0.01 nats"
+    assert unsure.fit.effects == max((close, wrong), key=lambda h: h.log_evidence).fit.effects
+
+
 def test_an_exact_law_has_no_error(bench):
     assert with_law_error(bench.fit, (Hardening().at([1.0]),), np.zeros(2)) == (bench.fit, 0.0)
 
