@@ -24,6 +24,7 @@ from processes import ONE_THREAD, LostWorker, Pool, Result, Task, default_worker
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
 PATIENCE = 30.0  # s without a result, after which it is asked whether anybody still works
 SCHEDULER_TIMEOUT = "20s"  # to find a dask scheduler
+LOST_WORKER_TIMEOUT = "1w"  # before a dask cluster ends the keeper of a worker that was lost
 
 
 class TaskError(RuntimeError):
@@ -39,7 +40,8 @@ class DaskCluster(Pool):
 
     address: of a scheduler, ``tcp://host:8786``; None starts a cluster of ``size`` processes on this machine.
     The scheduler blames every task that a lost worker had been given, so that it is told to report the first loss; who
-    did it is found as for processes, by running the suspects alone.
+    did it is found as for processes, by running the suspects alone. A lost worker's keeper starts the next one; the
+    cluster is told not to end that keeper, as it would where the next one is lost while it looks.
     """
 
     def __init__(self, size: int | None = None, address: str | None = None) -> None:
@@ -50,7 +52,9 @@ class DaskCluster(Pool):
             raise TaskError(
                 "the executor dask needs the package distributed; install it with `pip install -e '.[cluster]'`"
             ) from None
-        dask.config.set({"distributed.scheduler.allowed-failures": 0})
+        dask.config.set(
+            {"distributed.scheduler.allowed-failures": 0, "distributed.deploy.lost-worker-timeout": LOST_WORKER_TIMEOUT}
+        )
         self._lost = distributed.scheduler.KilledWorker
         self._scratch = TemporaryDirectory(prefix="airgap-dask-")
         self._workers = size or default_workers()
@@ -75,8 +79,16 @@ class DaskCluster(Pool):
         return not any(self.client.processing().values())
 
     def recover(self) -> None:
-        """The cluster replaces its workers itself, unless their replacements died as well."""
-        if self._cluster is not None and not self.client.scheduler_info()["workers"]:
+        """The cluster replaces its workers itself, unless their replacements died as well.
+
+        Only after ``PATIENCE`` without a worker does it get new ones: a replacement that comes while the cluster is
+        made anew is closed with the task that it has just been given, and that task would be blamed.
+        """
+        if self._cluster is None:
+            return
+        try:
+            self.client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError:
             self._cluster.scale(0)
             self._cluster.scale(self._workers)
             self.client.wait_for_workers(1, timeout=60)
