@@ -35,15 +35,16 @@ class PartAreas:
 def part_areas(machine: DrawnMachine) -> PartAreas:
     """Areas and moments of the parts as drawn, lengths of the machine in m; nothing is checked."""
     stator, rotor = region_contours(machine.stator), region_contours(machine.rotor)
-    iron, magnet, shaft = (rotor.get(name, _NOTHING) for name in ("iron", "magnet", SHAFT))
-    slots, poles, bore = 2 * machine.slots, 2 * machine.poles, machine.rotor.bore_radius
+    iron, shaft = (rotor.get(name, _NOTHING) for name in ("iron", SHAFT))
+    magnets = [rotor[name] for name in machine.rotor.magnet_regions]
+    slots, halves, bore = 2 * machine.slots, 2 * machine.repeats, machine.rotor.bore_radius
     return PartAreas(
         stator_laminations=slots * stator["iron"].area,
         half_slot=stator["copper"].area,
-        rotor_laminations=poles * iron.area,
-        magnets=poles * magnet.area,
-        shaft=poles * shaft.area + pi * bore**2,
-        rotor_laminations_moment=poles * iron.moment,
-        magnets_moment=poles * magnet.moment,
-        shaft_moment=poles * shaft.moment + pi / 2 * bore**4,
+        rotor_laminations=halves * iron.area,
+        magnets=halves * sum(magnet.area for magnet in magnets),
+        shaft=halves * shaft.area + pi * bore**2,
+        rotor_laminations_moment=halves * iron.moment,
+        magnets_moment=halves * sum(magnet.moment for magnet in magnets),
+        shaft_moment=halves * shaft.moment + pi / 2 * bore**4,
     )

@@ -18,8 +18,6 @@ from geometry.parts import Rim
 from geometry.plane_mesh import Drawing
 
 SAME_PLACE = 2e-6  # m; drawings close to a micrometre or two
-_CHORDS = 24  # of an arc where it is only asked on which side of it a place lies
-_NODE = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -40,37 +38,55 @@ class Face:
         middle, forward = longest.at(0.5), longest.at(0.51) - longest.at(0.49)
         return middle + 1j * forward / abs(forward) * 10 * SAME_PLACE
 
+    @property
+    def centre(self) -> complex:
+        """Mean of its corners x + jy [m]."""
+        return sum(curve.start for curve in self.curves) / len(self.curves)
 
-def cut_out(
-    outline: Sequence[Curve], half: float, circles: Sequence[float], lids: Sequence[float] = ()
-) -> tuple[Face, ...]:
-    """The faces of an outline between the rays at 0 and ``half`` [rad].
+    def lies_along(self, angle: float) -> bool:
+        """Whether one of its curves runs along the ray at an angle [rad]."""
+        seen = (curve.turned(-angle) for curve in self.curves)
+        return any(max(abs(curve.at(share).imag) for share in (0.0, 0.5, 1.0)) < SAME_PLACE for curve in seen)
+
+
+def cut_out(outline: Sequence[Curve], rays: Sequence[float], circles: Sequence[float]) -> tuple[Face, ...]:
+    """The faces of an outline between the first and the last of some rays [rad], cut at those between them.
 
     circles: radii of further arcs from ray to ray [m], the outermost of which ends the part
-    lids: radii of arcs that are drawn only where no iron is, to close an opening [m]
     Raises GeometryError where the curves do not close.
     """
-    within = [piece for curve in outline for piece in _between(curve, half)]
-    arcs = [one for radius in circles for one in _split_at_places(Arc(radius, 0.0, half), within)]
-    arcs += [one for radius in lids for one in _split_at_places(Arc(radius, 0.0, half), within)
-             if is_inside(outline, one.at(0.5))]  # fmt: skip
-    pieces = _split_by_circles(within, [*circles, *lids]) + arcs
+    within = _split_at_ends([piece for curve in outline for piece in _between(curve, rays)])
+    arcs = [
+        one
+        for radius in circles
+        for a, b in zip(rays, rays[1:])
+        for one in _split_at_places(Arc(radius, a, b - a), within)
+    ]
+    pieces = _split_by_circles(within, circles) + arcs
     reach = max(circles) + SAME_PLACE
     kept = _once([one for one in pieces if abs(one.at(0.5)) < reach])
-    return tuple(_faces(_once([*kept, *_rays(kept, half)])))
+    return tuple(_faces(_once([*kept, *_rays(kept, rays)])))
 
 
 def is_inside(outline: Sequence[Curve], place: complex) -> bool:
     """Whether an odd number of contours runs round a place x + jy [m]."""
-    crossings = 0
-    for curve in outline:
-        points = [curve.at(k / _CHORDS) for k in range(_CHORDS + 1)] if isinstance(curve, Arc) else [
-            curve.start, curve.end,
-        ]  # fmt: skip
-        for a, b in zip(points, points[1:]):
-            if (a.imag > place.imag) != (b.imag > place.imag):
-                crossings += a.real + (place.imag - a.imag) / (b.imag - a.imag) * (b.real - a.real) > place.real
-    return crossings % 2 == 1
+    return sum(_crosses(piece, place) for curve in outline for piece in _rising_or_falling(curve)) % 2 == 1
+
+
+def _rising_or_falling(curve: Curve) -> Iterator[Curve]:
+    """Pieces along which y only rises or only falls."""
+    return iter([curve]) if isinstance(curve, Line) else _split(curve, (_share(curve, a) for a in (pi / 2, -pi / 2)))
+
+
+def _crosses(piece: Curve, place: complex) -> bool:
+    """Whether it meets the line from a place on in the direction of x."""
+    a, b, y = piece.start, piece.end, place.imag
+    if (a.imag > y) == (b.imag > y):
+        return False
+    if isinstance(piece, Line):
+        return a.real + (y - a.imag) / (b.imag - a.imag) * (b.real - a.real) > place.real
+    aside = sqrt(max(0.0, piece.radius**2 - (y - piece.centre.imag) ** 2))
+    return piece.centre.real + (aside if piece.at(0.5).real > piece.centre.real else -aside) > place.real
 
 
 def touches(face: Face, radius: float) -> bool:
@@ -83,13 +99,13 @@ def places_on(face: Face, radius: float) -> list[complex]:
     return [curve.at(share) for curve in face.curves for share in _on_circle(curve, radius) if 0 <= share <= 1]
 
 
-def drawing_of(faces: Mapping[str, Face], rim: Rim, radius: float, coarse: float) -> Drawing:
-    """Faces as regions by their names; the rim lies on the circle of a radius [m].
+def drawing_of(regions: Mapping[str, Sequence[Face]], rim: Rim, radius: float, coarse: float) -> Drawing:
+    """Faces of regions by their names; the rim lies on the circle of a radius [m].
 
     coarse: longest edge [m]; at a place it is no longer than the shortest curve there, down to those of the rim
     """
     d = Drawing()
-    curves = _once([curve for face in faces.values() for curve in face.curves])
+    curves = _once([curve for faces in regions.values() for face in faces for curve in face.curves])
     names = _named([place for curve in curves for place in (curve.start, curve.end)])
     for place, name in names.items():
         shortest = min(one.length for one in curves if place in _ends(one, names))
@@ -101,7 +117,7 @@ def drawing_of(faces: Mapping[str, Face], rim: Rim, radius: float, coarse: float
             d.line(start, end, edges.get(curve))
         else:
             d.arc(start, end, edges.get(curve), centre=(curve.centre.real, curve.centre.imag))
-    for region, face in faces.items():
+    for region, face in ((region, face) for region, faces in regions.items() for face in faces):
         d.region(region, *(names[_known_in(names, curve.start)] for curve in face.curves))
     return d
 
@@ -150,16 +166,16 @@ def _split(curve: Curve, shares: Iterable[float]) -> Iterator[Curve]:
     return (curve.part(a, b) for a, b in zip(ends, ends[1:]))
 
 
-def _between(curve: Curve, half: float) -> list[Curve]:
-    """The pieces of a curve between the rays."""
-    shares = [share for angle in (0.0, half) for share in _on_ray(curve, angle)]
-    return [one for one in _split(curve, shares) if _is_between(one.at(0.5), half)]
+def _between(curve: Curve, rays: Sequence[float]) -> list[Curve]:
+    """The pieces of a curve between the first and the last ray."""
+    shares = [share for angle in rays for share in _on_ray(curve, angle)]
+    return [one for one in _split(curve, shares) if _is_between(one.at(0.5), rays[0], rays[-1])]
 
 
-def _is_between(place: complex, half: float) -> bool:
-    """Not on a ray: those are drawn anew."""
-    away = (place.imag, (place * rect(1.0, -half)).imag)
-    return place.real > 0 and away[0] > SAME_PLACE / 2 and away[1] < -SAME_PLACE / 2
+def _is_between(place: complex, first: float, last: float) -> bool:
+    """Not on a ray: those are drawn anew. Half a pitch is less than half a turn."""
+    away = ((place * rect(1.0, -first)).imag, (place * rect(1.0, -last)).imag)
+    return away[0] > SAME_PLACE / 2 and away[1] < -SAME_PLACE / 2
 
 
 def _on_ray(curve: Curve, angle: float) -> list[float]:
@@ -206,25 +222,40 @@ def _split_by_circles(curves: Iterable[Curve], circles: Sequence[float]) -> list
     ]
 
 
+def _split_at_ends(curves: Sequence[Curve]) -> list[Curve]:
+    """Every curve where another one ends on it, so that two that run along each other have pieces in common."""
+    ends = [place for one in curves for place in (one.start, one.end)]
+    return [piece for one in curves for piece in _split(one, (_share_at(one, place) for place in ends))]
+
+
+def _share_at(curve: Curve, place: complex) -> float:
+    """Share of a curve at a place on it, 0 where the place is off."""
+    if isinstance(curve, Line):
+        along = curve.end - curve.start
+        share = ((place - curve.start) * along.conjugate()).real / abs(along) ** 2
+    elif place == curve.centre:
+        return 0.0
+    else:
+        share = _share(curve, phase(place - curve.centre))
+    return share if abs(curve.at(share) - place) < SAME_PLACE else 0.0
+
+
 def _split_at_places(arc: Arc, curves: Sequence[Curve]) -> list[Curve]:
     """An arc about the axis at every end of a curve on it, and where a curve crosses it."""
     pieces = _split_by_circles(curves, [arc.radius])
     places = [place for one in pieces for place in (one.start, one.end)]
-    return list(_split(arc, (phase(p) / arc.sweep for p in places if abs(abs(p) - arc.radius) < SAME_PLACE)))
+    shares = (phase(p * rect(1.0, -arc.first)) / arc.sweep for p in places if abs(abs(p) - arc.radius) < SAME_PLACE)
+    return list(_split(arc, shares))
 
 
-def _rays(curves: Sequence[Curve], half: float) -> Iterator[Curve]:
-    """Both rays from the axis on, from end to end of what meets them."""
+def _rays(curves: Sequence[Curve], rays: Sequence[float]) -> Iterator[Curve]:
+    """Every ray from the axis on, from end to end of what meets it."""
     ends = [place for one in curves for place in (one.start, one.end)]
-    for angle in (0.0, half):
-        radii = sorted({0.0, *(abs(p) for p in ends if abs((p * rect(1.0, -angle)).imag) < SAME_PLACE and p.real > 0)})
+    for angle in rays:
+        seen = [place * rect(1.0, -angle) for place in ends]
+        radii = sorted({0.0, *(abs(place) for place in seen if abs(place.imag) < SAME_PLACE and place.real > 0)})
         apart = [r for k, r in enumerate(radii) if k == 0 or r - radii[k - 1] > SAME_PLACE]
         yield from (Line(rect(a, angle), rect(b, angle)) for a, b in zip(apart, apart[1:]))
-
-
-def _node(place: complex) -> _NODE:
-    step = 2 * SAME_PLACE
-    return round(place.real / step), round(place.imag / step)
 
 
 def _once(curves: Sequence[Curve]) -> list[Curve]:
@@ -287,6 +318,12 @@ def _loop(
         at = min(onward, key=lambda number: (back - _heading(ways[number])) % (2 * pi))
         if at == first:
             return loop
+        if len(loop) > len(ways):
+            place = ways[at].start
+            raise GeometryError(
+                f"curves of the outline run along each other at x = {in_mm(place.real)}, y = {in_mm(place.imag)} "
+                "(turned so that the axis of a pole or tooth lies on x): draw each once"
+            )
         loop.append(at)
 
 

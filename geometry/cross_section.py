@@ -18,7 +18,7 @@ from geometry.checks import check_machine
 from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.mesh_size import check_mesh_size
-from geometry.parts import DrawnMachine
+from geometry.parts import DrawnMachine, Rotor
 from geometry.plane_mesh import PlaneMesh
 from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
@@ -85,9 +85,14 @@ class CrossSection:
         return self.machine.poles // self.sectors
 
     @property
+    def rotor_pitches(self) -> int:
+        """Equal pitches of the rotor in the sector: its poles, or half as many."""
+        return self.machine.repeats // self.sectors
+
+    @property
     def magnets(self) -> int:
         """Magnets in the sector."""
-        return self.poles * self.machine.rotor.magnets_per_pole
+        return self.rotor_pitches * self.machine.rotor.magnets_per_pitch
 
     @property
     def coil_sides(self) -> tuple[tuple[int, str], ...]:
@@ -122,13 +127,14 @@ class CrossSection:
         number: of the magnet
         """
         (x, y), rotor = self.assembly.rotor_centre, self.machine.rotor
-        pole, which = divmod(number, rotor.magnets_per_pole)
-        axis = pole * self.machine.pole_pitch + self.assembly.magnet_turn(number)
+        pitch, which = divmod(number, rotor.magnets_per_pitch)
+        axis = pitch * rotor.pitch + self.assembly.magnet_turn(number)
         return rotor.direction(np.arctan2(points[1] - y, points[0] - x), axis, which)
 
     def polarity(self, number: int) -> int:
         """1 for a magnet of an outward pole, -1 for one of an inward pole, dimensionless."""
-        return 1 - 2 * (number // self.machine.rotor.magnets_per_pole % 2)
+        pitch = number // self.machine.rotor.magnets_per_pitch
+        return 1 - 2 * (pitch % 2) if self.machine.half_wave else 1
 
     @cached_property
     def rotor_elements(self) -> np.ndarray:
@@ -188,7 +194,7 @@ def mesh_cross_section(
     sectors = 1 if whole or not sector_symmetric(layout, machine.sectors, machine.is_antiperiodic) else machine.sectors
     check_mesh_size(machine, density, sectors)
     antiperiodic = sectors > 1 and machine.is_antiperiodic
-    counts = 2 * machine.slots // sectors, 2 * machine.poles // sectors
+    counts = 2 * machine.slots // sectors, 2 * machine.repeats // sectors
     cells = half_cells(machine, density)
     stator, rotor = (Piece.of(cell, machine, count, sectors == 1) for cell, count in zip(cells, counts))
     return CrossSection(machine, layout, _join(stator, rotor, machine, sectors), sectors, antiperiodic, (stator, rotor))
@@ -196,9 +202,10 @@ def mesh_cross_section(
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Stator or rotor of a sector: a half cell, mirrored and turned ``count`` times from half a pitch below zero on.
+    """Stator or rotor of a sector: a half cell, mirrored and turned ``count`` times from half a pitch below its ray on.
 
-    Copy h covers the angles (h - 1) width .. h width; even copies are mirrored. Nodes on shared rays are shared.
+    Copy h covers the angles (h - 1) width .. h width beyond the ray; even copies are mirrored. Nodes on shared rays are
+    shared.
     cell, mesh: the half cell and its triangles
     nodes: index in the piece of every half-cell node in every copy (count, n)
     """
@@ -207,12 +214,14 @@ class Piece:
     mesh: PlaneMesh
     nodes: np.ndarray
     width: float
+    ray: float  # angle of the axis of copies 0 and 1 [rad]
 
     @classmethod
     def of(cls, cell: HalfCell, machine: DrawnMachine, count: int, closed: bool) -> Piece:
         """Mesh a half cell and number its copies; closed: the last copy meets the first."""
         mesh, width = cell.mesh(machine), cell.width(machine)
-        return cls(cell, mesh, _shared_numbering(mesh, width, count, closed), width)
+        ray = cell.part(machine).first_ray
+        return cls(cell, mesh, _shared_numbering(mesh, width, count, closed), width, ray)
 
     @property
     def count(self) -> int:
@@ -223,13 +232,13 @@ class Piece:
         """Points of the piece [m], (2, m), from the points of the half cell [m], (n, 2)."""
         placed = np.empty((2, self.nodes.max() + 1))
         for h, nodes in enumerate(self.nodes):
-            placed[:, nodes] = _place(points, h, self.width).T
+            placed[:, nodes] = _place(points, h, self.width, self.ray).T
         return placed
 
     def place_copies(self, points: np.ndarray, copies: Iterable[int]) -> tuple[np.ndarray, np.ndarray]:
         """Points of the half cell in some copies: [m], (2, k), and node indices (k,); points or moves [m], (n, 2)."""
         copies = [h % self.count for h in copies]
-        placed = np.hstack([_place(points, h, self.width).T for h in copies])
+        placed = np.hstack([_place(points, h, self.width, self.ray).T for h in copies])
         return placed, np.concatenate([self.nodes[h] for h in copies])
 
     @cached_property
@@ -259,10 +268,10 @@ class Piece:
         return self.nodes[-1][self.mesh.nodes_at_angle(self.width)]
 
 
-def _place(points: np.ndarray, copy: int, width: float) -> np.ndarray:
+def _place(points: np.ndarray, copy: int, width: float, ray: float) -> np.ndarray:
     """Half-cell points moved to their place in copy h."""
     mirrored = points * np.array([1.0, -1.0]) if copy % 2 == 0 else points
-    return _turn(mirrored.T, (copy // 2) * 2 * width).T
+    return _turn(mirrored.T, ray + (copy // 2) * 2 * width).T
 
 
 def _shared_numbering(cell: PlaneMesh, width: float, count: int, closed: bool) -> np.ndarray:
@@ -296,7 +305,7 @@ def _join(stator: Piece, rotor: Piece, machine: DrawnMachine, sectors: int) -> M
     triangles = np.ascontiguousarray(np.hstack([stator.triangles, rotor.triangles + offset]))
     mesh = TriangleMesh(np.hstack(points), triangles, sort_t=False, validate=False)
     names = _stator_names(stator, machine.slots)
-    for name, where in _rotor_names(rotor, machine.rotor.magnets_per_pole).items():
+    for name, where in _rotor_names(rotor, machine.rotor).items():
         where = where + first_rotor_triangle
         names[name] = np.concatenate([names[name], where]) if name in names else where
     mesh = mesh.with_subdomains(names)
@@ -320,12 +329,16 @@ def _coil_sides(slots: int, half_cells: int) -> tuple[tuple[int, str], ...]:
     return tuple(((h - 1) // 2, "R") if h % 2 else ((h // 2 - 1) % slots, "L") for h in range(half_cells))
 
 
-def _rotor_names(rotor: Piece, magnets_per_pole: int) -> dict[str, np.ndarray]:
-    """A magnet on the axis of a pole has a half in each of two copies, beside it there is one in every copy, if any."""
-    regions = _regions(rotor)
-    magnet = regions.pop("magnet", np.zeros(0, dtype=int))
-    number = rotor.copy[magnet] * magnets_per_pole // 2
-    magnets = {f"magnet_{m}": magnet[number == m] for m in range(rotor.count * magnets_per_pole // 2)}
+def _rotor_names(piece: Piece, rotor: Rotor) -> dict[str, np.ndarray]:
+    """A magnet on the axis of a pole has a half in each of two copies, beside it there are as many in every copy as the
+    half pitch has regions of magnets."""
+    regions = _regions(piece)
+    drawn = [regions.pop(name) for name in rotor.magnet_regions]
+    magnets: dict[str, np.ndarray] = {}
+    for number in range(piece.count * rotor.magnets_per_pitch // 2):
+        first, layer = divmod(number, len(drawn))
+        copies = piece.copy[drawn[layer]] if rotor.magnets_per_pitch > 1 else piece.copy[drawn[layer]] // 2
+        magnets[f"magnet_{number}"] = drawn[layer][copies == first]
     return {"rotor_iron": regions.pop("iron")} | regions | magnets
 
 

@@ -33,8 +33,8 @@ class MeshDensity:
     across_iron: float = 2.0
 
     def edges_around(self, machine: DrawnMachine) -> int:
-        """Edges on the whole sliding circle: a whole number per half slot pitch and per half pole pitch."""
-        unit = lcm(2 * machine.slots, 2 * machine.poles)
+        """Edges on the whole sliding circle: a whole number per half pitch of stator and rotor."""
+        unit = lcm(2 * machine.slots, 2 * machine.repeats)
         return unit * ceil(self.edges_wanted(machine) / unit)
 
     def edges_wanted(self, machine: DrawnMachine) -> float:
@@ -98,7 +98,7 @@ class StatorHalfCell(HalfCell):
 
 
 class RotorHalfCell(HalfCell):
-    """From the axis of pole 0 to half a pole pitch."""
+    """From the axis of pole 0 to half a pitch of the rotor."""
 
     def part(self, machine: DrawnMachine) -> Rotor:
         return machine.rotor
@@ -107,7 +107,7 @@ class RotorHalfCell(HalfCell):
 def half_cells(machine: DrawnMachine, density: MeshDensity) -> tuple[StatorHalfCell, RotorHalfCell]:
     """The half cells of a machine at a mesh density."""
     edges = density.edges_around(machine)
-    return StatorHalfCell(density, edges // (2 * machine.slots)), RotorHalfCell(density, edges // (2 * machine.poles))
+    return StatorHalfCell(density, edges // (2 * machine.slots)), RotorHalfCell(density, edges // (2 * machine.repeats))
 
 
 def _split_quads(grid: np.ndarray) -> np.ndarray:

@@ -40,7 +40,7 @@ def expected_unknowns(machine: DrawnMachine, density: MeshDensity, sectors: int 
 
     sectors: how many such parts make up the machine
     """
-    copies = 2 * machine.slots / sectors, 2 * machine.poles / sectors
+    copies = 2 * machine.slots / sectors, 2 * machine.repeats / sectors
     cells = half_cells(machine, density)
     return _UNKNOWNS_PER_TRIANGLE * sum(n * expected_triangles(cell, machine) for n, cell in zip(copies, cells))
 
@@ -74,7 +74,7 @@ def _length(start: tuple[float, float, float], end: tuple[float, float, float], 
 
 def _advice(machine: DrawnMachine, density: MeshDensity) -> str:
     """The change that helps most: of a number by a factor of two, or of slots and poles without common measure."""
-    if lcm(2 * machine.slots, 2 * machine.poles) > 4 * density.edges_wanted(machine):
+    if lcm(2 * machine.slots, 2 * machine.repeats) > 4 * density.edges_wanted(machine):
         return (
             f"change slots or poles, {machine.slots} and {machine.poles} meet on a sliding circle of "
             f"{density.edges_around(machine)} edges"

@@ -205,12 +205,12 @@ class Outline:
 
 def outline_of(machine: DrawnMachine) -> Outline:
     """The outline of a machine that can be built (``geometry.checks``)."""
-    stator, rotor = _Ring(machine.stator, 2 * machine.slots), _Ring(machine.rotor, 2 * machine.poles)
+    stator, rotor = _Ring(machine.stator, 2 * machine.slots), _Ring(machine.rotor, 2 * machine.repeats)
     return Outline(
         stator=stator.whole("iron"),
         rotor=rotor.whole("iron"),
         shaft=_shaft(machine.rotor, rotor),
-        magnets=tuple(rotor.part("magnet", copies) for copies in _magnet_copies(machine.rotor)),
+        magnets=tuple(rotor.part(*one) for one in _magnets(machine.rotor)),
         coil_sides={
             (slot, side): stator.part("copper", [2 * slot + place])
             for slot in range(machine.slots)
@@ -222,15 +222,17 @@ def outline_of(machine: DrawnMachine) -> Outline:
 def region_contours(part: DrawnPart) -> dict[str, Contour]:
     """Of the regions of half a pitch of a stator or rotor."""
     drawing = part.draw(_ANY_RIM)
-    return {name: Contour(tuple(_loop(drawing, corners))) for name, corners in drawing.regions.items()}
+    return {
+        name: Contour(tuple(curve for corners in faces for curve in _loop(drawing, corners)))
+        for name, faces in drawing.regions.items()
+    }
 
 
-def _magnet_copies(rotor: Rotor) -> list[range]:
-    """Half pitches that every magnet lies in: two for one on the axis of its pole, one for one beside it."""
-    if rotor.magnets_per_pole == 0:
-        return []
-    each, halves = 2 // rotor.magnets_per_pole, range(2 * rotor.poles)
-    return [halves[first : first + each] for first in halves[::each]]
+def _magnets(rotor: Rotor) -> Iterator[tuple[str, range]]:
+    """Region and half pitches of every magnet: two for one on the axis of its pole, one for one beside it."""
+    each, halves = 2 if rotor.magnets_per_pitch == 1 else 1, range(2 * rotor.repeats)
+    for first in halves[::each]:
+        yield from ((region, halves[first : first + each]) for region in rotor.magnet_regions)
 
 
 def _shaft(rotor: Rotor, ring: _Ring) -> Part:
@@ -243,7 +245,7 @@ class _Ring:
     """Copies of half a pitch round the machine, numbered and mirrored as in ``geometry.cross_section.Piece``."""
 
     def __init__(self, part: DrawnPart, copies: int) -> None:
-        self.pitch, self.copies = part.pitch, copies
+        self.pitch, self.ray, self.copies = part.pitch, part.first_ray, copies
         self.regions = {name: contour.curves for name, contour in region_contours(part).items()}
 
     def whole(self, region: str) -> Part:
@@ -252,7 +254,8 @@ class _Ring:
 
     def part(self, region: str, copies: Iterable[int]) -> Part:
         """A region in some copies as one part."""
-        curves = [_placed(curve, copy, self.pitch) for copy in copies for curve in self.regions[region]]
+        drawn = self.regions[region]
+        curves = [_placed(curve, copy, self.pitch).turned(self.ray) for copy in copies for curve in drawn]
         return Part(tuple(Contour(_smooth(loop)) for loop in _loops(_outer(curves))))
 
 

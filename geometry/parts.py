@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get
 
 import numpy as np
 
-from geometry.errors import GeometryError
+from geometry.errors import GeometryError, in_mm
 from geometry.magnetisation import Magnetisation
 from geometry.plane_mesh import Drawing
 
@@ -47,6 +47,11 @@ class Part:
     def pitch(self) -> float:
         """Angle after which it repeats itself [rad]."""
         raise NotImplementedError
+
+    @property
+    def first_ray(self) -> float:
+        """Angle from its axis 0 to the mirror line that half a pitch is drawn from [rad]."""
+        return 0.0
 
     @property
     def rim_radius(self) -> float:
@@ -111,23 +116,49 @@ class Stator(Part):
         raise NotImplementedError
 
 
+class StatorRoundRotor(Stator):
+    """A stack with its rotor inside: the gap begins at ``bore_radius``, the stack ends at ``outer_radius`` [m]."""
+
+    bore_radius: Length
+    outer_radius: Length
+
+    @property
+    def rim_radius(self) -> float:
+        return self.bore_radius
+
+    @property
+    def grounded_radius(self) -> float:
+        return self.outer_radius
+
+
 class Rotor(Part):
     """Regions iron, magnet, and others of air; the axis is that of a pole. Poles of even number point outwards.
 
-    Without magnets the axis is that of high permeance.
+    Without magnets the axis is that of high permeance. Further magnets of half a pitch are magnet_1, magnet_2, ...
     """
 
     poles: int
 
     @property
-    def pitch(self) -> float:
-        """Angle between two poles [rad]."""
-        return 2 * pi / self.poles
+    def repeats(self) -> int:
+        """How many equal pitches there are, but for the sign of their magnets: as many as poles, or half as many where
+        only every second pole is like the first; then the magnets of all pitches have one sign."""
+        return self.poles
 
     @property
-    def magnets_per_pole(self) -> int:
-        """0: none; 1: on the axis of the pole; 2: beside it, the clockwise one first."""
+    def pitch(self) -> float:
+        """Angle after which it repeats itself, but for the sign of its magnets [rad]."""
+        return 2 * pi / self.repeats
+
+    @property
+    def magnets_per_pitch(self) -> int:
+        """0: none; 1: on the axis of the pole; 2, 4, ...: beside it, all of the clockwise half first."""
         return 1
+
+    @property
+    def magnet_regions(self) -> tuple[str, ...]:
+        """Names of the regions of magnets in half a pitch."""
+        return ("magnet", *(f"magnet_{k}" for k in range(1, self.magnets_per_pitch // 2)))[: self.magnets_per_pitch]
 
     @property
     def bore_radius(self) -> float:
@@ -154,16 +185,58 @@ class MagnetOnAxis(Rotor):
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int = 0) -> np.ndarray:
         """Of the pattern [rad], of the shape of position_angle [rad], any shape; axis: of the pole [rad]"""
-        return self.magnetisation.direction_angle(
-            position_angle, axis, self.pitch if self.gap_outside else -self.pitch
-        )
+        return self.magnetisation.direction_angle(position_angle, axis, self.pitch if self.gap_outside else -self.pitch)
+
+
+class SunkMagnets(MagnetOnAxis):
+    """Magnets in the surface of a core, flush with the iron beside them; radii and magnet_length [m]."""
+
+    outer_radius: Length
+    magnet_length: Length
+    shaft_radius: Length
+
+    @property
+    def core_radius(self) -> float:
+        """Under the magnets [m]."""
+        return self.outer_radius - self.magnet_length
+
+    @property
+    def rim_radius(self) -> float:
+        return self.outer_radius
+
+    def check_core(self) -> None:
+        """Raise GeometryError where no core is left between magnets and shaft."""
+        if self.core_radius <= self.shaft_radius:
+            raise GeometryError(
+                f"the rotor core under the magnets ends at {in_mm(self.core_radius)}, inside the shaft of radius "
+                f"{in_mm(self.shaft_radius)}: enlarge outer_radius, or reduce magnet_length or shaft_radius"
+            )
+
+
+class Buried(Rotor):
+    """Holes in a round lamination on a shaft that carries no flux: the gap begins at ``outer_radius`` [m]."""
+
+    outer_radius: Length
+    shaft_radius: Length
+
+    @property
+    def rim_radius(self) -> float:
+        return self.outer_radius
+
+    @property
+    def grounded_radius(self) -> float:
+        return self.shaft_radius
+
+    @property
+    def bore_radius(self) -> float:
+        return self.shaft_radius
 
 
 class WithoutMagnets(Rotor):
     """A reluctance rotor: its d axis is that of high permeance."""
 
     @property
-    def magnets_per_pole(self) -> int:
+    def magnets_per_pitch(self) -> int:
         return 0
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:
@@ -211,8 +284,16 @@ class DrawnMachine(Protocol):
         """Of the sliding circle [m]."""
 
     @property
+    def repeats(self) -> int:
+        """Equal pitches of the rotor, see ``Rotor.repeats``."""
+
+    @property
+    def half_wave(self) -> bool:
+        """Whether the field at opposite currents is that of a pole further on, with the opposite sign."""
+
+    @property
     def sectors(self) -> int:
-        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, poles)."""
+        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, repeats)."""
 
     @property
     def is_antiperiodic(self) -> bool:
@@ -240,9 +321,19 @@ class Pitches:
         return pi / self.pole_pairs
 
     @property
+    def repeats(self) -> int:
+        """Equal pitches of the rotor, see ``Rotor.repeats``."""
+        return self.poles
+
+    @property
+    def half_wave(self) -> bool:
+        """Whether the field at opposite currents is that of a pole further on, with the opposite sign."""
+        return self.repeats == self.poles
+
+    @property
     def sectors(self) -> int:
-        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, poles)."""
-        return gcd(self.slots, self.poles)
+        """How many times the smallest (anti)periodic sector fits into the machine: gcd(slots, repeats)."""
+        return gcd(self.slots, self.repeats)
 
     @property
     def is_antiperiodic(self) -> bool:
@@ -267,6 +358,14 @@ class ComposedMachine(Pitches):
     @property
     def pole_pairs(self) -> int:  # type: ignore[override]
         return self.rotor.poles // 2
+
+    @property
+    def repeats(self) -> int:
+        return self.rotor.repeats
+
+    @property
+    def half_wave(self) -> bool:
+        return self.rotor.magnets_per_pitch == 0 or self.repeats == self.poles
 
     @property
     def airgap(self) -> float:

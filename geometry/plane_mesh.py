@@ -24,7 +24,7 @@ class Drawing:
     points: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # x, y, edge length [m]
     curves: dict[tuple[str, str], tuple[bool, int | None]] = field(default_factory=dict)  # is_arc, number of edges
     centres: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)  # of arcs [m]
-    regions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # corner points in order
+    regions: dict[str, list[tuple[str, ...]]] = field(default_factory=dict)  # corner points of each face in order
 
     def point(self, name: str, radius: float, angle: float, edge_length: float) -> str:
         """Add a point in polar coordinates [m, rad] and return its name."""
@@ -52,8 +52,8 @@ class Drawing:
         return name
 
     def region(self, name: str, *corners: str) -> None:
-        """Add a region bounded by the curves between successive corners (closed automatically)."""
-        self.regions[name] = corners
+        """Add a face bounded by the curves between successive corners (closed automatically) to a region."""
+        self.regions.setdefault(name, []).append(corners)
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def _start_gmsh() -> None:
         gmsh.option.setNumber(option, value)
 
 
-def _draw(drawing: Drawing) -> dict[str, int]:
+def _draw(drawing: Drawing) -> dict[str, list[int]]:
     geo = gmsh.model.geo
     origin = geo.addPoint(0, 0, 0)
     others = {curve: geo.addPoint(x, y, 0) for curve, (x, y) in drawing.centres.items()}
@@ -122,20 +122,20 @@ def _draw(drawing: Drawing) -> dict[str, int]:
         curves[start, end], curves[end, start] = tag, -tag
         if edges is not None:
             geo.mesh.setTransfiniteCurve(tag, edges + 1)
-    regions = {name: _add_region(corners, curves) for name, corners in drawing.regions.items()}
+    regions = {name: [_add_face(face, curves) for face in faces] for name, faces in drawing.regions.items()}
     geo.synchronize()
     return regions
 
 
-def _add_region(corners: tuple[str, ...], curves: dict[tuple[str, str], int]) -> int:
+def _add_face(corners: tuple[str, ...], curves: dict[tuple[str, str], int]) -> int:
     geo = gmsh.model.geo
     loop = [curves[pair] for pair in zip(corners, corners[1:] + corners[:1])]
     return geo.addPlaneSurface([geo.addCurveLoop(loop)])
 
 
-def _collect(tags: dict[str, int]) -> PlaneMesh:
+def _collect(tags: dict[str, list[int]]) -> PlaneMesh:
     triangles, region = [], []
-    for index, tag in enumerate(tags.values()):
+    for index, tag in ((index, tag) for index, faces in enumerate(tags.values()) for tag in faces):
         nodes = gmsh.model.mesh.getElementsByType(2, tag)[1].reshape(-1, 3)
         triangles.append(nodes)
         region.append(np.full(len(nodes), index))

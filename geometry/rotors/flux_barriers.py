@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from math import acos, cos, sin
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Length, Rim, WithoutMagnets
+from geometry.parts import Buried, Length, Rim, WithoutMagnets
 from geometry.plane_mesh import Drawing
 
 _ACROSS_BRIDGE = 3  # elements across the thinnest iron, which saturates hard
 
 
 @dataclass(frozen=True)
-class FluxBarriers(WithoutMagnets):
+class FluxBarriers(WithoutMagnets, Buried):
     """Barriers of equal width between layers of iron of equal width, all of them arcs about a point on the axis of low
     permeance, between two poles. They end at the bridges under the surface. Lengths in m.
 
@@ -32,18 +32,6 @@ class FluxBarriers(WithoutMagnets):
     barrier_width: Length
     iron_width: Length
     bridge: Length
-
-    @property
-    def rim_radius(self) -> float:
-        return self.outer_radius
-
-    @property
-    def grounded_radius(self) -> float:
-        return self.shaft_radius
-
-    @property
-    def bore_radius(self) -> float:
-        return self.shaft_radius
 
     def check(self) -> None:
         last = self._radii(self.layers - 1)[1]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from geometry.errors import GeometryError, in_mm
+from geometry.errors import GeometryError
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Length, MagnetOnAxis, Rim, Share
+from geometry.parts import Length, Rim, Share, SunkMagnets
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class InsetMagnets(MagnetOnAxis):
+class InsetMagnets(SunkMagnets):
     """Magnets of constant thickness with radial sides, flush with the round rotor. Lengths in m."""
 
     poles: int
@@ -21,26 +21,13 @@ class InsetMagnets(MagnetOnAxis):
     arc_fraction: Share  # of the pole pitch, below 1
     magnetisation: Magnetisation = PARALLEL
 
-    @property
-    def core_radius(self) -> float:
-        """Under the magnets [m]."""
-        return self.outer_radius - self.magnet_length
-
-    @property
-    def rim_radius(self) -> float:
-        return self.outer_radius
-
     def check(self) -> None:
         if not 0 < self.arc_fraction < 1:
             raise GeometryError(
                 f"iron must stand between inset magnets, found an arc_fraction of {self.arc_fraction:g}: take one "
                 "between 0 and 1"
             )
-        if self.core_radius <= self.shaft_radius:
-            raise GeometryError(
-                f"the rotor core under the magnets ends at {in_mm(self.core_radius)}, inside the shaft of radius "
-                f"{in_mm(self.shaft_radius)}: enlarge outer_radius, or reduce magnet_length or shaft_radius"
-            )
+        self.check_core()
 
     def draw(self, rim: Rim) -> Drawing:
         """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet."""

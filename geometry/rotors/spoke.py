@@ -32,7 +32,7 @@ class Spoke(Rotor):
         return self.outer_radius
 
     @property
-    def magnets_per_pole(self) -> int:
+    def magnets_per_pitch(self) -> int:
         return 2
 
     def direction(self, position_angle: np.ndarray, axis: float, which: int) -> np.ndarray:

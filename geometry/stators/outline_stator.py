@@ -11,12 +11,12 @@ from typing import ClassVar
 from geometry.arrangement import Face, cut_out, drawing_of, places_on, touches
 from geometry.errors import GeometryError
 from geometry.outline import Curve
-from geometry.parts import Angle, Length, Rim, Segment, Stator
+from geometry.parts import Angle, Length, Rim, Segment, StatorRoundRotor
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class OutlineStator(Stator):
+class OutlineStator(StatorRoundRotor):
     """The slots of a drawing in a round stack; a slot must be closed towards its opening by a line. Lengths in m.
 
     Copper fills the slot behind that line. axis: of a tooth in the drawing [rad]; the lamination must be its own mirror
@@ -29,14 +29,6 @@ class OutlineStator(Stator):
     outer_radius: Length
     axis: Angle = 0.0
     of_any_sign: ClassVar[frozenset[str]] = frozenset({"axis"})
-
-    @property
-    def rim_radius(self) -> float:
-        return self.bore_radius
-
-    @property
-    def grounded_radius(self) -> float:
-        return self.outer_radius
 
     @property
     def slot_radii(self) -> tuple[float, float]:
@@ -66,12 +58,13 @@ class OutlineStator(Stator):
     def draw(self, rim: Rim) -> Drawing:
         """From the axis of tooth 0 to the centre of slot 0; regions iron, copper, opening, ..."""
         (_, low), (_, high) = self.tooth_probe
-        return drawing_of(self._faces, rim, self.bore_radius, (high - low) / rim.across_iron)
+        regions = {name: [face] for name, face in self._faces.items()}
+        return drawing_of(regions, rim, self.bore_radius, (high - low) / rim.across_iron)
 
     @cached_property
     def _faces(self) -> dict[str, Face]:
         turned = [curve.turned(-self.axis) for curve in self.outline]
-        faces = cut_out(turned, pi / self.slots, (self.bore_radius, self.outer_radius))
+        faces = cut_out(turned, (0.0, pi / self.slots), (self.bore_radius, self.outer_radius))
         ring = [face for face in faces if min(abs(curve.at(0.5)) for curve in face.curves) > self.bore_radius / 2]
         iron = [face for face in ring if touches(face, self.outer_radius)]
         air = [face for face in ring if face not in iron]

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from math import asin, atan2, hypot, sqrt
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Length, Rim, Segment, Stator
+from geometry.parts import Length, Rim, Segment, StatorRoundRotor
 from geometry.plane_mesh import Drawing
 
 _ROUND = 12  # edges of a quarter circle; chords take 0.3 % of its area
 
 
 @dataclass(frozen=True)
-class RoundBottomSlots(Stator):
+class RoundBottomSlots(StatorRoundRotor):
     """The opening has parallel walls and ends in shoulders at right angles to the axis of the slot; from these the
     sides run straight to a half circle, whose diameter they meet. Lengths in m, depths along the axis of the slot.
 
@@ -30,14 +30,6 @@ class RoundBottomSlots(Stator):
     top_width: Length
     bottom_width: Length
     side_depth: Length
-
-    @property
-    def rim_radius(self) -> float:
-        return self.bore_radius
-
-    @property
-    def grounded_radius(self) -> float:
-        return self.outer_radius
 
     @property
     def slot_radii(self) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import acos, asin, sin
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Length, Rim, Segment, Stator
+from geometry.parts import Length, Rim, Segment, StatorRoundRotor
 from geometry.plane_mesh import Drawing
 from units import MILLIMETRE
 
@@ -16,7 +16,7 @@ _SMALLEST_SLOT_DEPTH = 0.2 * MILLIMETRE  # between the shoe and the slot bottom,
 
 
 @dataclass(frozen=True)
-class StraightTeeth(Stator):
+class StraightTeeth(StatorRoundRotor):
     """The slot has a parallel-sided opening of depth ``shoe_d1``, a straight taper to the tooth flank over ``shoe_d2``
     (see ``taper_angle``), straight tooth flanks and an arc bottom. Lengths in m.
     """
@@ -29,14 +29,6 @@ class StraightTeeth(Stator):
     slot_opening: Length  # w_s
     shoe_d1: Length  # depth of the parallel-sided opening [m]
     shoe_d2: Length  # depth of the taper [m]
-
-    @property
-    def rim_radius(self) -> float:
-        return self.bore_radius
-
-    @property
-    def grounded_radius(self) -> float:
-        return self.outer_radius
 
     @property
     def slot_radii(self) -> tuple[float, float]:

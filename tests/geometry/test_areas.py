@@ -74,7 +74,10 @@ def test_the_parts_and_what_is_between_them_fill_the_circle():
     assert moments == pytest.approx(np.pi / 2 * machine.rotor_outer_radius**4, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["outrunner_9_12", "prius_2004", "synrm_48_4", "inset_ferrite_6_4"])
+NAMES = ("outrunner_9_12", "prius_2004", "synrm_48_4", "inset_ferrite_6_4", "v2_48_8", "consequent_12_8")
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_areas_of_every_kind_are_those_of_the_meshed_regions(name):
     """Iron, copper and magnets; a shaft that is not drawn is a circle."""
     machine = read_machine(name).machine
