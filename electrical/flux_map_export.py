@@ -42,8 +42,8 @@ class FluxTables:
     """Fields of the export, each under its name in the file, SI.
 
     id_index (n,), iq_index (m,): currents [A]; lambda_d, lambda_q, torque (n, m): at them [Wb, Wb, Nm]
-    flux_d (k,), flux_q (l,): flux linkages [Wb]; id, iq (k, l): currents at them [A]; inside (k, l): 1 where
-        the map was solved, 0 where it is continued
+    flux_d (k,), flux_q (l,): flux linkages [Wb]; id, iq (k, l): currents at them [A]; inside (k, l),
+        dimensionless: 1 where the map was solved, 0 where it is continued
     """
 
     id_index: np.ndarray
@@ -82,7 +82,8 @@ def flux_tables(machine: FluxMapMachine, points: int = 41) -> FluxTables:
 
 
 def syre_structure(tables: FluxTables) -> dict[str, dict[str, np.ndarray]]:
-    """``motorModel`` as SyR-e stores it, i_q >= 0: our q axis along the columns, our negative d axis along the rows."""
+    """``motorModel`` as SyR-e stores it, [A], [Wb] and [Nm], i_q >= 0: our q axis along the columns, our negative d
+    axis along the rows."""
     half = tables.iq_index >= 0
     names = (("Fd", tables.lambda_q), ("Fq", -tables.lambda_d), ("T", tables.torque))
     turned = {name: table[::-1, half] for name, table in names}

@@ -19,7 +19,6 @@ from scipy.optimize import minimize
 from scipy.stats import qmc
 
 from electrical.driven_machine import DrivenMachine
-from electrical.wound_machine import machine_end_turn
 from geometry.areas import part_areas
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
@@ -220,6 +219,6 @@ def _copper_loss(stated: StatedDesign, machine: ComposedMachine) -> float:
     driven, wound = stated.driven, stated.driven.wound
     ampere_turns = wound.equivalent_turns * driven.limits.current_peak
     coil_side = 2 * machine.slots * part_areas(machine).half_slot / (6 * wound.coils_in_series)
-    length = wound.active_length + machine_end_turn(machine, wound.coil_pitch)
+    length = wound.active_length + replace(wound, machine=machine).end_turn_length
     resistivity = wound.design.wire.resistivity
     return 3 * wound.coils_in_series * resistivity * length * ampere_turns**2 / (stated.case.packing * coil_side)

@@ -23,7 +23,10 @@ from dataclasses import dataclass
 from math import pi, sqrt
 from typing import ClassVar
 
+import numpy as np
+
 from electrical.dq import Values
+from geometry.winding import PHASES
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,16 @@ class WindingConnection:
 
     paths: int
     closing: Star | Delta
+
+    @property
+    def coil_currents(self) -> np.ndarray:
+        """Of the coils of A, B and C over those of the lines (3, 3), dimensionless, without what goes round
+        a delta. Transposed it makes flux linkages of all coils of a phase in series into those of the equivalent
+        star, whose power is the same."""
+        lines = np.eye(PHASES)
+        if self.closing.circulates:
+            lines = (lines - np.roll(lines, 1, axis=1)) / PHASES
+        return lines / self.paths
 
     @property
     def ratio(self) -> float:

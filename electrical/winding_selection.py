@@ -23,7 +23,7 @@ from electrical.winding_connection import WindingConnection
 from electrical.winding_design import WindingDesign
 from electrical.wire import Wire
 
-_WEAKENING = 0.25  # negative d-axis current over the q-axis current, at which the loaded inductance L_d is read
+WEAKENING = 0.25  # negative d-axis current over the q-axis current, at which the loaded inductance L_d is read
 _SAME_CURRENT = 1e-9  # relative; currents this close are one, and one this close above its limit meets it
 HEXAGONAL = pi / sqrt(12.0)  # share of an area that round wires fill at most
 # Relative; lengths this close compete by their current. Estimate: what one wire of a coil with few of them makes.
@@ -353,7 +353,7 @@ def _columns(machine: PerTurnMachine, scaled: _Scaled) -> dict[str, np.ndarray]:
     best = mtpa_currents(family, ampere_turns)
     torque, base = length * family.torque(*best), corner_speed(family, scaled.drive, *best)
     psi_d, psi_q = family.flux_linkage(np.zeros_like(ampere_turns), ampere_turns)
-    weakened = family.flux_linkage(-_WEAKENING * ampere_turns, ampere_turns)[0]
+    weakened = family.flux_linkage(-WEAKENING * ampere_turns, ampere_turns)[0]
     no_load = family.flux_linkage(0.0, 0.0)[0]
     constant, inductance = 1.5 * family.pole_pairs * turns * length, turns**2 * length / ampere_turns
     current = ampere_turns / turns
@@ -365,7 +365,7 @@ def _columns(machine: PerTurnMachine, scaled: _Scaled) -> dict[str, np.ndarray]:
         "current_rms": current / sqrt(2),
         "current_peak": current,
         "phase_resistance": scaled.resistance,
-        "inductance_d": (psi_d - weakened) / _WEAKENING * inductance,
+        "inductance_d": (psi_d - weakened) / WEAKENING * inductance,
         "inductance_q": psi_q * inductance,
         "torque_constant": constant * psi_d,
         "no_load_torque_constant": constant * no_load,

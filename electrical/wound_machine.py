@@ -10,12 +10,13 @@ import xarray as xr
 
 from electrical.circulating import ZeroSequence
 from electrical.dq import Values
-from electrical.end_turn import end_turn_length
+from electrical.end_turn import CoilSeat, EndTurn, coil_seat, usual_end_turn
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.resistance import phase_resistance
 from electrical.winding_design import WindingDesign
 from geometry.machine import Machine, dimensions_of
 from geometry.parts import DrawnMachine
+from geometry.winding import WindingLayout
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class WoundMachine:
     coils_in_series: coils of one phase, N_c, in series in the equivalent star; coil_pitch: y [slots]
     design: turns, wires in hand, wire and connection
     active_length: l [m]
+    stated_end_turn: how the coils go round the ends, None for what is usual for their pitch
     """
 
     machine: DrawnMachine
@@ -33,6 +35,7 @@ class WoundMachine:
     coil_pitch: int
     design: WindingDesign
     active_length: float
+    stated_end_turn: EndTurn | None = None
 
     @property
     def dimensions(self) -> Machine:
@@ -46,8 +49,23 @@ class WoundMachine:
 
     @property
     def end_turn_length(self) -> float:
-        """Of one end turn [m], a half circle over the pitch of the coil (thesis eq. 3.84)."""
-        return machine_end_turn(self.machine, self.coil_pitch)
+        """Of one end turn [m]."""
+        return self.end_turn.length(self._seat)
+
+    @property
+    def end_turn(self) -> EndTurn:
+        """How the coils go round the ends."""
+        return usual_end_turn(self.coil_pitch) if self.stated_end_turn is None else self.stated_end_turn
+
+    @property
+    def end_turn_inductance(self) -> float:
+        """Leakage of the end turns of one phase [H], which no plane field has; ValueError where it is not known."""
+        return self.end_turn.inductance(self._seat, self.equivalent_turns, self.coils_in_series, self.copper_area)
+
+    @property
+    def _seat(self) -> CoilSeat:
+        layers = 2 * WindingLayout.phases * self.coils_in_series // self.machine.slots
+        return coil_seat(self.machine, self.coil_pitch, layers)
 
     @property
     def phase_resistance(self) -> float:
@@ -102,12 +120,5 @@ class WoundMachine:
 
 
 def machine_end_turn(machine: DrawnMachine, coil_pitch: int) -> float:
-    """Length of one end turn of a machine [m]; coil_pitch [slots]. See ``end_turn_length``."""
-    inner, outer = machine.stator.slot_radii
-    return end_turn_length(
-        slots=machine.slots,
-        slot_inner_radius=inner,
-        slot_outer_radius=outer,
-        tooth_width=machine.stator.probed_tooth_width,
-        coil_pitch=coil_pitch,
-    )
+    """Length of one end turn of a machine [m], as is usual for the coil pitch [slots]."""
+    return usual_end_turn(coil_pitch).length(coil_seat(machine, coil_pitch))

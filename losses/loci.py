@@ -41,6 +41,10 @@ class Repetition:
     poles: int
     sign: int
 
+    def pitches(self, section: CrossSection) -> int:
+        """The same in equal pitches of the rotor."""
+        return self.poles * section.machine.repeats // section.machine.poles
+
 
 WHOLE_PERIOD = Repetition(1, 0, 2, 1)
 HALF_WAVE = Repetition(2, 0, 1, -1)  # north and south poles change places, and so do the currents
@@ -50,9 +54,12 @@ def finest_repetition(section: CrossSection) -> Repetition:
     """A sixth of the period where a turn by some slots exchanges the phases of the winding, else a half.
 
     Needs equal magnets, equal teeth and sinusoidal balanced currents; a machine with one odd magnet or an eccentric
-    rotor repeats neither after a half nor after a whole electrical period.
+    rotor repeats neither after a half nor after a whole electrical period. Where north and south poles are not alike
+    only the whole period repeats.
     """
     machine = section.machine
+    if not machine.half_wave:
+        return WHOLE_PERIOD
     for slots in range(machine.slots):
         # a sixth of the period turns the rotor by a third of a pole pitch, the picture by slots: the rest in poles
         poles, rest = divmod(machine.slots - 3 * machine.poles * slots, 3 * machine.slots)
@@ -157,7 +164,8 @@ def stator_loci(part: PartOfPeriod) -> Loci:
 def rotor_loci(part: PartOfPeriod) -> Loci:
     """Mean B of every rotor-iron element (steps, E, 2) [T], in the frame of its own pole; turns with the rotor."""
     section = part.model.section
-    return _iron_loci(part, "rotor_iron", section.poles, section.machine.pole_pitch, part.repetition.poles)
+    pitches, pitch = section.rotor_pitches, section.machine.rotor.pitch
+    return _iron_loci(part, "rotor_iron", pitches, pitch, part.repetition.pitches(section))
 
 
 def magnet_potential_loci(part: PartOfPeriod) -> tuple[Loci, ...]:
@@ -166,12 +174,12 @@ def magnet_potential_loci(part: PartOfPeriod) -> tuple[Loci, ...]:
     section = part.model.section
     if section.magnets == 0:
         return ()
-    per_pole = section.machine.rotor.magnets_per_pole
+    per_pitch = section.machine.rotor.magnets_per_pitch
     regions = [section.mesh.subdomains[f"magnet_{m}"] for m in range(section.magnets)]
     elements = part.model.elements.take(np.concatenate(regions))
     block = np.stack([_potential(elements, solution.a) for solution in part.solutions])
     block = block.reshape(len(block), section.magnets, -1, block.shape[-1])
-    values, blocks = _extend(block, part.repetition.poles * per_pole, part.repetition.sign, section.sign)
+    values, blocks = _extend(block, part.repetition.pitches(section) * per_pitch, part.repetition.sign, section.sign)
     area = elements.weights.sum(0).reshape(section.magnets, -1)
     periods = blocks / part.repetition.parts
     return tuple(Loci(regions[m], area[m], values[:, m], periods, section.sectors) for m in range(section.magnets))

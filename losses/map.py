@@ -127,7 +127,7 @@ class LossGrid:
     @classmethod
     def of(cls, rotor: Rotor, largest: float) -> LossGrid:
         """Up to a largest peak [A] of a coil of a machine with this rotor."""
-        shares = DIRECT if rotor.magnets_per_pole else MAGNETISING
+        shares = DIRECT if rotor.magnets_per_pitch else MAGNETISING
         return cls(tuple(d * largest for d in shares), tuple(q * largest for q in QUADRATURE))
 
     @property

@@ -22,9 +22,9 @@ import xarray as xr
 
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.positions import torque_period
 from magnetostatics.torque import arkkio_torque
 
-PERIOD = pi / 3  # electrical; after it every quantity in the rotor frame of a symmetric three-phase machine repeats
 _SOURCES = 3  # solved currents that a start is interpolated from; the steel's curve is not smooth enough for more
 
 _ATTRIBUTES = {
@@ -104,7 +104,9 @@ def map_angles(model: FieldModel, count: int) -> np.ndarray:
 
     The set is its own mirror image about that axis, which ``mirrored`` relies on.
     """
-    return (model.section.layout.phase_axis + PERIOD * np.arange(count) / count) / model.section.machine.pole_pairs
+    section = model.section
+    period = torque_period(section.machine)
+    return (section.layout.phase_axis + period * np.arange(count) / count) / section.machine.pole_pairs
 
 
 # ---- what is read from a solution -----------------------------------------------------------------------------------
@@ -193,7 +195,8 @@ def to_dataset(
     coordinates = {name: (name, values[name], attributes) for name, attributes in _COORDINATES.items()}
     machine, layout = model.section.machine, model.section.layout
     note = "flux linkages and torque per turn and metre in the amplitude-invariant rotor frame, d axis on magnet 0"
-    winding = {"coils_in_series": layout.coils_in_series, "phase_axis": layout.phase_axis}
+    winding = {"coils_in_series": layout.coils_in_series, "phase_axis": layout.phase_axis,
+               "period": torque_period(machine)}  # fmt: skip
     return xr.Dataset(data, coordinates, {"description": note, "pole_pairs": machine.pole_pairs, **winding})
 
 
@@ -266,7 +269,8 @@ def mirrored(data: xr.Dataset) -> xr.Dataset:
 def _mirror_images(data: xr.Dataset) -> np.ndarray:
     """For every angle the index of the angle at -e, modulo the period."""
     electrical = data.attrs["pole_pairs"] * data.angle.values - data.attrs["phase_axis"]
-    distance = np.abs((electrical[:, None] + electrical + PERIOD / 2) % PERIOD - PERIOD / 2)
+    period = data.attrs["period"]
+    distance = np.abs((electrical[:, None] + electrical + period / 2) % period - period / 2)
     if distance.min(axis=1).max() > 1e-6:
         raise FluxMapError("the rotor angles are not their own mirror image about the axis of phase A: take map_angles")
     return distance.argmin(axis=1)

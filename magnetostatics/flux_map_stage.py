@@ -118,7 +118,7 @@ def flux_map_stage(case: FieldCase, matched: MatchedMachine, grid: FluxMapGrid, 
     model = kept_model(case, machine)
     area = model.section.half_slot_area * model.section.half_slots_per_coil_side
     overload = grid.ampere_turns(area)
-    quadrant = CurrentGrid.motoring if machine.rotor.magnets_per_pole else CurrentGrid.magnetising
+    quadrant = CurrentGrid.motoring if machine.rotor.magnets_per_pitch else CurrentGrid.magnetising
     currents = quadrant(grid.margin * overload, grid.currents)
     angles = map_angles(model, grid.angles)
     tasks = {f"angle {k}": AngleTask(case, machine, float(angle), currents) for k, angle in enumerate(angles)}

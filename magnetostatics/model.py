@@ -398,9 +398,10 @@ class TangentSystem:
 
 
 def _check_magnets(section: CrossSection, materials: MachineMaterials) -> None:
-    unknown = [number for number, _ in materials.other_magnets if not 0 <= number < section.machine.poles]
+    magnets = section.magnets * section.sectors
+    unknown = [number for number, _ in materials.other_magnets if not 0 <= number < magnets]
     if unknown:
-        raise GeometryError(f"there is no magnet {unknown[0]}: they are numbered from 0 to {section.machine.poles - 1}")
+        raise GeometryError(f"there is no magnet {unknown[0]}: they are numbered from 0 to {magnets - 1}")
     if materials.other_magnets and section.sectors > 1:
         raise GeometryError(
             f"magnets that differ break the symmetry of the machine, but 1/{section.sectors} of it is meshed: "

@@ -14,6 +14,12 @@ from geometry.winding import WindingLayout
 from magnetostatics.model import OperatingPoint
 
 
+def torque_period(machine: DrawnMachine) -> float:
+    """Electrical angle after which every quantity in the rotor frame of three balanced phases repeats [rad]: a sixth of
+    a period, a third where north and south poles are not alike."""
+    return pi / 3 if machine.half_wave else 2 * pi / 3
+
+
 def q_axis_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Rotor angle at which the q-axis current has its peak in phase A [rad]: p theta = axis_A - 90 deg."""
     return (layout.phase_axis - pi / 2) / machine.pole_pairs
@@ -21,7 +27,7 @@ def q_axis_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
 
 def null_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Rotor angle nearest to the q-axis angle with a magnet centred on a tooth [rad]; of two equals the smaller."""
-    step = 2 * pi / lcm(machine.slots, machine.poles)
+    step = 2 * pi / lcm(machine.slots, machine.repeats)
     return step * ceil(q_axis_angle(machine, layout) / step - 0.5 - 1e-9)
 
 
@@ -36,12 +42,12 @@ def null_point(machine: DrawnMachine, layout: WindingLayout, amplitude: float, p
 def period_points(
     machine: DrawnMachine, layout: WindingLayout, amplitude: float, packing: float, steps: int
 ) -> list[OperatingPoint]:
-    """The q-axis current at ``steps`` rotor positions from the null position on, evenly over 60 electrical degrees.
+    """The q-axis current at ``steps`` rotor positions from the null position on, evenly over a period of the torque.
 
     amplitude: of the current density in the copper [A/m^2]
     After these a balanced winding sees the same field in other teeth, so they stand for the whole period.
     """
-    first, span = null_angle(machine, layout), pi / 3 / machine.pole_pairs
+    first, span = null_angle(machine, layout), torque_period(machine) / machine.pole_pairs
     return [OperatingPoint(first + span * k / steps, amplitude, 0.0, packing) for k in range(steps)]
 
 
@@ -57,5 +63,5 @@ def aligned_teeth(machine: DrawnMachine, angle: float) -> tuple[int, ...]:
 
 def _distance_to_magnet(machine: DrawnMachine, tooth: int, angle: float) -> float:
     """Angle from a tooth to the nearest magnet centre, as a share of the pole pitch."""
-    position = (tooth * machine.slot_pitch - angle) / machine.pole_pitch
+    position = (tooth * machine.slot_pitch - angle) / machine.rotor.pitch
     return abs(position - round(position))

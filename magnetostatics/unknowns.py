@@ -65,8 +65,10 @@ def number_unknowns(section: CrossSection, order: TriangleOrder) -> Unknowns:
     """Number the free unknowns of a meshed cross-section; those of nodes come first, so orders share their numbers."""
     locations = dof_locations(section.mesh, order)
     steps_per_edge = 1 if order is LINEAR else 2
-    stator_slide = _around(section, locations, "stator_slide", section.machine.slot_pitch)
-    rotor_slide = _around(section, locations, "rotor_slide", section.machine.pole_pitch)
+    rotor = section.machine.rotor
+    starts = -section.machine.slot_pitch / 2, rotor.first_ray - rotor.pitch / 2
+    stator_slide = _around(section, locations, "stator_slide", starts[0])
+    rotor_slide = _around(section, locations, "rotor_slide", starts[1])
     sign, master = np.ones(locations.shape[1]), np.arange(locations.shape[1])
     for start, end in _ray_pairs(section, locations):
         master[end], sign[end] = start, section.sign
@@ -86,7 +88,7 @@ def number_unknowns(section: CrossSection, order: TriangleOrder) -> Unknowns:
         stator_slide=masters,
         rotor_slide=rotor_slide,
         edge_angle=2 * pi * steps_per_edge / section.sectors / len(masters),
-        offset=(section.machine.slot_pitch - section.machine.pole_pitch) / 2,
+        offset=starts[1] - starts[0],
         sector_sign=section.sign,
         steps_per_edge=steps_per_edge,
     )
@@ -99,11 +101,11 @@ def _on(section: CrossSection, name: str, locations: np.ndarray) -> np.ndarray:
     return on_nodes if locations.shape[1] == nodes else np.concatenate([on_nodes, nodes + edges])
 
 
-def _around(section: CrossSection, locations: np.ndarray, name: str, pitch: float) -> np.ndarray:
-    """Degrees of freedom on a circle in the order of angle, from the start of its sector, half a pitch below zero."""
+def _around(section: CrossSection, locations: np.ndarray, name: str, start: float) -> np.ndarray:
+    """Degrees of freedom on a circle in the order of angle, from the start of its sector [rad]."""
     dofs = _on(section, name, locations)
     x, y = locations[:, dofs]
-    angle = np.mod(np.arctan2(y, x) + pitch / 2 + 1e-9, 2 * pi)
+    angle = np.mod(np.arctan2(y, x) - start + 1e-9, 2 * pi)
     return dofs[np.argsort(angle)]
 
 

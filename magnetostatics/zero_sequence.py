@@ -8,6 +8,8 @@ harmonic and its odd multiples alone. A star without a neutral cannot carry its 
 
 from __future__ import annotations
 
+from math import pi
+
 import numpy as np
 import xarray as xr
 
@@ -33,20 +35,27 @@ def harmonics_of_half_period(samples: np.ndarray) -> tuple[np.ndarray, np.ndarra
     samples: [any unit], over the first axis, evenly over 60 degrees without the end (n, ...); harmonics_of_half_period:
     orders 3, 9 ... that n samples resolve, dimensionless (m,), and amplitudes [that of the samples] (m, ...)
     """
+    orders, amplitudes = harmonics_of_period(np.concatenate([samples, -samples]))
+    return orders[::2], amplitudes[::2]
+
+
+def harmonics_of_period(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a wave that repeats after 120 electrical degrees, evenly over all of them: orders 3, 6, 9, ... (m,),
+    dimensionless, and amplitudes (m, ...) [that of the samples (n, ...)]."""
     count = len(samples)
-    spectrum = np.fft.rfft(np.concatenate([samples, -samples]), axis=0)
-    odd = np.arange(1, count, 2)
-    return FUNDAMENTAL * odd, np.abs(spectrum[odd]) / count
+    spectrum = np.fft.rfft(samples, axis=0)[1 : (count + 1) // 2]
+    return FUNDAMENTAL * np.arange(1, len(spectrum) + 1), 2 * np.abs(spectrum) / count
 
 
 def with_zero_sequence(data: xr.Dataset, inductance: float) -> xr.Dataset:
     """A map with psi_0 over the rotor angle turned into its amplitudes over ``order``, and with l_0.
 
-    data: with psi_0 [Wb/m] over angle, id, iq, the angles evenly over 60 electrical degrees; inductance: L_0 [H/m per
-    turn^2]
+    data: with psi_0 [Wb/m] over angle, id, iq, the angles evenly over its period, of 60 electrical degrees or 120
+    inductance: L_0 [H/m per turn^2]
     """
     samples = data["psi_0"].transpose("angle", "id", "iq")
-    orders, amplitudes = harmonics_of_half_period(samples.values)
+    harmonics = harmonics_of_half_period if data.attrs["period"] < pi / 2 else harmonics_of_period
+    orders, amplitudes = harmonics(samples.values)
     attributes = {"units": "Wb/m", "long_name": "amplitude of the zero-sequence flux linkage per turn and metre"}
     found = xr.DataArray(amplitudes, {"order": orders, "id": data.id, "iq": data.iq}, ("order", "id", "iq"))
     described = {"units": "H/m", "long_name": "zero-sequence inductance without current per turn^2 and metre"}

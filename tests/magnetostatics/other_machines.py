@@ -7,10 +7,13 @@ import numpy as np
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
 from geometry.parts import ComposedMachine
+from geometry.rotors.bread_loaf_magnets import BreadLoafMagnets
+from geometry.rotors.consequent_pole import ConsequentPole
 from geometry.rotors.flux_barriers import FluxBarriers
 from geometry.rotors.inset_magnets import InsetMagnets
 from geometry.rotors.outer_magnets import OuterMagnets
 from geometry.rotors.spoke import Spoke
+from geometry.rotors.two_layer_v_shape import TwoLayerVShape
 from geometry.rotors.v_shape import VShape
 from geometry.stators.outward_teeth import OutwardTeeth
 from geometry.stators.round_bottom_slots import RoundBottomSlots
@@ -20,7 +23,7 @@ from magnetostatics.currents import PhaseCurrents
 from magnetostatics.model import FieldModel, MachineMaterials
 from materials.library import load_steel
 from materials.magnet import Magnet
-from units import MILLIMETRE
+from units import DEGREE, MILLIMETRE
 
 mm = MILLIMETRE
 STEEL = load_steel("M270-35A")
@@ -48,8 +51,23 @@ RELUCTANCE = ComposedMachine(
     RoundBottomSlots(24, 42.5 * mm, 67.5 * mm, 2.0 * mm, 0.8 * mm, 5.2 * mm, 7.6 * mm, 11.0 * mm),
     FluxBarriers(4, 3, 42.0 * mm, 14.0 * mm, 48.0 * mm, 15.0 * mm, 3.0 * mm, 4.0 * mm, 0.5 * mm),
 )
-PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, INSET: 1, SPOKE: 1, RELUCTANCE: 5}
-NAMED = {"outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE, "reluctance": RELUCTANCE}
+TWO_LAYERS = ComposedMachine(
+    V_SHAPE.stator,
+    TwoLayerVShape(
+        8, 80.2 * mm, 50.0 * mm, magnet_length=4.5 * mm, recess=0.8 * mm,
+        inner_tip_depth=64.0 * mm, inner_tilt=61 * DEGREE, inner_magnet_width=18.0 * mm, inner_bridge=1.4 * mm,
+        inner_bridge_start=16.3 * DEGREE, inner_bridge_end=18.6 * DEGREE,
+        outer_tip_depth=74.0 * mm, outer_tilt=76 * DEGREE, outer_magnet_width=10.0 * mm, outer_bridge=1.2 * mm,
+        outer_bridge_start=9.0 * DEGREE, outer_bridge_end=11.3 * DEGREE,
+    ),
+)  # fmt: skip
+LOAVES = ComposedMachine(STATOR, BreadLoafMagnets(10, 15.7 * mm, 12.8 * mm, 7.6 * mm, 5.0 * mm))
+CONSEQUENT = ComposedMachine(STATOR, ConsequentPole(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 1.1, 0.08))
+PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, TWO_LAYERS: 6, INSET: 1, SPOKE: 1, RELUCTANCE: 5}
+NAMED = {
+    "outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE, "reluctance": RELUCTANCE,
+    "two layers": TWO_LAYERS, "loaves": LOAVES, "consequent": CONSEQUENT,
+}  # fmt: skip
 
 
 def section_of(machine: ComposedMachine, density: MeshDensity, whole: bool = False) -> CrossSection:

@@ -26,7 +26,7 @@ from magnetostatics.gap_stress import (
 )
 from magnetostatics.gap_stress_stage import gap_stress_stage
 from magnetostatics.model import FieldModel, MachineMaterials, OperatingPoint
-from magnetostatics.rotation_stage import STATES
+from magnetostatics.rotation import STATES
 from magnetostatics.torque import gap_force_density, magnetic_pull
 from materials.magnet import Magnet
 from materials.reluctivity import LinearReluctivity
@@ -140,41 +140,49 @@ def coarse_case() -> FamilyCase:
 @pytest.fixture(scope="module")
 def found():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stage, "STEPS", 24)
         patch.setattr(stage, "_PULL_STEPS", 2)
         case = coarse_case()
         return gap_stress_stage(case, MatchedMachine(case.family.reference), InThisProcess())
 
 
+@pytest.fixture(scope="module")
+def rotation(found):
+    return found.rotation
+
+
 @pytest.mark.parametrize("state, shift", (("no_current", 12), ("nominal", 6), ("overload", 6)))
-def test_every_wave_is_made_of_pole_pairs_and_slots(found, state, shift):
+def test_every_wave_is_made_of_pole_pairs_and_slots(rotation, state, shift):
     """r = p nu + b shift: magnets' waves turn with the rotor; slots shift orders by 12, currents, whose sign changes
     after six slots, by 6."""
-    waves = found.waves(state)
+    waves = rotation.waves(state)
     large = [one for one in waves if one.amplitude > 5e-3 * waves[0].amplitude]
     assert len(large) > 20 and (waves[0].spatial_order, waves[0].temporal_order) == (0, 0)
     assert all((one.spatial_order - 5 * one.temporal_order) % shift == 0 for one in large)
 
 
-def test_the_current_makes_the_wave_of_two_periods_that_bends_the_stator(found):
+def test_the_current_makes_the_wave_of_two_periods_that_bends_the_stator(rotation):
     """-2 = 10 - 12: the working field of 5 pairs with the winding's of 7, that turns against it."""
-    two = {state: sum(one.amplitude for one in found.waves(state) if abs(one.spatial_order) == 2) for state in STATES}
-    assert two["overload"] > 5 * two["no_current"] and two["overload"] > 0.1 * found.mean_stress
+    two = {
+        state: sum(one.amplitude for one in rotation.waves(state) if abs(one.spatial_order) == 2) for state in STATES
+    }
+    assert two["overload"] > 5 * two["no_current"] and two["overload"] > 0.1 * rotation.mean_stress
 
 
-def test_the_torque_is_that_of_the_fields_and_ripples_with_the_sixth(found):
-    assert found.mean_torque_per_length("nominal") == pytest.approx(55.6, rel=0.02)  # Nm/m, guarded in tests/reference
-    assert abs(found.mean_torque_per_length("no_current")) < 0.01
-    assert all(order % 6 == 0 for order in list(found.ripple_orders("overload"))[:3])
-    assert found.ripple("overload") == pytest.approx(np.ptp(found.data.torque.values[2]))
+def test_the_torque_is_that_of_the_fields_and_ripples_with_the_sixth(rotation):
+    assert rotation.mean_torque_per_length("nominal") == pytest.approx(
+        55.6, rel=0.02
+    )  # Nm/m, guarded in tests/reference
+    assert abs(rotation.mean_torque_per_length("no_current")) < 0.01
+    assert all(order % 6 == 0 for order in list(rotation.ripple_orders("overload"))[:3])
+    assert rotation.ripple("overload") == pytest.approx(np.ptp(rotation.data.torque.values[2]))
 
 
 def test_the_cogging_has_its_own_mesh_error(found):
     """Over six degrees of the rotor, odd about its middle; on this coarse mesh the error is large, and said to be."""
-    coarse, fine = found.cogging_torque
-    assert found.cogging_span == pytest.approx(pi / 30) and found.cogging == np.ptp(fine)
+    fine = found.cogging_torque
+    assert found.rotation.cogging_span == pytest.approx(pi / 30) and found.cogging == np.ptp(fine)
     assert_allclose(fine[1:], -fine[:0:-1], atol=1e-3 * found.cogging)
-    assert found.cogging_error == abs(np.ptp(fine) - np.ptp(coarse))
+    assert found.cogging_error == abs(np.ptp(fine) - np.ptp(found.rotation.torque("no_current")))
     close = 2.36  # Nm/m, on triangles a quarter of the size
     assert abs(close - found.cogging) < found.cogging_error < 0.5 * close
 
@@ -186,10 +194,10 @@ def test_nothing_pulls_a_rotor_in_the_middle(found):
 
 def test_the_classical_pull_is_near_that_of_the_field(found):
     """Curvature, and harmonics that feel the gap more than the first, are what it lacks: 12 %."""
-    machine = found.machine
-    classical = classical_pull(found.mean_stress, machine.mid_gap_radius, effective_gap(machine, 1.0))
+    machine = found.rotation.machine
+    classical = classical_pull(found.rotation.mean_stress, machine.mid_gap_radius, effective_gap(machine, 1.0))
     assert classical == pytest.approx(found.pull_per_shift[0], rel=0.15)
-    plain = classical_pull(found.mean_stress, machine.mid_gap_radius, machine.airgap + machine.magnet_length)
+    plain = classical_pull(found.rotation.mean_stress, machine.mid_gap_radius, machine.airgap + machine.magnet_length)
     assert plain < 0.75 * found.pull_per_shift[0], "a gap that counts as thin against the poles"
 
 

@@ -11,17 +11,24 @@ from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.half_cell import MeshDensity
 from geometry.magnetisation import HalbachMagnetisation, RadialMagnetisation
+from geometry.morph import Morpher
 from geometry.parts import ComposedMachine
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.newton import NewtonSettings
+from magnetostatics.positions import torque_period
+from magnetostatics.sensitivity import sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
+from magnetostatics.variations import Dimension
 from tests.magnetostatics.other_machines import (
+    CONSEQUENT,
     INSET,
+    LOAVES,
     NAMED,
     OUTRUNNER,
     RELUCTANCE,
     SPOKE,
     STATOR,
+    TWO_LAYERS,
     V_SHAPE,
     currents,
     model_of,
@@ -29,7 +36,10 @@ from tests.magnetostatics.other_machines import (
 
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=2, across_iron=1.0)
 FINE = MeshDensity(gap_edges=720, longest_gap_edge=1.0, gap_layers=3, across_iron=2.0)
-AMPERE_TURNS = {"outrunner": 40.0, "V shape": 337.5, "inset": 300.0, "spoke": 300.0, "reluctance": 300.0}
+AMPERE_TURNS = {
+    "outrunner": 40.0, "V shape": 337.5, "inset": 300.0, "spoke": 300.0, "reluctance": 300.0, "two layers": 337.5,
+    "loaves": 300.0, "consequent": 300.0,
+}  # fmt: skip
 ANGLE = 0.07  # rad
 
 
@@ -38,7 +48,7 @@ def solved(name, density, **options):
     return model.solve(currents(model, ANGLE, AMPERE_TURNS[name], 0.5, 1.0))
 
 
-@pytest.mark.parametrize("name", ["outrunner", "inset", "spoke", "reluctance"])
+@pytest.mark.parametrize("name", ["outrunner", "inset", "spoke", "reluctance", "two layers", "loaves", "consequent"])
 def test_a_sector_is_the_whole_machine(name):
     part, whole = solved(name, COARSE), solved(name, COARSE, whole=True)
     assert part.model.section.sectors > 1 == whole.model.section.sectors
@@ -50,6 +60,57 @@ def test_a_sector_is_the_whole_machine(name):
 def test_two_routes_to_the_torque(name):
     found = solved(name, FINE)
     assert maxwell_torque(found) == pytest.approx(arkkio_torque(found), rel=2e-3)
+
+
+def test_consequent_poles_have_even_harmonics_that_alternating_ones_have_not():
+    """Each coil of 12 slots and 8 poles sees magnets only; half a period later it sees iron."""
+    for name, least, most in (("consequent", 0.01, 1.0), ("loaves", 0.0, 1e-9)):
+        model = model_of(NAMED[name], COARSE, settings=NewtonSettings(tolerance=3e-11))
+        pairs = model.section.machine.pole_pairs
+        turn = [currents(model, 2 * np.pi / pairs * k / 6, 0.0, 0.0, 1.0) for k in range(6)]
+        waves = np.abs(np.fft.rfft([phase_flux_linkage(model.solve(point))[0] for point in turn]))
+        assert least <= waves[2] / waves[1] <= most
+
+
+@pytest.mark.parametrize("name", ("consequent", "loaves"))
+def test_what_the_rotor_sees_repeats_after_the_period_of_the_torque(name):
+    """A sixth of an electrical period where north and south are alike, a third where they are not."""
+    model = model_of(NAMED[name], COARSE, settings=NewtonSettings(tolerance=3e-11))
+    pairs, period = model.section.machine.pole_pairs, torque_period(model.section.machine)
+    assert period == pytest.approx(np.pi / 3 if name == "loaves" else 2 * np.pi / 3)
+    angles = ANGLE + np.array([0.0, period / 2, period]) / pairs
+    torques = [arkkio_torque(model.solve(currents(model, angle, 300.0, 0.5, 1.0))) for angle in angles]
+    assert torques[2] == pytest.approx(torques[0], rel=1e-6)
+    assert abs(torques[1] - torques[0]) > 1e-3 * abs(torques[0])
+
+
+CHANGES = np.array([10.0, -10.0])
+DIMENSIONS = {
+    "two layers": ("outer_magnet_width", "inner_tip_depth", "outer_bridge"),
+    "consequent": ("arc_fraction", "magnet_length"),
+    "loaves": ("magnet_width", "base_distance"),
+}
+
+
+@pytest.mark.parametrize(("name", "dimension"), [(name, one) for name, many in DIMENSIONS.items() for one in many])
+def test_derivatives_of_moved_meshes_are_the_differences_of_solutions(name, dimension):
+    """Torque, and flux linkages of all phases, at full current."""
+    machine, found = NAMED[name], solved(name, COARSE)
+    value = getattr(machine.rotor, dimension)
+    step = 1e-6 * value
+
+    def read(solution):
+        return np.array([arkkio_torque(solution), *phase_flux_linkage(solution)])
+
+    def drawn(change):
+        return replace(machine, rotor=replace(machine.rotor, **{dimension: value + change}))
+
+    variation = Dimension(Morpher(found.model.section), drawn, step)
+    derivative = sensitivities(found, {"it": variation}, read)["it"]
+    ends = [variation.at(found.model, found.point, change)[0].solve(found.point, found) for change in CHANGES * step]
+    expected = (read(ends[0]) - read(ends[1])) / (20 * step)
+    scale = np.array([abs(expected[0]), *[np.abs(expected[1:]).max()] * 3])
+    assert (np.abs(derivative - expected) / scale).max() < 1e-3
 
 
 def test_reluctance_turns_its_torque_with_one_current_and_keeps_it_with_both():
@@ -73,6 +134,7 @@ def test_cogging_turns_its_sign_with_the_angle(name):
     assert other == pytest.approx(-one, rel=1e-6)
 
 
+TIGHT = {"inner_tip_depth": 69e-3, "outer_tilt": 1.2, "inner_magnet_width": 11e-3}
 CANNOT_BE_BUILT = {
     "slot bottom": (OUTRUNNER, "stator", {"slot_bottom_radius": 2.0e-3}, "must rise from each to the next"),
     "wide teeth": (OUTRUNNER, "stator", {"tooth_width": 2.9e-3}, "reduce tooth_width"),
@@ -87,6 +149,15 @@ CANNOT_BE_BUILT = {
     "hole": (V_SHAPE, "rotor", {"hole_depth": 50e-3}, "hole_depth"),
     "all magnet": (INSET, "rotor", {"arc_fraction": 1.0}, "iron must stand between"),
     "big shaft": (INSET, "rotor", {"shaft_radius": 14e-3}, "shaft_radius"),
+    "layers meet": (TWO_LAYERS, "rotor", {"outer_bridge_end": 0.3}, "holes of both layers meet"),
+    "outer layer": (TWO_LAYERS, "rotor", {"outer_tip_depth": 67e-3}, "inner_tip_depth, outer_hole_depth"),
+    "outer magnets": (TWO_LAYERS, "rotor", TIGHT, "into the hole of the"),
+    "long inner": (TWO_LAYERS, "rotor", {"inner_magnet_width": 25e-3}, "reduce inner_magnet_width"),
+    "wide loaves": (LOAVES, "rotor", {"magnet_width": 8.5e-3}, "wider than the flats"),
+    "no loaf": (LOAVES, "rotor", {"base_distance": 15.2e-3}, "reduce base_distance"),
+    "shaft in loaf": (LOAVES, "rotor", {"shaft_radius": 13e-3}, "cuts the flats"),
+    "no iron pole": (CONSEQUENT, "rotor", {"arc_fraction": 1.9}, "nothing of the iron poles"),
+    "thick magnets": (CONSEQUENT, "rotor", {"magnet_length": 11e-3}, "inside the shaft"),
     "thick spokes": (SPOKE, "rotor", {"magnet_length": 6e-3}, "no iron is left"),
     "short spokes": (SPOKE, "rotor", {"magnet_radius": 15.69e-3}, "reduce magnet_radius"),
     "many layers": (RELUCTANCE, "rotor", {"layers": 5}, "into the shaft"),

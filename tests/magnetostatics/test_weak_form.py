@@ -24,7 +24,15 @@ from magnetostatics.newton import FieldSolutionError, NewtonSettings
 from magnetostatics.torque import arkkio_torque
 from magnetostatics.weak_form import WeakForm
 from materials.magnet import Magnet
-from tests.magnetostatics.other_machines import INSET, OUTRUNNER, RELUCTANCE, SPOKE, V_SHAPE
+from tests.magnetostatics.other_machines import (
+    CONSEQUENT,
+    INSET,
+    OUTRUNNER,
+    RELUCTANCE,
+    SPOKE,
+    TWO_LAYERS,
+    V_SHAPE,
+)
 from tests.magnetostatics.other_machines import section_of as other_section
 from tests.magnetostatics.reference_machine import MATERIALS, STEEL, reference_machine, section_of
 from units import DEGREE
@@ -79,6 +87,8 @@ CASES = {
     "other materials": lambda: Case(sector(), OperatingPoint(-0.36, RATED), other_materials()),
     "outer rotor": lambda: Case(other_kind(OUTRUNNER), PhaseCurrents(0.07, (30.0, -40.0, 10.0))),
     "V shape": lambda: Case(other_kind(V_SHAPE), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "two layers": lambda: Case(other_kind(TWO_LAYERS), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "consequent poles": lambda: Case(other_kind(CONSEQUENT), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "inset magnets": lambda: Case(other_kind(INSET), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "spokes": lambda: Case(other_kind(SPOKE), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "reluctance": lambda: Case(other_kind(RELUCTANCE), PhaseCurrents(0.07, (300.0, -340.0, 40.0)), tolerance=THIN_IRON),

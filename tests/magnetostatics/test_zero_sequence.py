@@ -10,7 +10,12 @@ from magnetostatics.currents import PhaseCurrents
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.flux_map import flux_torque_and_zero_sequence, mirrored, operating_point
 from magnetostatics.flux_map_stage import kept_model
-from magnetostatics.zero_sequence import harmonics_of_half_period, with_zero_sequence, zero_sequence_inductance
+from magnetostatics.zero_sequence import (
+    harmonics_of_half_period,
+    harmonics_of_period,
+    with_zero_sequence,
+    zero_sequence_inductance,
+)
 from tests.magnetostatics.test_flux_map_stage import CASE
 
 AMPERE_TURNS = 400.0
@@ -57,6 +62,13 @@ def test_harmonics_of_a_known_wave():
     assert amplitudes == pytest.approx([2.0, 0.0, 0.5, 0.0, 0.0], abs=1e-12)
 
 
+def test_even_harmonics_where_poles_are_not_alike():
+    e = 2 * pi / 3 * np.arange(12) / 12
+    orders, amplitudes = harmonics_of_period(2.0 * np.cos(3 * e + 0.4) - 0.5 * np.sin(6 * e) + 7.0)
+    assert orders.tolist() == [3, 6, 9, 12, 15]
+    assert amplitudes == pytest.approx([2.0, 0.5, 0.0, 0.0, 0.0], abs=1e-12)
+
+
 def test_a_mirrored_map_has_its_amplitudes_on_both_sides():
     """psi_0 = (1 + i_q/10) cos(3 e) over i_q >= 0, and an inductance without axes."""
     e, i = pi / 3 * np.arange(4) / 4, np.array([0.0, 1.0, 2.0])
@@ -65,7 +77,7 @@ def test_a_mirrored_map_has_its_amplitudes_on_both_sides():
     data = xr.Dataset(
         {name: (("angle", "id", "iq"), wave) for name in names},
         {"angle": e / 5, "id": i, "iq": i},
-        {"pole_pairs": 5, "phase_axis": 0.0},
+        {"pole_pairs": 5, "phase_axis": 0.0, "period": np.pi / 3},
     )
     found = mirrored(with_zero_sequence(data, 3e-7))
     assert found.psi_0.sel(order=3, id=1.0).values == pytest.approx([1.2, 1.1, 1.0, 1.1, 1.2])
