@@ -21,8 +21,8 @@ class InsulationClass:
     mean: float
 
 
-# IEC 60085 (2007), Table 1, and IEC 60034-1, limits of temperature rise by resistance for indirect cooling with air
-# (60, 75, 80, 105, 125, 145 K), from memory of both.
+# IEC 60085 (edition 4, 2007), Table 1, and IEC 60034-1, limits of temperature rise by resistance for indirect cooling
+# with air (60, 75, 80, 105, 125, 145 K), from memory of both.
 _CLASSES = {
     one.letter: one
     for one in (

@@ -38,7 +38,7 @@ class StrengthBySection:
         )
 
 
-# Quenched and tempered, least yield and tensile strength, EN 10083-3.
+# Quenched and tempered, least yield and tensile strength, EN 10083-3:2006, Table 8 (numbers from memory).
 SHAFT_STEEL = StrengthBySection(
     "42CrMo4+QT",
     ((16e-3, 900 * MPA), (40e-3, 750 * MPA), (100e-3, 650 * MPA), (160e-3, 550 * MPA), (250e-3, 500 * MPA)),

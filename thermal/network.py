@@ -96,7 +96,7 @@ class Network:
         return np.array([values.get(name, missing) for name in self.names])
 
     def named(self, temperature: np.ndarray) -> dict[str, float]:
-        """By name, the surroundings with them; temperature: of the nodes [degC], (n,)."""
+        """By name [degC], the surroundings with them; temperature: of the nodes [degC], (n,)."""
         return {**dict(zip(self.names, temperature.tolist(), strict=True)), **self.surroundings}
 
     def flows(self, temperature: Temperatures) -> tuple[tuple[Link, float], ...]:

@@ -14,7 +14,7 @@ speaks of.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import hypot, sqrt
 
 import numpy as np
@@ -29,6 +29,7 @@ from losses.stage import LossMap
 from thermal.stage import HeatOutcome
 from uncertainty.match_spread import DrawnMatch, MatchSpread
 from uncertainty.tolerance_stage import ToleranceOutcome
+from uncertainty.wound_slopes import PARTS
 
 COVERAGE = 2.0  # k, of the expanded uncertainty
 
@@ -57,23 +58,9 @@ class Uncertain:
 
 
 @dataclass(frozen=True)
-class Budget:
-    """The headline numbers, SI.
-
-    Of the match: torque_nominal, torque_overload: per length, of the fitted cross-section [Nm/m];
+class MatchBudget:
+    """The match: torque_nominal, torque_overload: per length, of the fitted cross-section [Nm/m];
     transmission_ratio [m/rad or 1]; matched_length: active length [m]; matched_mass: motor and gears [kg]
-    Of the wound machine: peak_torque, continuous_torque: at the current densities [Nm]; torque_constant: no load
-    [Nm/A]; resistance: of a phase [ohm]; inductance_d, inductance_q: incremental, no load [H]; base_speed [rad/s];
-    cogging: from peak to peak, magnets alike [Nm]; copper_loss: at the continuous torque [W]; mass: active parts [kg]
-    needed_length: active length that the peak torque asks for, the first of the needs [m]
-    power_at_base_speed: at the peak torque [W]; rated_speed [rad/s]; rated_power: continuous torque at that speed [W]
-    iron_loss: of the stator, losses: all [W], efficiency: at the rated point; None without loss data. The mesh of the
-        iron loss is not bounded
-    loaded_constant: torque constant at the overload current [Nm/A]; continuous_current: RMS, of the temperatures [A]
-    short_circuit_current: peak [A], braking_torque [Nm], braking_speed: of it, cold [rad/s]: with shorted phases, by
-        psi_m / L_d, psi_m^2 / L_q and R / L_q
-    Of the actuator: peak_effort: at rest [N or Nm]; continuous_effort: of the temperatures, turning slowly [N or Nm];
-    low_speed_damping: short-circuited [Ns/m or Nms/rad]
     """
 
     torque_nominal: Uncertain
@@ -81,31 +68,117 @@ class Budget:
     transmission_ratio: Uncertain
     matched_length: Uncertain
     matched_mass: Uncertain
+
+
+@dataclass(frozen=True)
+class PerformanceBudget:
+    """What the wound machine gives and takes.
+
+    peak_torque, ripple: of it from peak to peak; cogging: from peak to peak, magnets alike; continuous_torque: at the
+        nominal current density [Nm]; needed_length: active length that the peak torque asks for [m]
+    base_speed, rated_speed [rad/s]; power_at_base_speed: at the peak torque, rated_power: continuous torque at the
+        rated speed, overload_input: electrical at peak torque and rated speed, copper loss alone [W]
+    continuous_current: RMS, of the temperatures [A]
+    """
+
     peak_torque: Uncertain
-    continuous_torque: Uncertain
-    torque_constant: Uncertain
-    resistance: Uncertain
-    inductance_d: Uncertain
-    inductance_q: Uncertain
-    base_speed: Uncertain
+    ripple: Uncertain
     cogging: Uncertain
-    copper_loss: Uncertain
-    mass: Uncertain
     needed_length: Uncertain
+    continuous_torque: Uncertain
+    base_speed: Uncertain
     power_at_base_speed: Uncertain
     rated_speed: Uncertain
     rated_power: Uncertain
-    iron_loss: Uncertain | None
-    losses: Uncertain | None
-    efficiency: Uncertain | None
-    loaded_constant: Uncertain
+    overload_input: Uncertain
     continuous_current: Uncertain
+
+
+@dataclass(frozen=True)
+class ConstantsBudget:
+    """What a drive is set up with.
+
+    torque_constant: no load, loaded_constant: at the overload current [Nm/A]; resistance: of a phase [ohm]
+    inductance_d, inductance_q: incremental, no load, loaded_inductance_d, loaded_inductance_q: apparent [H]
+    """
+
+    torque_constant: Uncertain
+    loaded_constant: Uncertain
+    resistance: Uncertain
+    inductance_d: Uncertain
+    inductance_q: Uncertain
+    loaded_inductance_d: Uncertain
+    loaded_inductance_q: Uncertain
+
+
+@dataclass(frozen=True)
+class LossBudget:
+    """The rated point: copper_loss, iron_loss: of the stator, losses: all, rated_input: electrical [W]; efficiency.
+
+    All at the torque and speed of the machine as drawn. Those but the copper loss are None without loss data. The mesh
+    of the iron loss is not bounded.
+    """
+
+    copper_loss: Uncertain
+    iron_loss: Uncertain | None = None
+    losses: Uncertain | None = None
+    efficiency: Uncertain | None = None
+    rated_input: Uncertain | None = None
+
+
+@dataclass(frozen=True)
+class BrakingBudget:
+    """Shorted phases, by psi_m / L_d, psi_m^2 / L_q and R / L_q: short_circuit_current: peak [A]; braking_torque [Nm];
+    braking_speed: of it, cold [rad/s]
+    """
+
     short_circuit_current: Uncertain
     braking_torque: Uncertain
     braking_speed: Uncertain
+
+
+@dataclass(frozen=True)
+class MassBudget:
+    """Of the parts and all of them, mass [kg]; rotor_inertia [kg m^2]."""
+
+    stator_laminations: Uncertain
+    rotor_laminations: Uncertain
+    magnets: Uncertain
+    shaft: Uncertain
+    copper: Uncertain
+    mass: Uncertain
+    rotor_inertia: Uncertain
+
+
+@dataclass(frozen=True)
+class OutputBudget:
+    """The actuator: peak_effort: at rest; continuous_effort: of the temperatures, turning slowly [N or Nm];
+    low_speed_damping: short-circuited [Ns/m or Nms/rad]
+    """
+
     peak_effort: Uncertain
     continuous_effort: Uncertain
     low_speed_damping: Uncertain
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The headline numbers, SI, group by group."""
+
+    match: MatchBudget
+    performance: PerformanceBudget
+    constants: ConstantsBudget
+    losses: LossBudget
+    braking: BrakingBudget
+    masses: MassBudget
+    output: OutputBudget
+
+    @property
+    def known(self) -> dict[str, Uncertain]:
+        """Every number that is known, by its name."""
+        groups = (getattr(self, group.name) for group in fields(self))
+        named = {one.name: getattr(group, one.name) for group in groups for one in fields(group)}
+        return {name: one for name, one in named.items() if one is not None}
 
 
 def budget_of(
@@ -119,48 +192,92 @@ def budget_of(
     losses: LossMap | None,
 ) -> Budget:
     """All headline numbers of a design; chosen: its match by the fits as they are; losses: None without loss data."""
-
-    def wound(quantity: str, value: float | None = None) -> Uncertain:
-        return of_wound(found, quantity, value)
-
-    def product(value: float, **powers: float) -> Uncertain:
-        return of_product(found, value, **powers)
-
-    shorted, values, speed = braking.shorted, found.values, found.rated_speed
-    moves = float(speed == winding.chosen.base_speed)  # where the largest speed that is allowed is lower, it is exact
-    at_rated = None if losses is None else losses.losses.at(values.continuous_torque, speed)
     return Budget(
-        torque_nominal=of_match(spread, chosen.section.torque_per_length_nominal, lambda one: one.torque_nominal),
-        torque_overload=of_match(spread, chosen.section.torque_per_length_overload, lambda one: one.torque_overload),
+        match=_match(spread, chosen),
+        performance=_performance(found, winding, heat),
+        constants=_constants(found, winding),
+        losses=_losses(found, losses),
+        braking=_braking(found, braking),
+        masses=MassBudget(**{name: of_wound(found, name) for name in PARTS}),
+        output=_output(found, outcome, heat),
+    )
+
+
+def _match(spread: MatchSpread, chosen: Match) -> MatchBudget:
+    section = chosen.section
+    return MatchBudget(
+        torque_nominal=of_match(spread, section.torque_per_length_nominal, lambda one: one.torque_nominal),
+        torque_overload=of_match(spread, section.torque_per_length_overload, lambda one: one.torque_overload),
         transmission_ratio=of_match(spread, chosen.transmission_ratio, lambda one: one.transmission_ratio),
         matched_length=of_match(spread, chosen.active_length, lambda one: one.active_length),
         matched_mass=of_match(spread, chosen.cost.mass, lambda one: one.total_mass),
-        peak_torque=wound("peak_torque"),
-        continuous_torque=wound("continuous_torque"),
-        torque_constant=wound("magnet_flux", winding.chosen.no_load_torque_constant),
-        resistance=wound("resistance"),
-        inductance_d=wound("inductance_d"),
-        inductance_q=wound("inductance_q"),
-        base_speed=wound("base_speed"),
-        cogging=wound("cogging"),
-        copper_loss=wound("copper_loss"),
-        mass=wound("mass"),
-        needed_length=wound("peak_torque", winding.length.needs[0].length),
-        peak_effort=wound("peak_torque", outcome.features.effort_peak),
-        power_at_base_speed=product(winding.chosen.power_at_base_speed, peak_torque=1, base_speed=1),
-        rated_speed=product(speed, base_speed=moves),
-        rated_power=product(values.continuous_torque * speed, continuous_torque=1, base_speed=moves),
-        iron_loss=None if at_rated is None else wound("iron_loss", float(at_rated.stator_iron)),
-        losses=None if at_rated is None else product(float(at_rated.total), **_loss_shares(at_rated)),
-        efficiency=None if at_rated is None else _efficiency(found, at_rated),
-        loaded_constant=wound("peak_torque", winding.chosen.torque_constant),
-        continuous_current=product(heat.slow.current / sqrt(2), resistance=-0.5),
-        short_circuit_current=product(shorted.current_peak, magnet_flux=1, inductance_d=-1),
-        braking_torque=product(shorted.torque, magnet_flux=2, inductance_q=-1),
-        braking_speed=product(shorted.best_speed_cold, resistance=1, inductance_q=-1),
-        # What the same heat in the copper allows, T ~ P^(e/2), the losses in iron and magnets as they are.
-        continuous_effort=product(float(heat.effort(heat.slow.torque)), copper_loss=found.elasticity / 2),
-        low_speed_damping=product(_reached(outcome, LowSpeedDamping), magnet_flux=2, resistance=-1),
+    )
+
+
+def _performance(found: ToleranceOutcome, winding: WindingOutcome, heat: HeatOutcome) -> PerformanceBudget:
+    values, speed = found.values, found.rated_speed
+    moves = float(speed == winding.chosen.base_speed)  # where the largest speed that is allowed is lower, it is exact
+    shaft, copper = values.peak_torque * speed, 1.5 * values.resistance * winding.limits.current_peak**2
+    shares = {"peak_torque": shaft / (shaft + copper), "resistance": copper / (shaft + copper)}
+    return PerformanceBudget(
+        peak_torque=of_wound(found, "peak_torque"),
+        ripple=of_wound(found, "ripple"),
+        cogging=of_wound(found, "cogging"),
+        needed_length=of_wound(found, "peak_torque", winding.length.needs[0].length),
+        continuous_torque=of_wound(found, "continuous_torque"),
+        base_speed=of_wound(found, "base_speed"),
+        power_at_base_speed=of_product(found, winding.chosen.power_at_base_speed, peak_torque=1, base_speed=1),
+        rated_speed=of_product(found, speed, base_speed=moves),
+        rated_power=of_product(found, values.continuous_torque * speed, continuous_torque=1, base_speed=moves),
+        overload_input=of_product(found, shaft + copper, **shares),
+        continuous_current=of_product(found, heat.slow.current / sqrt(2), resistance=-0.5),
+    )
+
+
+def _constants(found: ToleranceOutcome, winding: WindingOutcome) -> ConstantsBudget:
+    return ConstantsBudget(
+        torque_constant=of_wound(found, "magnet_flux", winding.chosen.no_load_torque_constant),
+        loaded_constant=of_wound(found, "loaded_flux", winding.chosen.torque_constant),
+        resistance=of_wound(found, "resistance"),
+        inductance_d=of_wound(found, "inductance_d"),
+        inductance_q=of_wound(found, "inductance_q"),
+        loaded_inductance_d=of_wound(found, "loaded_inductance_d"),
+        loaded_inductance_q=of_wound(found, "loaded_inductance_q"),
+    )
+
+
+def _losses(found: ToleranceOutcome, losses: LossMap | None) -> LossBudget:
+    copper = of_wound(found, "copper_loss")
+    if losses is None:
+        return LossBudget(copper)
+    at = losses.losses.at(found.values.continuous_torque, found.rated_speed)
+    shares, lost = _loss_shares(at), float(at.total / at.electrical)
+    return LossBudget(
+        copper_loss=copper,
+        iron_loss=of_wound(found, "iron_loss", float(at.stator_iron)),
+        losses=of_product(found, float(at.total), **shares),
+        efficiency=_efficiency(found, at),
+        rated_input=of_product(found, float(at.electrical), **{name: lost * share for name, share in shares.items()}),
+    )
+
+
+def _braking(found: ToleranceOutcome, braking: BrakingOutcome) -> BrakingBudget:
+    shorted = braking.shorted
+    return BrakingBudget(
+        short_circuit_current=of_product(found, shorted.current_peak, magnet_flux=1, inductance_d=-1),
+        braking_torque=of_product(found, shorted.torque, magnet_flux=2, inductance_q=-1),
+        braking_speed=of_product(found, shorted.best_speed_cold, resistance=1, inductance_q=-1),
+    )
+
+
+def _output(found: ToleranceOutcome, outcome: Outcome, heat: HeatOutcome) -> OutputBudget:
+    # What the same heat in the copper allows, T ~ P^(e/2), the losses in iron and magnets as they are.
+    by_heat = {"copper_loss": found.elasticity / 2}
+    damping = _reached(outcome, LowSpeedDamping)
+    return OutputBudget(
+        peak_effort=of_wound(found, "peak_torque", outcome.features.effort_peak),
+        continuous_effort=of_product(found, float(heat.effort(heat.slow.torque)), **by_heat),
+        low_speed_damping=of_product(found, damping, magnet_flux=2, resistance=-1),
     )
 
 

@@ -31,9 +31,7 @@ from uncertainty.deviations import Deviation
 
 _STEPS = 36  # of an electrical period: six in the sixth after which three equal phases see the same
 _COGGING_STEPS = 12  # of a period of the cogging
-TORQUE, FLUX_D, FLUX_Q, IRON_LOSS = range(
-    4
-)  # places of the quantities of a loaded state; the last with loss data alone
+TORQUE, FLUX_D, FLUX_Q, RIPPLE, IRON_LOSS = range(5)  # places of what a loaded state gives; the last with loss data
 _OF_THE_FINER_MESH = 2  # every so manieth angle is solved on the finer mesh
 
 Solutions = Sequence[FieldSolution]
@@ -52,18 +50,20 @@ class FieldState:
     @property
     def quantities(self) -> tuple[str, ...]:
         """Names of what is read."""
-        return "torque", "psi_d", "psi_q"
+        return "torque", "psi_d", "psi_q", "ripple"
 
     def solutions(self, model: FieldModel) -> list[FieldSolution]:
         """Evenly over the part of the period after which the machine sees the same again."""
-        angle = float(map_angles(model, 1)[0])
-        point = operating_point(model, angle, self.direct, self.quadrature)
-        return list(solve_part(model, point, _STEPS).solutions)
+        return _solved(model, self.direct, self.quadrature)
 
     def read(self, solutions: Solutions) -> np.ndarray:
-        """What the solutions make together [Nm/m, Wb/m, H/m or W/m], (k,), in the order of the quantities."""
-        means = _means([flux_and_torque(one) for one in solutions])
-        return np.array([means[name] for name in ("torque", "psi_d", "psi_q")])
+        """What the solutions make together [Nm/m, Wb/m, H/m or W/m], (k,), in the order of the quantities.
+
+        ripple: torque from peak to peak
+        """
+        each = [flux_and_torque(one) for one in solutions]
+        means, ripple = _means(each), float(np.ptp([one["torque"] for one in each]))
+        return np.array([*(means[name] for name in ("torque", "psi_d", "psi_q")), ripple])
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class LoadedIron(FieldState):
         return (*super().quantities, "iron_loss")
 
     def read(self, solutions: Solutions) -> np.ndarray:
-        """See ``FieldState``; read: [Nm/m, Wb/m, Wb/m], and the loss of stator and rotor [W/m], (4,)."""
+        """See ``FieldState``; read: [Nm/m, Wb/m, Wb/m, Nm/m], and the loss of stator and rotor [W/m], (5,)."""
         part = PartOfPeriod(tuple(solutions), finest_repetition(solutions[0].model.section))
         loss = sum(iron_loss(loci(part), self.law).total.at(self.frequency) for loci in (stator_loci, rotor_loci))
         return np.append(super().read(solutions), loss)
@@ -99,6 +99,29 @@ class NoLoad(FieldState):
         """See ``FieldState`` [Wb/m, H/m, H/m], (3,)."""
         means = _means([flux_torque_and_inductances(one) for one in solutions])
         return np.array([means[name] for name in self.quantities])
+
+
+@dataclass(frozen=True)
+class LoadedInductances(FieldState):
+    """The current on the q axis, and with a current against d beside it; apparent inductances as on the data sheet.
+
+    direct: of that second current, quadrature: of both [A peak]
+    """
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        return "psi_d", "l_d", "l_q"
+
+    def solutions(self, model: FieldModel) -> list[FieldSolution]:
+        """Of the one current, then of the other."""
+        return _solved(model, 0.0, self.quadrature) + _solved(model, self.direct, self.quadrature)
+
+    def read(self, solutions: Solutions) -> np.ndarray:
+        """Flux linkage of the first current and apparent inductances [Wb/m, H/m, H/m], (3,)."""
+        each = [flux_and_torque(one) for one in solutions]
+        first, weakened = _means(each[: len(each) // 2]), _means(each[len(each) // 2 :])
+        l_d = (weakened["psi_d"] - first["psi_d"]) / self.direct
+        return np.array([first["psi_d"], l_d, first["psi_q"] / self.quadrature])
 
 
 @dataclass(frozen=True)
@@ -192,6 +215,12 @@ def _variations(model: FieldModel, deviations: Sequence[Deviation]) -> dict[str,
     morpher = Morpher(model.section)
     found = {one.name: one.variation(morpher) for one in deviations}
     return {name: SameAmpereTurns(one) for name, one in found.items() if one is not None}
+
+
+def _solved(model: FieldModel, direct: float, quadrature: float) -> list[FieldSolution]:
+    """Under a current (i_d, i_q) over the finest part of the period; direct, quadrature: [A peak] of a coil."""
+    point = operating_point(model, float(map_angles(model, 1)[0]), direct, quadrature)
+    return list(solve_part(model, point, _STEPS).solutions)
 
 
 def _means(read: Sequence[dict[str, float]]) -> dict[str, float]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import nan, sqrt
+from math import hypot, nan, sqrt
 
 import numpy as np
 
 from drivetrain.outcome import OutcomeInputs
+from electrical.winding_selection import WEAKENING
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from geometry.machine import Machine
 from losses.stage import LossMap
@@ -21,8 +22,10 @@ from uncertainty.field_slopes import (
     FLUX_D,
     FLUX_Q,
     IRON_LOSS,
+    RIPPLE,
     Cogging,
     FieldState,
+    LoadedInductances,
     LoadedIron,
     NoLoad,
     StateSlopes,
@@ -36,6 +39,8 @@ from uncertainty.wound_slopes import (
     FULL,
     NO_LOAD,
     NOMINAL,
+    PARTS,
+    QUADRATURE,
     OperatedMachine,
     Quantities,
     operated_machine,
@@ -114,12 +119,12 @@ def tolerances_stage(
     operated, machine = operated_machine(flux_map, winding, windings), winding.wound.dimensions
     states = _states(operated, losses)
     found = workers.map("tolerances", solve_slopes, _slope_tasks(case, machine, states, tolerances.deviations))
-    looked_at = {name: StateTask(case, machine, states[name]) for name in (NO_LOAD, FULL)}
+    looked_at = {name: StateTask(case, machine, states[name]) for name in (NO_LOAD, FULL, QUADRATURE)}
     errors = workers.map("mesh of the tolerances", mesh_errors, looked_at)
     length, materials = winding.wound.active_length, parts.materials
     return ToleranceOutcome(
         tolerances=tolerances,
-        values=values_of(operated, _iron_loss(found) * length, gap_stress.cogging * length, materials),
+        values=values_of(operated, winding, _iron_loss(found) * length, gap_stress.cogging * length, materials),
         sensitivities=tuple(
             Sensitivity(one, relative_slopes(one, _slopes_of(one, found, states, machine), operated, materials))
             for one in tolerances.deviations
@@ -134,8 +139,15 @@ def tolerances_stage(
 def _states(operated: OperatedMachine, losses: LossMap | None) -> dict[str, FieldState]:
     """What is solved of the field, by name."""
     nominal, full = (operated.ampere_turns(one) for one in (operated.nominal, operated.full))
+    most = hypot(*full)
     loaded = FieldState(*nominal) if losses is None else LoadedIron(*nominal, losses.law, operated.frequency)
-    return {NO_LOAD: NoLoad(), NOMINAL: loaded, FULL: FieldState(*full), COGGING: Cogging()}
+    return {
+        NO_LOAD: NoLoad(),
+        NOMINAL: loaded,
+        FULL: FieldState(*full),
+        QUADRATURE: LoadedInductances(-WEAKENING * most, most),
+        COGGING: Cogging(),
+    }
 
 
 def _slope_tasks(
@@ -176,6 +188,7 @@ def _mesh(
     """Bounds, relative; torque and cogging have theirs already, the base speed that of its flux linkages."""
     magnets, inductance_d, inductance_q = errors[NO_LOAD].tolist()
     flux_d, flux_q = errors[FULL][[FLUX_D, FLUX_Q]].tolist()
+    loaded_flux, loaded_d, loaded_q = errors[QUADRATURE].tolist()
     torque = flux_map.torque_error
     return Quantities(
         peak_torque=torque,
@@ -187,6 +200,10 @@ def _mesh(
         base_speed=operated.base_speed_error(flux_d, flux_q),
         copper_loss=2 / operated.elasticity * torque,
         iron_loss=nan,
+        ripple=float(errors[FULL][RIPPLE]),
         cogging=gap_stress.cogging_error / gap_stress.cogging,
-        mass=0.0,
+        loaded_flux=loaded_flux,
+        loaded_inductance_d=loaded_d,
+        loaded_inductance_q=loaded_q,
+        **dict.fromkeys(PARTS, 0.0),
     )

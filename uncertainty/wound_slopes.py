@@ -24,10 +24,11 @@ from electrical.wound_machine import WoundMachine
 from losses.copper import copper_loss
 from magnetostatics.flux_map_stage import FluxMap
 from uncertainty.deviations import Deviation
-from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, TORQUE
+from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, RIPPLE, TORQUE
 
 _LITTLE = 0.01  # relative, of a current over which the torque is differentiated
 NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
+QUADRATURE = "full, on the q axis"
 FieldSlopes = Mapping[str, np.ndarray]  # state -> derivatives of its quantities over themselves, of one deviation
 
 
@@ -39,7 +40,11 @@ class Quantities:
     magnet_flux: of a phase, no load, which torque constant and back-EMF go with [Wb]
     inductance_d, inductance_q: incremental, no load [H]; resistance: of a phase [ohm]; base_speed [rad/s]
     copper_loss: at the continuous torque [W]; iron_loss: there, at the rated speed, NaN without loss data [W]
-    cogging: from peak to peak [Nm]; mass: of the active parts [kg]
+    ripple: of the peak torque, cogging: from peak to peak [Nm]
+    loaded_flux: on the d axis [Wb], loaded_inductance_d, loaded_inductance_q: apparent [H], with the overload current
+        on the q axis
+    stator_laminations, rotor_laminations, magnets, shaft, copper, mass: of the parts and all of them [kg]
+    rotor_inertia: [kg m^2]
     """
 
     peak_torque: float
@@ -51,10 +56,24 @@ class Quantities:
     base_speed: float
     copper_loss: float
     iron_loss: float
+    ripple: float
     cogging: float
+    loaded_flux: float
+    loaded_inductance_d: float
+    loaded_inductance_q: float
+    stator_laminations: float
+    rotor_laminations: float
+    magnets: float
+    shaft: float
+    copper: float
     mass: float
+    rotor_inertia: float
 
 
+PARTS = {
+    name: "total" if name == "mass" else name  # of ``drivetrain.masses.PartMasses``
+    for name in ("stator_laminations", "rotor_laminations", "magnets", "shaft", "copper", "mass", "rotor_inertia")
+}
 QUANTITIES = tuple(one.name for one in fields(Quantities))
 
 
@@ -129,9 +148,11 @@ def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: Windi
     )
 
 
-def values_of(operated: OperatedMachine, iron_loss: float, cogging: float, materials: PartMaterials) -> Quantities:
+def values_of(
+    operated: OperatedMachine, winding: WindingOutcome, iron_loss: float, cogging: float, materials: PartMaterials
+) -> Quantities:
     """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]."""
-    machine, resistance = operated.machine, operated.wound.phase_resistance
+    machine, resistance, chosen = operated.machine, operated.wound.phase_resistance, winding.chosen
     (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
     return Quantities(
         peak_torque=float(machine.torque(*operated.full)),
@@ -143,8 +164,12 @@ def values_of(operated: OperatedMachine, iron_loss: float, cogging: float, mater
         base_speed=float(corner_speed(machine, operated.limits, *operated.full)),
         copper_loss=float(copper_loss(resistance, *operated.nominal)),
         iron_loss=iron_loss,
+        ripple=winding.peak_torque_ripple,
         cogging=cogging,
-        mass=active_masses(operated.wound, materials).total,
+        loaded_flux=chosen.torque_constant / (1.5 * machine.pole_pairs),
+        loaded_inductance_d=chosen.inductance_d,
+        loaded_inductance_q=chosen.inductance_q,
+        **_masses(operated.wound, materials),
     )
 
 
@@ -156,6 +181,7 @@ def relative_slopes(
     resistance = _of_wound(deviation, operated.wound, lambda one: one.phase_resistance)
     magnets, inductance_d, inductance_q = field[NO_LOAD] + length
     nominal, full = field[NOMINAL] + length, field[FULL] + length
+    loaded_flux, loaded_d, loaded_q = field[QUADRATURE] + length
     return Quantities(
         peak_torque=float(full[TORQUE]),
         continuous_torque=float(nominal[TORQUE]),
@@ -166,8 +192,12 @@ def relative_slopes(
         base_speed=operated.base_speed_slope(float(full[FLUX_D]), float(full[FLUX_Q]), resistance),
         copper_loss=resistance - 2 / operated.elasticity * float(nominal[TORQUE]),
         iron_loss=float(nominal[IRON_LOSS]) if len(nominal) > IRON_LOSS else nan,
+        ripple=float(full[RIPPLE]),
         cogging=float(field[COGGING][0]) + length,
-        mass=_mass_slope(deviation, operated.wound, materials),
+        loaded_flux=float(loaded_flux),
+        loaded_inductance_d=float(loaded_d),
+        loaded_inductance_q=float(loaded_q),
+        **_mass_slopes(deviation, operated.wound, materials),
     )
 
 
@@ -178,9 +208,19 @@ def _of_wound(deviation: Deviation, wound: WoundMachine, read: Callable[[WoundMa
     return (more - less) / (2 * deviation.step * read(middle))
 
 
-def _mass_slope(deviation: Deviation, wound: WoundMachine, materials: PartMaterials) -> float:
-    """d ln(mass)/d(deviation) [1 per unit of the deviation]."""
-    drawn = active_masses(wound, materials).total
-    stacked = [active_masses(wound, deviation.parts(materials, way * deviation.step)).total for way in (1, -1)]
-    by_drawing = _of_wound(deviation, wound, lambda one: active_masses(one, materials).total)
-    return by_drawing + (stacked[0] - stacked[1]) / (2 * deviation.step * drawn)
+def _masses(wound: WoundMachine, materials: PartMaterials) -> dict[str, float]:
+    """Masses and inertia [kg, kg m^2] by their names in ``Quantities``."""
+    found = active_masses(wound, materials)
+    return {name: float(getattr(found, part)) for name, part in PARTS.items()}
+
+
+def _mass_slopes(deviation: Deviation, wound: WoundMachine, materials: PartMaterials) -> dict[str, float]:
+    """d ln(masses and inertia)/d(deviation) [1 per unit of the deviation], by drawing and stacking together."""
+    middle = replace(wound, machine=deviation.centre(wound.dimensions))
+
+    def moved(way: int) -> dict[str, float]:
+        change = way * deviation.step
+        return _masses(deviation.wound(middle, change), deviation.parts(materials, change))
+
+    more, less, value = moved(1), moved(-1), _masses(middle, materials)
+    return {name: (more[name] - less[name]) / (2 * deviation.step * value[name]) for name in PARTS}

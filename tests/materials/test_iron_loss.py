@@ -37,9 +37,21 @@ POINTS = [
     ("M400-50A", 50, 1.5, 3.580, +0.003),
     ("M400-50A", 400, 1.0, 34.84, -0.030),
     ("M400-50A", 2500, 1.0, 883.4, -0.017),
+    ("M800-50A", 50, 1.9, 8.512, +0.048),
+    ("M800-50A", 50, 1.6, 6.082, -0.045),
+    ("M800-50A", 50, 1.7, 6.830, -0.035),
+    ("M800-50A", 50, 1.5, 5.389, -0.024),
+    ("M800-50A", 100, 1.5, 13.51, -0.004),
+    ("M800-50A", 200, 1.5, 37.54, -0.001),
+    ("NO20-150Y320", 50, 0.5001, 0.2329, -0.138),
+    ("NO20-150Y320", 60, 0.5001, 0.2908, -0.119),
+    ("NO20-150Y320", 50, 1.6065, 2.654, -0.091),
+    ("NO20-150Y320", 400, 0.7001, 6.447, -0.002),
+    ("NO20-150Y320", 2000, 1.0002, 136.4, +0.012),
 ]
 # Guaranteed limits at 1.5 T: EN 10106 at 50 Hz; 0.36 mm M19 at 60 Hz 1.74 W/lb (AISI). Typical sheet is below them.
-LIMITS = {"M235-35A": (50, 2.35), "M19": (60, 1.74 / POUND), "M400-50A": (50, 4.00)}
+LIMITS = {"M235-35A": (50, 2.35), "M19": (60, 1.74 / POUND), "M400-50A": (50, 4.00), "M800-50A": (50, 8.00)}
+THIN_LIMIT = 400, 1.0, 15.0  # Hz, T, W/kg: that of the name of a thin sheet
 
 
 @pytest.mark.reference
@@ -59,8 +71,8 @@ def test_largest_error_is_stated(grade):
 @pytest.mark.reference
 @pytest.mark.parametrize("grade", FITTED)
 def test_typical_sheet_keeps_its_guarantee(grade):
-    frequency, limit = LIMITS[grade]
-    assert 0.8 * limit < LAWS[grade].specific_loss(frequency, 1.5) < limit
+    frequency, peak, limit = (LIMITS[grade][0], 1.5, LIMITS[grade][1]) if grade in LIMITS else THIN_LIMIT
+    assert 0.65 * limit < LAWS[grade].specific_loss(frequency, peak) < limit
 
 
 @pytest.mark.parametrize("grade", ["M235-35A", "M400-50A"])
@@ -91,12 +103,11 @@ def test_the_guaranteed_loss_is_that_of_the_name(grade):
     assert law.hysteresis > 0 and 0.1 < law.eddy * (50 * 1.5) ** 2 / law.specific_loss(50.0, 1.5) < 0.3
 
 
-def test_a_table_at_50_hertz_of_one_of_them():
-    """M800-50A, typical: 6.60 W/kg at 1.5 T and 3.05 at 1.0 T (two values of pyleecan's material files): the shape
-    over the flux density is kept, the level is that of the guarantee."""
+def test_another_makers_sheet_of_the_grade_has_the_same_shape():
+    """M800-50A, typical: 6.60 W/kg at 1.5 T and 3.05 at 1.0 T (two values of pyleecan's material files)."""
     law = iron_loss_law("M800-50A")
-    assert law.specific_loss(50.0, 1.0) / law.specific_loss(50.0, 1.5) == pytest.approx(3.05 / 6.60, rel=0.06)
-    assert 6.60 < law.specific_loss(50.0, 1.5)
+    assert law.specific_loss(50.0, 1.0) / law.specific_loss(50.0, 1.5) == pytest.approx(3.05 / 6.60, rel=0.07)
+    assert 0.8 * 6.60 < law.specific_loss(50.0, 1.5) < 6.60
 
 
 def test_classical_eddy_is_the_textbook_one():

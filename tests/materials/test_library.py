@@ -15,7 +15,7 @@ def write(folder, text, name="own.csv"):
 
 
 def test_the_grades_of_the_package_load():
-    assert len(known_steels()) == 11 and {"35PN270", "M270-35A"} < set(known_steels())
+    assert len(known_steels()) == 12 and {"35PN270", "M270-35A"} < set(known_steels())
     assert load_steel("35PN270").name == "35PN270"
     assert load_steel("35PN270").flux_density(500.0) == pytest.approx(1.37458745883333)
     assert load_steel("M270-35A").flux_density(596.0) == pytest.approx(1.4)

@@ -13,7 +13,16 @@ from materials.iron_loss import iron_loss_law
 from study.inputs_field import field_case
 from study.read import read_study
 from uncertainty.deviations import MagnetLength, MagnetRemanence, SlotOpening, StackLength, ToothWidth
-from uncertainty.field_slopes import Cogging, FieldState, LoadedIron, NoLoad, StateTask, mesh_errors, solve_slopes
+from uncertainty.field_slopes import (
+    Cogging,
+    FieldState,
+    LoadedInductances,
+    LoadedIron,
+    NoLoad,
+    StateTask,
+    mesh_errors,
+    solve_slopes,
+)
 
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.0, gap_layers=1, across_iron=1.0)
 CASE = replace(field_case(read_study("motorcycle")), density=COARSE)
@@ -40,6 +49,7 @@ def solved_again(deviation, state):
     (
         (LoadedIron(-300.0, 800.0, LAW, 300.0), ToothWidth(HALF)),
         (NoLoad(), MagnetLength(HALF)),
+        (LoadedInductances(-300.0, 1200.0), MagnetLength(HALF)),
         (Cogging(), SlotOpening(HALF)),
         (Cogging(), MagnetRemanence(0.03)),
     ),
@@ -63,6 +73,23 @@ def test_a_coarse_mesh_owns_up():
     task = StateTask(CASE, MACHINE, state)
     off = np.abs(solve_slopes(task).values / close - 1)
     assert (off < mesh_errors(task)).all() and off.max() > 1e-3
+
+
+def test_the_inductances_under_load_are_those_of_the_data_sheet():
+    """A machine of constant parameters: psi_d = psi_m + L_d i_d, psi_q = L_q i_q, whatever the order of its angles."""
+    flux, l_d, l_q, direct, quadrature = 0.3, 2e-5, 3e-5, -300.0, 1200.0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            "uncertainty.field_slopes.flux_and_torque", lambda i: {"psi_d": flux + l_d * i, "psi_q": l_q * 1200}
+        )
+        found = LoadedInductances(direct, quadrature).read([0.0, 0.0, direct, direct])
+    assert found == pytest.approx([flux, l_d, l_q])
+
+
+def test_the_ripple_is_from_peak_to_peak():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("uncertainty.field_slopes.flux_and_torque", lambda t: {"psi_d": 1.0, "psi_q": 2.0, "torque": t})
+        assert FieldState(0.0, 1.0).read([50.0, 53.0, 49.0, 52.0]) == pytest.approx([51.0, 1.0, 2.0, 4.0])
 
 
 def test_ampere_turns_are_kept_where_a_wider_tooth_leaves_less_room():

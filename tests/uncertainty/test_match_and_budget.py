@@ -132,6 +132,40 @@ def test_the_efficiency_moves_with_its_losses():
     assert known.tolerance == pytest.approx(0.1 * (0.75 * 0.04 - 0.2 * 0.03))
 
 
+def test_what_goes_into_the_terminals_moves_with_the_losses_alone():
+    """The rated point stays: at 10 % of losses, three quarters copper, a fifth iron, these move a tenth of the input.
+    At full current, 9 W at the shaft and 1.5 R I^2 = 3 W: three quarters of the torque, a quarter of the resistance."""
+    at = PowerLosses(*map(np.array, (9.0, 1.0, 0.75, 0.15, 0.05, 0.05, 0.0)))
+    quantities = {"peak_torque": 9.0, "resistance": 2.0, "continuous_torque": 9.0}
+    names = ("copper_loss", "iron_loss", "ripple", "cogging", "base_speed")
+    one = moved(
+        copper_loss=0.04,
+        iron_loss=-0.03,
+        peak_torque=0.02,
+        resistance=0.08,
+        **dict.fromkeys((*names[2:], "continuous_torque"), 0.0),
+    )
+    known = dict.fromkeys((*names, *quantities), 0.0)
+    found = SimpleNamespace(
+        values=SimpleNamespace(**known | quantities),
+        mesh=SimpleNamespace(**known),
+        sensitivities=(one,),
+        rated_speed=1.0,
+    )
+    losses = SimpleNamespace(losses=SimpleNamespace(at=lambda torque, speed: at))
+    rated = budget._losses(found, losses).rated_input
+    assert rated.value == 10.0 and rated.tolerance == pytest.approx(0.1 * (0.75 * 0.04 - 0.2 * 0.03))
+    need = SimpleNamespace(length=0.04)
+    winding = SimpleNamespace(
+        chosen=SimpleNamespace(base_speed=2.0, power_at_base_speed=18.0),
+        limits=SimpleNamespace(current_peak=1.0),
+        length=SimpleNamespace(needs=(need,)),
+    )
+    heat = SimpleNamespace(slow=SimpleNamespace(current=1.0))
+    full = budget._performance(found, winding, heat).overload_input
+    assert full.value == 12.0 and full.tolerance == pytest.approx(0.75 * 0.02 + 0.25 * 0.08)
+
+
 def test_uncertainties_add_as_the_gum_says():
     known = Uncertain(200.0, 0.003, 0.004, 0.012)
     assert known.combined == pytest.approx(0.013) and known.expanded == pytest.approx(0.026)

@@ -13,13 +13,23 @@ from electrical.winding_stage import winding_stage
 from losses.copper import copper_loss
 from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, Saturating, flux_map
 from uncertainty.deviations import MagnetRemanence, Stacking, StackLength, ToothWidth, WireDiameter
-from uncertainty.wound_slopes import COGGING, FULL, NO_LOAD, NOMINAL, operated_machine, relative_slopes, values_of
+from uncertainty.wound_slopes import (
+    COGGING,
+    FULL,
+    NO_LOAD,
+    NOMINAL,
+    PARTS,
+    QUADRATURE,
+    operated_machine,
+    relative_slopes,
+    values_of,
+)
 
 MAP = flux_map(Saturating())
 MATERIALS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
 WINDING = winding_stage(MAP, MATCHED, DEMAND, INPUTS, GOOD)
 OPERATED = operated_machine(MAP, WINDING, INPUTS)
-NOTHING = {NO_LOAD: np.zeros(3), NOMINAL: np.zeros(4), FULL: np.zeros(3), COGGING: np.zeros(1)}
+NOTHING = {NO_LOAD: np.zeros(3), NOMINAL: np.zeros(5), FULL: np.zeros(4), QUADRATURE: np.zeros(3), COGGING: np.zeros(1)}
 LITTLE = 1e-3  # relative
 
 
@@ -28,15 +38,15 @@ def slopes(deviation, **field):
 
 
 def built_again(deviation, change):
-    """Resistance [ohm], torque at full current [Nm], base speed [rad/s] and mass [kg] of the machine with it."""
+    """Resistance [ohm], torque at full current [Nm], base speed [rad/s] and masses [kg] of the machine with it."""
     wound = deviation.wound(OPERATED.wound, change)
-    machine = wound.on_map(MAP.data)
+    machine, masses = wound.on_map(MAP.data), active_masses(wound, deviation.parts(MATERIALS, change))
     return np.array(
         [
             wound.phase_resistance,
             float(machine.torque(*OPERATED.full)),
             float(corner_speed(machine, OPERATED.limits, *OPERATED.full)),
-            active_masses(wound, deviation.parts(MATERIALS, change)).total,
+            *(getattr(masses, part) for part in PARTS.values()),
         ]
     )
 
@@ -48,7 +58,7 @@ def test_length_wire_and_stacking_are_those_of_the_machine_built_again(deviation
     more, less = built_again(deviation, change), built_again(deviation, -change)
     expected = np.log(more / less) / (2 * change)
     found = slopes(deviation)
-    got = [found.resistance, found.peak_torque, found.base_speed, found.mass]
+    got = [found.resistance, found.peak_torque, found.base_speed, *(getattr(found, name) for name in PARTS)]
     assert got == pytest.approx(expected.tolist(), rel=1e-3, abs=1e-9) and np.any(expected)
 
 
@@ -63,7 +73,7 @@ def test_a_wider_tooth_has_a_longer_end_turn():
 def test_the_copper_loss_is_that_of_the_same_torque():
     """A machine whose torque is a per mille less at every current takes the current that makes up for it."""
     machine, torque = OPERATED.machine, float(OPERATED.machine.torque(*OPERATED.nominal))
-    weak = dict(NOTHING, **{NOMINAL: np.array([-1.0, 0.0, 0.0, 0.0])})
+    weak = dict(NOTHING, **{NOMINAL: np.array([-1.0, 0.0, 0.0, 0.0, 0.0])})
     found = relative_slopes(MagnetRemanence(1.0), weak, OPERATED, MATERIALS)
 
     def missing(current):
@@ -85,7 +95,7 @@ def test_the_base_speed_falls_with_flux_and_its_error_adds_up():
 
 
 def test_values_are_those_of_the_stage():
-    values = values_of(OPERATED, 20.0, 0.06, MATERIALS)
+    values = values_of(OPERATED, WINDING, 20.0, 0.06, MATERIALS)
     assert values.peak_torque == pytest.approx(WINDING.peak_torque)
     assert values.base_speed == pytest.approx(WINDING.chosen.base_speed, rel=1e-6)
     assert values.magnet_flux * 1.5 * 5 == pytest.approx(WINDING.chosen.no_load_torque_constant, rel=1e-6)
@@ -93,6 +103,6 @@ def test_values_are_those_of_the_stage():
 
 
 def test_without_loss_data_the_iron_loss_is_not_known():
-    found = slopes(StackLength(1.0), **{NOMINAL: np.zeros(3)})
+    found = slopes(StackLength(1.0), **{NOMINAL: np.zeros(4)})
     assert np.isnan(found.iron_loss) and found.copper_loss != 0
     assert slopes(StackLength(1.0)).iron_loss == pytest.approx(1 / OPERATED.wound.active_length)
