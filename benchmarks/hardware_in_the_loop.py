@@ -21,54 +21,28 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 
-from actuator.linear import tangent_plant
-from actuator.observer import ForceObserver
 from actuator.terminals import Terminals
-from benchmarks.hardware_figure import draw
-from control.design import loop_for
-from control.sampled_loop import SampledLoop
 from export.fmu import write_fmu
+from figures.hardware_loop import loop_runs
+from figures.style import save_png
 from pipeline.modules import PROJECT
-from tests.actuator.thesis import PEAK_TORQUE, RATIO, prototype
-from tests.vehicle.thesis import CRUISE_SPEED, quarter_car
+from tests.actuator.thesis import PEAK_TORQUE, prototype
 from units import GRAVITY
-from vehicle.comfort import weighted_acceleration
-from vehicle.hardware_loop import (
-    Device,
-    HydraulicAxis,
-    LoadCellLoop,
-    LoopRun,
-    LowLevel,
-    NoLoop,
-    ObserverLoop,
-    Platform,
-    SimulatedDevice,
-    measured,
-    run_loop,
-)
-from vehicle.indices import rms
-from vehicle.real_time import Pace, first_in_line
+from vehicle.hardware_case import ENCODER, LOAD_CELL, LoopTest, WantedLoop, loop_numbers, low_levels
+from vehicle.hardware_loop import Device, LoopRun, SimulatedDevice, measured
+from vehicle.printed_car import PRINTED_CAR, PRINTED_ROAD, PRINTED_SPEED
+from vehicle.real_time import first_in_line
+from vehicle.ride import Scenario
 from vehicle.road import IsoRoad, roughness_of_class
 
 FOLDER = PROJECT / "results" / "reference" / "benchmarks"
-SAMPLE = 5e-4  # s
 DURATION = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0  # s
-AXIS = 100.0  # Hz, stand-in: see ``HydraulicAxis``
-ENCODER = 2**14  # counts of a turn, a usual resolution
 DAMPINGS = (1000.0, 4000.0)  # Ns/m: that of the thesis's test (section 5.5), and more
-BANDWIDTH, MARGIN, WORKING_FORCE = 100.0, np.radians(50.0), 300.0  # Hz, rad, N: what the force loop is made for
-OBSERVER = 200.0  # Hz, twice the bandwidth of the loop
+WANTED = WantedLoop()
+SAMPLE = WANTED.sample_time
 TERMINALS = Terminals(48.0, (0.0, PEAK_TORQUE), (0.0, PEAK_TORQUE / 42.7e-3))  # identified constant of Table 4.2
 DEVICE = prototype()
-NONE, CELL, OBSERVED = "no force loop", "load cell", "observer"
-
-
-def low_level(kind: str) -> LowLevel:
-    """One of the three."""
-    if kind == NONE:
-        return NoLoop()
-    loop = SampledLoop(loop_for(tangent_plant(DEVICE, WORKING_FORCE), BANDWIDTH, MARGIN), SAMPLE, PEAK_TORQUE / RATIO)
-    return LoadCellLoop(loop) if kind == CELL else ObserverLoop(loop, ForceObserver(DEVICE, SAMPLE, OBSERVER))
+LEVELS = low_levels(DEVICE, WANTED)
 
 
 @dataclass(frozen=True)
@@ -82,27 +56,19 @@ class Case:
 
 def driven(case: Case, device: Device) -> tuple[LoopRun, str]:
     """One paced run, and how it was scheduled."""
-    time = np.arange(0.0, DURATION + SAMPLE, SAMPLE)
-    road = IsoRoad(roughness_of_class("B"), 0).heights(time, CRUISE_SPEED)[:, None]
-    platform = Platform(
-        quarter_car(),
-        lambda told: case.damping * (told.body_velocity - told.wheel_velocity),
-        low_level(case.low_level),
-        SAMPLE,
-    )
-    run_loop(platform, device, HydraulicAxis(AXIS), 0 * road[:20])  # compiles, at rest
+    road = Scenario("road", PRINTED_SPEED, DURATION, IsoRoad(roughness_of_class(PRINTED_ROAD), 0))
+    test = LoopTest(PRINTED_CAR, road, case.damping, SAMPLE)
+    test.warm_up(device, LEVELS[case.low_level]())
     with first_in_line() as scheduling:
-        return run_loop(platform, device, HydraulicAxis(AXIS), road, Pace(SAMPLE)), scheduling
+        return test.run(device, LEVELS[case.low_level](), paced=True), scheduling
 
 
 def row(case: Case, run: LoopRun, scheduling: str) -> dict[str, object]:
     """Of the table."""
-    found: dict[str, object] = {
-        "bench": case.bench, "low_level": case.low_level, "damping_Ns_per_m": case.damping,
-        "wanted_rms_N": rms(run.wanted), "force_rms_N": rms(run.force), "force_error_rms_N": run.force_error,
-        "force_peak_N": float(np.abs(run.force).max()),
-        "comfort_g": rms(weighted_acceleration(run.acceleration, SAMPLE)) / GRAVITY,
-    }  # fmt: skip
+    road = Scenario("road", PRINTED_SPEED, DURATION, IsoRoad(roughness_of_class(PRINTED_ROAD), 0))
+    numbers = loop_numbers(LoopTest(PRINTED_CAR, road, case.damping, SAMPLE), run)
+    numbers["comfort_g"] = numbers.pop("comfort_rms_m_per_s2") / GRAVITY
+    found: dict[str, object] = {"bench": case.bench, "low_level": case.low_level} | numbers
     machine = {"scheduling": scheduling, "load": os.getloadavg()[0], "cores": os.cpu_count()}
     return found | (run.timing.row() if run.timing is not None else {}) | machine
 
@@ -110,7 +76,7 @@ def row(case: Case, run: LoopRun, scheduling: str) -> dict[str, object]:
 def simulated() -> Iterator[tuple[Case, LoopRun, str]]:
     """Every low-level control at every damping."""
     for damping in DAMPINGS:
-        for kind in (NONE, CELL, OBSERVED):
+        for kind in LEVELS:
             case = Case(kind, damping)
             yield case, *driven(case, SimulatedDevice(DEVICE, SAMPLE, ENCODER))
 
@@ -123,7 +89,7 @@ def exported() -> Iterator[tuple[Case, LoopRun, str]]:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "actuator.fmu"
         write_fmu(path, DEVICE, TERMINALS)
-        case = Case(CELL, DAMPINGS[0], "exported unit in FMPy")
+        case = Case(LOAD_CELL, DAMPINGS[0], "exported unit in FMPy")
         yield case, *driven(case, UnitDevice(path, Path(folder) / "unit"))
 
 
@@ -166,8 +132,8 @@ def main() -> None:
     table = pd.DataFrame([row(*one) for one in runs])
     FOLDER.mkdir(parents=True, exist_ok=True)
     table.to_csv(FOLDER / "hardware_in_the_loop.csv", index=False, float_format="%.6g")
-    draw({(case.low_level, case.damping): run for case, run, _ in runs if case.bench == "stepped actuator"},
-         FOLDER / "hardware_in_the_loop.png")  # fmt: skip
+    shown = {(case.low_level, case.damping): run for case, run, _ in runs if case.bench == "stepped actuator"}
+    save_png(loop_runs(shown), FOLDER / "hardware_in_the_loop.png")
     print(table.to_string(index=False))
     if len(runs) > 2 * 3:
         same = np.abs(runs[1][1].force - runs[-1][1].force).max()

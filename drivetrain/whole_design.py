@@ -205,6 +205,29 @@ def _share(ends: tuple[float, float], value: float) -> float:
     return (value - ends[0]) / (ends[1] - ends[0]) if ends[1] > ends[0] else 0.0
 
 
+@dataclass(frozen=True)
+class RoadMachine:
+    """The machine of a design as a ride needs it, by the fits.
+
+    peak_torque: at the overload current density [Nm]; copper: loss over squared torque [W/(Nm)^2]; pole_pairs
+    idle: loss of iron and magnets over the electrical frequency of the turning rotor, whole machine [W]
+    """
+
+    peak_torque: float
+    copper: float
+    pole_pairs: int
+    idle: FrequencyTerms
+
+
+def road_machine(section: RoadSection, design: WholeDesign, copper: CopperLoading) -> RoadMachine:
+    """Of a design; copper: of the winding. The torque is proportional to the current, as in ``road_loss``."""
+    length = design.active_length
+    density = copper.nominal_current_density / (section.torque_per_length_nominal * length)  # per Nm
+    heat = section.copper(copper.packing).volume(length) * copper.resistivity * density**2
+    idle = FrequencyTerms(*(length * getattr(section.idle, one.name) for one in fields(FrequencyTerms)))
+    return RoadMachine(section.torque_per_length_overload * length, heat, section.machine.pole_pairs, idle)
+
+
 def road_loss(section: RoadSection, design: WholeDesign, demand: RoadDemand) -> float:
     """Copper loss of the RMS force and idle loss of the moving rotor [W].
 
@@ -215,20 +238,17 @@ def road_loss(section: RoadSection, design: WholeDesign, demand: RoadDemand) -> 
     damping, so that it would say nothing that the damping does not; a small tau_t, which lowers it, turns the
     rotor faster. Left out: gears, bearings, and the iron loss that the current adds.
     """
+    machine = road_machine(section, design, demand.copper)
     torque = demand.force_rms * design.transmission_ratio
-    copper = demand.copper
-    density = copper.nominal_current_density * torque / (section.torque_per_length_nominal * design.active_length)
-    volume = section.copper(copper.packing).volume(design.active_length)
-    heat = volume * copper.resistivity * density**2
-    frequency = section.machine.pole_pairs * demand.velocity_rms / (2 * pi * design.transmission_ratio)
-    return heat + design.active_length * _idle_loss(section.idle, frequency)
+    frequency = machine.pole_pairs * demand.velocity_rms / (2 * pi * design.transmission_ratio)
+    return machine.copper * torque**2 + _idle_loss(machine.idle, frequency)
 
 
 _MEAN, _MEAN_15 = sqrt(2 / pi), 2**0.75 * gamma(1.25) / sqrt(pi)  # <|x|>, <|x|^1.5> of the standard normal distribution
 
 
 def _idle_loss(idle: FrequencyTerms, frequency_rms: float) -> float:
-    """Mean [W/m] over a normally distributed speed whose electrical frequency has this RMS value [Hz]."""
+    """Mean [W] over a normally distributed speed whose electrical frequency has this RMS value [Hz]."""
     linear, quadratic = idle.hysteresis * frequency_rms, idle.eddy * frequency_rms**2
     return _MEAN * linear + quadratic + _MEAN_15 * idle.excess * frequency_rms**1.5
 

@@ -22,12 +22,14 @@ from drivetrain.whole_design import (
     OBJECTIVES,
     RatedDesign,
     RoadDemand,
+    RoadMachine,
     RoadSection,
     WholeDesign,
     WholeProblem,
     front,
     improved,
     road_loss,
+    road_machine,
     spread,
 )
 from geometry.family import Combination
@@ -182,7 +184,7 @@ class WholeSearch:
 
     staged: the design found stage by stage, by the model; bettered: in one objective at a time; front: by the model
     solved: staged, bettered and some of the front by the field, in this order; force_rms: of the road [N]
-    choices: what the search could choose from
+    choices: what the search could choose from; machines: of the solved designs and then of the front, by the fits
     """
 
     staged: RatedDesign
@@ -191,6 +193,7 @@ class WholeSearch:
     solved: tuple[SolvedDesign, ...]
     force_rms: float
     choices: SearchRange
+    machines: tuple[RoadMachine, ...]
 
 
 def optimise_stage(
@@ -223,7 +226,15 @@ def optimise_stage(
     )
     shown = _shown(staged, bettered, spread(found, inputs.solved))
     solved, choices = _solved(problem, case, law, shown, workers), _choices(problem)
-    return WholeSearch(staged, bettered, found, solved, requirements.force_rms, choices)
+    every = (*(one.model for one in solved), *found)
+    machines = tuple(_machine(problem, matcher, one.design) for one in every)
+    return WholeSearch(staged, bettered, found, solved, requirements.force_rms, choices, machines)
+
+
+def _machine(problem: WholeProblem, matcher: Matcher, design: WholeDesign) -> RoadMachine:
+    section = problem.section_at(design.combination, design.stator_outer_radius)
+    assert isinstance(section, RoadSection)  # all sections of this search carry their idle loss
+    return road_machine(section, design, matcher.loading)
 
 
 def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:

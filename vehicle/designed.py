@@ -16,6 +16,7 @@ from drivetrain.linkage_stage import LinkageFront
 from drivetrain.outcome import Outcome
 from electrical.braking import strongest_braking
 from electrical.dq import mtpa_currents, torque_speed_envelope
+from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_stage import WindingOutcome
 from gearbox.stage import GearboxOutcome
 from losses.stage import LossMap
@@ -110,3 +111,20 @@ def torque_limit(winding: WindingOutcome, flux_map: FluxMap, losses: LossMap) ->
     braking = np.nan_to_num(strongest_braking(machine, winding.limits, speed[1:]).torque, nan=0.0)
     braking = np.minimum(np.concatenate([driving[:1], braking]), winding.peak_torque)
     return TorqueLimit(*(tuple(one.tolist()) for one in (speed, driving, braking)))
+
+
+@dataclass(frozen=True)
+class BenchMachine:
+    """The machine of an actuator as a bench meets it at its terminals.
+
+    machine: constant parameters, inductances at the overload current; terminals: currents over torque
+    """
+
+    machine: SynchronousMachine
+    terminals: Terminals
+
+
+def bench_machine(winding: WindingOutcome, flux_map: FluxMap) -> BenchMachine:
+    """Of a design."""
+    machine = winding.wound.on_map(flux_map.data).constant_parameters(float(winding.limits.current_peak))
+    return BenchMachine(machine, designed_terminals(winding, flux_map))

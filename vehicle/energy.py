@@ -177,12 +177,24 @@ def _stored(history: RideHistory) -> float:
 
 def _reactive(history: RideHistory) -> tuple[float, float]:
     """Apparent powers of mount and mass [W], which have no active part."""
+    flows = _deformation(history)[1], history.inside.mass_velocity
+    elastic, inertial = (power_of(*one).apparent for one in zip(_reactive_forces(history), flows, strict=True))
+    return elastic, inertial
+
+
+def reactive_powers(history: RideHistory) -> tuple[np.ndarray, np.ndarray]:
+    """What the spring of the mount and the equivalent mass take and give back [W], both (t,) (thesis Fig. 4.39)."""
+    elastic, inertial = _reactive_forces(history)
+    return elastic * _deformation(history)[1], inertial * history.inside.mass_velocity
+
+
+def _reactive_forces(history: RideHistory) -> tuple[np.ndarray, np.ndarray]:
+    """Of the spring of the mount and of the equivalent mass [N], both (t,)."""
     mount, v = history.run.actuator.mount, history.inside.mass_velocity
-    inertial = power_of(_masses(history) * np.gradient(v, history.time), v).apparent
-    if not isinstance(mount, CompliantMount):
-        return 0.0, inertial
+    inertial = _masses(history) * np.gradient(v, history.time)
     deformation, rate = _deformation(history)
-    return power_of(mount.force(deformation, 0 * rate), rate).apparent, inertial
+    elastic = mount.force(deformation, 0 * rate) if isinstance(mount, CompliantMount) else 0 * rate
+    return elastic, inertial
 
 
 @dataclass(frozen=True)

@@ -21,15 +21,15 @@ from vehicle.commands import Feedback
 from vehicle.damping import DamperCurve
 from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
-from vehicle.energy import RideEnergy, ride_energy
+from vehicle.energy import RideEnergy, reactive_powers, ride_energy
 from vehicle.models import QuarterCar, Vehicle
-from vehicle.quarter_car import LqrWeights, lqr
+from vehicle.printed_car import HANDLING, TRADE_OFF
+from vehicle.quarter_car import lqr
 from vehicle.ride import RideHistory, Run, simulate
 from vehicle.ride_heat import RideTemperature, ride_temperature
 
 QUASI_IDEAL, REAL, OPEN = "quasi-ideal", "real", "real, no force loop"
-# Settings of Table 4.1, as the grid has them on which they were found.
-LQR_SETTINGS = {"LQR trade-off": LqrWeights(42.9, 3.556e5), "LQR handling": LqrWeights(3.39e6, 2.223e7)}
+LQR_SETTINGS = {"LQR trade-off": TRADE_OFF, "LQR handling": HANDLING}
 STEP = 5e-4  # s, of the histories: means of powers are taken over their samples
 SHOWN = (4.0, 8.0)  # s, of the first road, in figures; of a shorter one its second half
 WORKING_FORCES = (100.0, 300.0, 1000.0)  # N, about which the force loop is looked at
@@ -77,8 +77,9 @@ class EnergyOutcome:
     """What the rides come to.
 
     own: the actuator and its loop; cases: every command with every actuator; loop: about the working forces
-    traces: of the first road with the real actuator, over (command, time): time [s], (t,), wanted, force [N], shaft,
-    electrical, lost: powers [W], velocity [m/s], torque [Nm], rotor_speed [rad/s], each (command, t)
+    traces: of the first road, over (actuator, command, time), quasi-ideal and real: time [s], (t,), wanted, force [N],
+    shaft, electrical, lost, elastic, inertial: powers [W], velocity [m/s], torque [Nm], rotor_speed [rad/s], tyre_load
+    [N], felt: weighted acceleration [m/s^2], each (actuator, command, t)
     temperatures: under the first road with the real actuator, one a command; none where no thermal model was given
     """
 
@@ -106,10 +107,11 @@ def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | Non
     }
     found = iter(workers.map("rides", energy_of, tasks).values())
     cases = tuple(EnergyCase(*name, tuple(next(found) for _ in group)) for name, group in runs.items())
-    first = {command: group[0] for (command, kind), group in runs.items() if kind == REAL}
-    histories = dict(zip(first, simulate(list(first.values())), strict=True))
+    first = [[runs[command, kind][0] for command in commands_of(case)] for kind in (QUASI_IDEAL, REAL)]
+    ideal, histories = (dict(zip(commands_of(case), simulate(group), strict=True)) for group in first)
     warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
-    return EnergyOutcome(own, cases, tuple(loop_points(own)), _traces(histories), tuple(warm))
+    traces = _traces({QUASI_IDEAL: ideal, REAL: histories})
+    return EnergyOutcome(own, cases, tuple(loop_points(own)), traces, tuple(warm))
 
 
 def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:
@@ -152,24 +154,35 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
-def _traces(histories: dict[str, RideHistory]) -> xr.Dataset:
-    time = next(iter(histories.values())).time
+def _traces(histories: dict[str, dict[str, RideHistory]]) -> xr.Dataset:
+    """Of histories by actuator and command."""
+    actuators, commands = list(histories), list(next(iter(histories.values())))
+    time = histories[actuators[0]][commands[0]].time
     shown = (time >= min(SHOWN[0], time[-1] / 2)) & (time <= SHOWN[1])
-    rows: dict[str, list[np.ndarray]] = {}
-    for history in histories.values():
-        inside = history.inside
-        lost = history.run.actuator.drive.loss.at(inside.torque, inside.rotor_speed)
-        values = {
-            "wanted": inside.wanted,
-            "force": history.suspension_force,
-            "shaft": history.suspension_force * history.velocity,
-            "electrical": inside.torque * inside.rotor_speed - lost,
-            "lost": lost,
-            "velocity": history.velocity,
-            "torque": inside.torque,
-            "rotor_speed": inside.rotor_speed,
-        }
-        for name, value in values.items():
-            rows.setdefault(name, []).append(value[shown])
-    data = {name: (("command", "time"), np.array(value)) for name, value in rows.items()}
-    return xr.Dataset(data, {"command": list(histories), "time": time[shown]})
+    seen = [[_seen(one) for one in group.values()] for group in histories.values()]
+    data = {
+        name: (("actuator", "command", "time"), np.array([[one[name][shown] for one in group] for group in seen]))
+        for name in seen[0][0]
+    }
+    return xr.Dataset(data, {"actuator": actuators, "command": commands, "time": time[shown]})
+
+
+def _seen(history: RideHistory) -> dict[str, np.ndarray]:
+    """What figures show of a ride, each (t,)."""
+    inside = history.inside
+    lost = history.run.actuator.drive.loss.at(inside.torque, inside.rotor_speed)
+    elastic, inertial = reactive_powers(history)
+    return {
+        "wanted": inside.wanted,
+        "force": history.suspension_force,
+        "shaft": history.suspension_force * history.velocity,
+        "electrical": inside.torque * inside.rotor_speed - lost,
+        "lost": lost,
+        "elastic": elastic,
+        "inertial": inertial,
+        "velocity": history.velocity,
+        "torque": inside.torque,
+        "rotor_speed": inside.rotor_speed,
+        "tyre_load": history.tyre_loads[-1],
+        "felt": history.weighted_acceleration,
+    }

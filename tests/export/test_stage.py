@@ -1,6 +1,6 @@
 """What the package reads at the rated point, against other routes to the same numbers; and its data sheet."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from math import inf, sqrt
 from types import SimpleNamespace
 
@@ -24,10 +24,11 @@ from report import package as package_report
 from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRED, TRANSMISSION, Saturating, flux_map
 from tests.losses.test_stage_and_figure import LOSSES, Computed
 from tests.magnetostatics.test_flux_map_stage import CASE
+from tests.uncertainty.a_budget import budget_of_alike
 from thermal.cooling import HeatLimits
 from thermal.machine import MAGNETS
 from thermal.rating import MAGNET_LIMIT, Rating
-from uncertainty.budget import Budget, Uncertain
+from uncertainty.budget import Uncertain
 from units import AMPERE_PER_SQUARE_MILLIMETRE, RPM
 
 MAP = flux_map(Saturating())
@@ -37,7 +38,7 @@ PRICES = PartPrices("EUR", 3.0, 80.0, 12.0, 2.0)
 COGGING = 0.7  # Nm/m
 GAP_STRESS = SimpleNamespace(cogging=COGGING)
 KNOWN = Uncertain(1.0, 0.003, 0.0, 0.004)  # u = 0.5 %
-UNCERTAINTY = SimpleNamespace(budget=Budget(*[KNOWN] * len(fields(Budget))))
+UNCERTAINTY = SimpleNamespace(budget=budget_of_alike(KNOWN))
 
 
 @pytest.fixture(scope="module")
@@ -176,6 +177,9 @@ def test_headline_numbers_carry_their_expanded_uncertainty(found, winding, brake
     table = sheet_of_it.table
     known = table[table.plus_minus.notna()]
     assert {"peak torque", "phase resistance", "torque constant", "base speed", "active parts"} <= set(known.quantity)
+    sure = {"torque ripple", "cogging torque", "magnet flux linkage", "L_d", "L_q", "losses", "shaft", "rotor inertia"}
+    assert sure <= set(known.quantity) and not sure & set(table.quantity[table.plus_minus.isna()])
+    assert (known.quantity == "bus current").sum() == 2
     assert known.plus_minus.tolist() == pytest.approx((0.01 * known.value).astype(float).tolist())
     tables = {part.caption: part.frame for part in datasheet.section(sheet_of_it).content if hasattr(part, "frame")}
     assert "plus_minus" not in tables["Dimensions and materials."]
@@ -192,6 +196,10 @@ def test_magnets_stand_on_the_sheet_where_their_grade_is_known(found, winding, b
     table = groups["Magnets"].table
     assert len(table) == rows and value(table, "volume beyond the knee", "overload") == pytest.approx(3.0)
     assert "Magnets" not in {group.title for group in sheet(found, winding, brake, outcome).groups}
+    strong = SimpleNamespace(**vars(magnets) | {"states": STATES[:1]})
+    assert (
+        value(sheet(found, winding, brake, outcome, magnets=strong).table, "volume beyond the knee", "every state") == 0
+    )
 
 
 def test_every_row_has_its_unit_or_is_a_pure_number(found, winding, brake, outcome):

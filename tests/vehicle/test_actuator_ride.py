@@ -31,7 +31,7 @@ from vehicle.printed_energy import printed_energy
 from vehicle.quarter_car import lqr, spring_negation
 from vehicle.ride import Run, Scenario, simulate, simulate_and_keep
 from vehicle.road import IsoRoad, roughness_of_class
-from vehicle.spectral import mean_power_theorem
+from vehicle.spectral import indices_from_rest, mean_power_theorem, ride_of
 
 CAR, SEEDS = quarter_car(), range(6)
 MAXIMUM, MINIMUM = quarter_car_damping()
@@ -83,7 +83,7 @@ def test_quasi_ideal_actuator_against_tables_4_6_to_4_9(quasi, name):
     assert found["shaft.active"].mean == pytest.approx(theorem, rel=0.08)
 
 
-# P_el of the trade-off swings by 4 to 9 W from seed to seed, quasi-ideal and real: six seeds cannot tell 2 W.
+# P_el of the trade-off differs by 7 to 11 W from road to road, so that six of them cannot tell 2 W; what does is below.
 ELECTRICAL = {"maximum": 6.0, "minimum": 2.0, "LQR trade-off": 8.0, "LQR handling": 2.0}
 
 
@@ -102,6 +102,27 @@ def test_realistic_actuator_against_tables_4_10_to_4_14(real, name):
     assert found["comfort"] == pytest.approx(printed.comfort, rel=0.10)
     assert found["road_holding"] == pytest.approx(printed.road_holding, rel=0.10)
     assert (found["elastic"], found["inertial"]) == pytest.approx((printed.elastic, printed.inertial), rel=0.4)
+
+
+def expected_loss(ride):
+    """Of the machine over 15 s from rest in the mean of all roads, the loss law on the covariance [W]."""
+    found = indices_from_rest(ride, QUARTER_CAR_ROAD_DURATION)
+    return found, 24.7 * (found.force * RATIO) ** 2 + 1.5e-4 * (found.velocity / RATIO) ** 2
+
+
+@pytest.mark.reference
+def test_trade_off_against_table_4_12_within_2_watts_of_its_expectation(real):
+    """Real less quasi-ideal on one road scatters by 1.5 W only; the quasi-ideal expectation is known by covariance.
+
+    Against Table 4.8 the expectation is 6 W off, half of the deviation from road to road: what one road can say.
+    """
+    name, ride = "LQR trade-off", ride_of(CAR, COMMANDS["LQR trade-off"], road(0).road, CRUISE_SPEED)
+    found, loss = expected_loss(ride)
+    quasi = found.mean_power - loss
+    assert quasi == pytest.approx(PRINTED[name, QUASI_IDEAL].electrical, abs=8.0)
+    ideal = driven(COMMANDS[name], quasi_ideal(), None, COARSE)["battery.active"].mean
+    apart = real[name, REAL]["battery.active"].mean - ideal
+    assert quasi + apart == pytest.approx(PRINTED[name, REAL].electrical, abs=2.0)
 
 
 @pytest.mark.physics

@@ -6,17 +6,25 @@ Damper curves and the obstacle are figures in the thesis; the tables in ``vehicl
 from __future__ import annotations
 
 from units import DEGREE, GRAVITY, MILLIMETRE
-from vehicle.damping import DamperCurve, linear_damper, mixed, read_damper_curve
+from vehicle.damping import DamperCurve, mixed, read_damper_curve
 from vehicle.models import Axle, EndStops, Motorcycle, QuarterCar, Tyre, fork_stiffness, swing_arm_stiffness
-from vehicle.quarter_car import LqrWeights
+from vehicle.printed_car import (
+    COMFORT,
+    HANDLING,
+    PRINTED_CAR,
+    PRINTED_DAMPING,
+    PRINTED_DURATION,
+    PRINTED_SPEED,
+    TRADE_OFF,
+)
 from vehicle.road import ObstacleShape, read_obstacle_shape
 from vehicle.tables import DATA
 
 KILOMETRE_PER_HOUR = 1 / 3.6  # m/s
-CRUISE_SPEED = 70 * KILOMETRE_PER_HOUR  # text to Table 3.4 and to Fig. 4.22
+CRUISE_SPEED = PRINTED_SPEED  # text to Table 3.4 and to Fig. 4.22
 ROAD_CLASS = "B"  # the same
 MOTORCYCLE_ROAD_DURATION = 30.0  # s, text to Table 3.4
-QUARTER_CAR_ROAD_DURATION = 15.0  # s, text to Fig. 4.22
+QUARTER_CAR_ROAD_DURATION = PRINTED_DURATION
 OBSTACLE_DURATION = 2.0  # s, text to Fig. 3.10
 WORST_OBSTACLE_SPEED = 50 * KILOMETRE_PER_HOUR  # Table 3.5
 WORST_OBSTACLE_AMPLITUDE = -50 * MILLIMETRE  # Table 3.5, a pothole
@@ -61,12 +69,12 @@ def obstacle_shape() -> ObstacleShape:
 
 def quarter_car() -> QuarterCar:
     """The car of chapter 4, Table 4.4."""
-    return QuarterCar(sprung_mass=417.0, unsprung_mass=40.0, spring_stiffness=23e3, tyre_stiffness=126e3)
+    return PRINTED_CAR
 
 
 def quarter_car_damping() -> tuple[DamperCurve, DamperCurve]:
     """Maximum and minimum damping of chapter 4: the steepest part of Fig. 4.21 as straight lines."""
-    return linear_damper(10e3, "maximum"), linear_damper(2.6e3, "minimum")
+    return PRINTED_DAMPING
 
 
 def digressive_minimum() -> DamperCurve:
@@ -121,10 +129,6 @@ REAR_DAMPER_LARGEST_DAMPING = 80e3  # Ns/m, in rebound, text to Fig. 3.7
 
 # ---- results of the quarter car -------------------------------------------------------------------------------------
 
-# Settings of Table 4.1; the decimals come from the grid 10^(8 k / 49) on which they were found.
-HANDLING = LqrWeights(stroke=3.39e6, wheel=10 ** (8 * 45 / 49))  # printed 3.39e6 and 22.23e6
-TRADE_OFF = LqrWeights(stroke=10 ** (8 * 10 / 49), wheel=10 ** (8 * 34 / 49))  # printed 42.9 and 3.56e5
-COMFORT = LqrWeights(stroke=1.0, wheel=1.0)
 # Coefficients as ``quarter_car.printed_form`` names them; what is not printed is left out.
 LQR_COEFFICIENTS = {
     HANDLING: {"a1": -1.46e4, "a2": 1.62e4, "a3": 1.57e3, "a5": 4.38e3},  # eq. 4.25, a4 there
