@@ -31,6 +31,7 @@ class Effect:
     remedy: measurements that show it
     designs: types of design it can act on; empty means any
     contains: effects that are special cases of this one, never combined with it
+    exceeds: input that its first parameter moves, beyond the tolerance that a campaign may declare of it
     signature: what its vanishing size does to readings, to be verified on the model [claims]
     model_error: declared relative error of the effect's own law; zero where the law defines the effect
     size_error: declared relative error of its first parameter for the same reason
@@ -44,6 +45,7 @@ class Effect:
     remedy: ClassVar[tuple[str, ...]] = ()
     designs: ClassVar[tuple[type, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
+    exceeds: ClassVar[str] = ""
     signature: ClassVar[tuple[Claim, ...]] = ()
     model_error: ClassVar[float] = 0.0
     size_error: ClassVar[float] = 0.0

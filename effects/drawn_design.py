@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from math import isclose
+
+import numpy as np
 
 from effects.machine_design import BuiltMachine
 from geometry.half_cell import MeshDensity
 from geometry.parts import ComposedMachine, Part
 from geometry.winding import WindingLayout
-from materials.iron_loss import IronLossLaw
-from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 
 
@@ -19,6 +19,9 @@ class Drawing:
     """What no effect changes of a machine.
 
     machine: with the dimensions as drawn;  stator_steel, rotor_steel: grades;  density: how finely it is meshed
+    end_turn: length of one [m]
+    coil_currents: of A, B and C over the currents of the three lines (3, 3) [1], in a delta without what goes round it
+    star_lag: of the equivalent star behind the coils, electrical [rad];  is_delta: whether a current goes round
     """
 
     machine: ComposedMachine
@@ -26,34 +29,27 @@ class Drawing:
     stator_steel: Reluctivity
     rotor_steel: Reluctivity
     density: MeshDensity
+    end_turn: float
+    coil_currents: np.ndarray = field(default_factory=lambda: np.eye(3))
+    star_lag: float = 0.0
+    is_delta: bool = False
 
 
 @dataclass(frozen=True)
 class DrawnAsBuilt(BuiltMachine):
     """A stator and a rotor of any kind. All poles, slots and coils are alike: no defect of a single one is in here.
 
-    machine: dimensions as built;  length: active length [m];  turns: of every coil, all coils of a phase in series [1]
-    phase_resistance: of a phase at 20 degC [ohm];  end_winding_inductance: of a phase [H]
+    Currents, flux linkages and what follows from them are those of the equivalent star that the terminals see.
+    machine: dimensions as built;  turns: of every coil [1]
+    phase_resistance: of a phase of the star at 20 degC [ohm], half of what is between two terminals
     largest_current: of a phase on its bench, peak, up to which flux linkages are mapped [A]
-    copper_area: of a turn [m^2], zero where the wire is not known;  the others as in ``MachineAsBuilt``
+    copper_area: of a turn [m^2], zero where the wire is not known
     """
 
     drawing: Drawing
     machine: ComposedMachine
-    magnet: Magnet
-    length: float
     turns: float
     phase_resistance: float = 0.0
-    end_winding_inductance: float = 0.0
-    field_scale: float = 1.0
-    saturation_scale: float = 1.0
-    stacking_factor: float = 1.0
-    end_leakage: float = 0.0
-    dry_friction: float = 0.0
-    viscous_friction: float = 0.0
-    windage: float = 0.0
-    iron_loss: IronLossLaw | None = None
-    iron_loss_factor: float = 1.0
     largest_current: float = 0.0
     copper_area: float = 0.0
 

@@ -12,24 +12,32 @@ from materials.iron_loss import IronLossLaw
 from materials.magnet import Magnet
 
 
+@dataclass(frozen=True, kw_only=True)
 class BuiltMachine:
-    """What every machine on a bench has, whatever its kind; the concrete ones are frozen dataclasses.
+    """What every machine on a bench has, whatever its kind.
 
-    magnet: what all magnets are made of;  length: active length [m];  field_scale, saturation_scale, stacking_factor,
-    end_leakage, dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: see ``MachineAsBuilt``
+    magnet: what all magnets are made of;  length: active length [m]
+    field_scale: H of the steel over that of the grade at the same polarisation [1]
+    saturation_scale: polarisation of the steel over that of the grade at the same field [1]
+    stacking_factor: share of the length that is steel [1]
+    end_leakage: share of the magnets' flux that closes beyond the ends instead of through the winding [1]
+    end_winding_inductance: of the end winding of a phase [H]
+    dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: against the motion, all bearings together
+    iron_loss: law of the sheet, None where none is declared;  iron_loss_factor: loss of the stack over it [1]
     """
 
     magnet: Magnet
     length: float
-    field_scale: float
-    saturation_scale: float
-    stacking_factor: float
-    end_leakage: float
-    dry_friction: float
-    viscous_friction: float
-    windage: float
-    iron_loss: IronLossLaw | None
-    iron_loss_factor: float
+    field_scale: float = 1.0
+    saturation_scale: float = 1.0
+    stacking_factor: float = 1.0
+    end_leakage: float = 0.0
+    end_winding_inductance: float = 0.0
+    dry_friction: float = 0.0
+    viscous_friction: float = 0.0
+    windage: float = 0.0
+    iron_loss: IronLossLaw | None = None
+    iron_loss_factor: float = 1.0
 
     def with_magnet(self, **changes: float) -> Self:
         """Another material of all magnets."""
@@ -44,8 +52,8 @@ class BuiltMachine:
 class MachineAsBuilt(BuiltMachine):
     """One machine, all that its field and its terminals depend on. Tuples count round it from magnet, slot or coil 0.
 
-    machine: cross-section, all magnets, slots and teeth alike;  steel: grade;  magnet: what all magnets are made of
-    length: active length [m];  turns: of every coil [1];  phase_resistance: A, B, C at 20 degC [ohm]
+    machine: cross-section, all magnets, slots and teeth alike;  steel: grade
+    turns: of every coil [1];  phase_resistance: A, B, C at 20 degC [ohm]
     lead_resistance: of what is between terminals and winding, A, B, C [ohm]
     magnet_strengths: remanence of every magnet over that of ``magnet`` [1]
     magnet_turns: angle by which every magnet sits too far on, counter-clockwise [rad]
@@ -53,28 +61,19 @@ class MachineAsBuilt(BuiltMachine):
     stator_shift: of the stator against the axis of rotation, x and y [m]
     rotor_shift: of the rotor against the axis of rotation, from the axis of magnet 0, turning with it [m]
     magnet_grinding, bore_grinding: by which the magnets were ground thinner, the bore wider, the slots staying [m]
-    field_scale: H of the steel over that of the grade at the same polarisation [1]
-    saturation_scale: polarisation of the steel over that of the grade at the same field [1]
-    stacking_factor: share of the length that is steel [1]
     edge_damage: share of its permeability that the stator steel has lost at its cut edges [1]
     edge_depth: how far in from the edges [m]
     skew: angle between the two ends of the machine, even along its length [rad]
     segment_angles: of a rotor in two, and in three segments along its length, each turned against its neighbour [rad]
     rotor_turn: angle by which the pattern of all magnets sits too far on, against the zero of the encoder [rad]
     radial_share: how far the magnetisation has turned from parallel (0) to radial (1) [1]
-    end_leakage: share of the magnets' flux that closes beyond the ends instead of through the winding [1]
     shorted_turns, shorted_coil: turns that are closed on themselves, and the coil that they belong to
-    end_winding_inductance: of the end winding of a phase [H]
-    dry_friction [Nm], viscous_friction [Nms/rad], windage [Nm s^2/rad^2]: against the motion, all bearings together
-    iron_loss: law of the sheet, None where none is declared;  iron_loss_factor: loss of the stack over it [1]
     undeclared_iron_loss: loss of a stack without a declared law over that of a usual sheet [1]
     cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine
     """
 
     machine: Machine
     steel: str
-    magnet: Magnet
-    length: float
     turns: tuple[float, ...]
     phase_resistance: tuple[float, float, float]
     magnet_strengths: tuple[float, ...]
@@ -83,26 +82,16 @@ class MachineAsBuilt(BuiltMachine):
     lead_resistance: tuple[float, float, float] = (0.0, 0.0, 0.0)
     stator_shift: tuple[float, float] = (0.0, 0.0)
     rotor_shift: tuple[float, float] = (0.0, 0.0)
-    field_scale: float = 1.0
-    saturation_scale: float = 1.0
-    stacking_factor: float = 1.0
     edge_damage: float = 0.0
     edge_depth: float = 0.7e-3
     skew: float = 0.0
     segment_angles: tuple[float, float] = (0.0, 0.0)
     rotor_turn: float = 0.0
     radial_share: float = 0.0
-    end_leakage: float = 0.0
     magnet_grinding: float = 0.0
     bore_grinding: float = 0.0
     shorted_turns: float = 0.0
     shorted_coil: int = 0
-    end_winding_inductance: float = 0.0
-    dry_friction: float = 0.0
-    viscous_friction: float = 0.0
-    windage: float = 0.0
-    iron_loss: IronLossLaw | None = None
-    iron_loss_factor: float = 1.0
     undeclared_iron_loss: float = 0.0
     cogging_of_mesh: float = 1.0
 
@@ -114,8 +103,8 @@ class MachineAsBuilt(BuiltMachine):
         return cls(
             machine,
             steel,
-            magnet,
-            length,
+            magnet=magnet,
+            length=length,
             turns=(turns_per_coil,) * machine.slots,
             phase_resistance=(resistance,) * 3,
             magnet_strengths=(1.0,) * machine.poles,

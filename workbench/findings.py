@@ -318,6 +318,7 @@ class Diagnosis:
     fix: of a convention, the text for campaign.toml;  conventions: what the columns look like, a sentence each
     checks: of the data alone, before any model
     before, after: the failing channel without and with the leading effect, the same rows
+    contradictions: declared tolerances that speak against what is named, a sentence each
     """
 
     campaign: str
@@ -346,6 +347,7 @@ class Diagnosis:
     checks: tuple[str, ...] = ()
     fix: str = ""
     conventions: tuple[str, ...] = ()
+    contradictions: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -23,6 +23,7 @@ class AirgapChange(DesignEffect):
     looks_like = "voltage, torque and inductance change together, cogging most of all"
     remedy = ("feeler gauge or bore and rotor diameter", "inductance")
     designs = (BuiltMachine,)
+    exceeds = "airgap"
     signature = FIELD
     base_rate = 0.015
     base_rate_source = "judgement: stacked tolerances of bore and rotor"

@@ -20,6 +20,7 @@ class LaminationStacking(DesignEffect):
     remedy = ("weight of the stack", "flux linkage at the highest current")
     designs = (BuiltMachine,)
     signature = FIELD
+    exceeds = "stacking_factor"
     base_rate = 0.01
     base_rate_source = "judgement: declared stacking factors are good to 1 or 2 %"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion

@@ -21,6 +21,7 @@ class SlotOpening(DesignEffect):
     remedy = ("width of the openings", "cogging")
     designs = (MachineAsBuilt,)
     signature = FIELD
+    exceeds = "slot_opening"
     base_rate = 0.01
     base_rate_source = "judgement: closing of slots and burrs"
     model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion

@@ -1,6 +1,7 @@
 """The commands on the damper, from the outside: what they write, what they say, what they refuse."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -75,6 +76,19 @@ def test_ledger_walks_by_itself(bench, tmp_path, capsys):
     assert "accepted" in said and (tmp_path / "ledger.html").exists()
     again = run(capsys, "ledger", bench, "--out", tmp_path)  # the model has it now: nothing to add
     assert len((tmp_path / "ledger.csv").read_text().splitlines()) == 3 and "nothing" in again.lower()
+
+
+def test_no_step_is_taken_while_conventions_are_not_settled(bench, tmp_path, capsys):
+    wrong = tmp_path / "wrong"
+    shutil.copytree(bench, wrong)
+    text = (wrong / "campaign.toml").read_text().replace("force_N", "force_kN")
+    (wrong / "campaign.toml").write_text(text)
+    table = (wrong / "force_velocity.csv").read_text().replace("force_N", "force_kN")
+    (wrong / "force_velocity.csv").write_text(table)
+    out = tmp_path / "out"
+    said = run(capsys, "ledger", wrong, "--out", out)
+    assert "1000 times too large" in said and "factor" in said
+    assert {path.name for path in out.iterdir()} == {"diagnosis.json", "diagnosis.html"}
 
 
 def test_effects_lists_every_effect_with_its_equation(capsys):

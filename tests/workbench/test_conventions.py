@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.virtual_benches import damper_bench, dq_bench
 from benchmarks.virtual_benches.hiding import hide
-from benchmarks.virtual_benches.mistakes import MISTAKES, mistaken
+from benchmarks.virtual_benches.mistakes import MISTAKES, Mistake, mistaken, scaled
 from tests.workbench.likelihood.tables import table
 from tests.workbench.models.machine_case import drawn
 from workbench.data.campaign import read_campaign
@@ -70,6 +70,21 @@ def test_what_is_settled_may_be_written_down(bench, right, tmp_path):
         for name, response in one.responses.items():
             np.testing.assert_allclose(response.values, other.responses[name].values, rtol=1e-9)
     assert settle(nominal_model(again), again).are_right
+
+
+def test_what_an_effect_may_be_is_no_convention(right, tmp_path):
+    """sqrt(3/2) would be line for phase and peak for RMS at once; a device that is off by a fifth is likelier."""
+    weak = Mistake("a fifth less", ("unit_factor",), ("back_emf.csv",), scaled(("v_ll_V",), np.sqrt(2 / 3)))
+    assert settled(mistaken(weak, right["dq"], tmp_path / "weak")).are_right
+
+
+@pytest.mark.parametrize("stated, is_right", [("v_ll_V = 1", True), ("speed_rpm = 1", False)])
+def test_a_factor_that_is_stated_is_not_doubted(stated, is_right, right, tmp_path):
+    line = next(mistake for mistake in MISTAKES["dq"] if mistake.words == "phase for line voltage")
+    folder = mistaken(line, right["dq"], tmp_path / "wrong")
+    with (folder / "campaign.toml").open("a", encoding="utf-8") as file:
+        file.write(f'\n[conventions]\n"back_emf.csv" = {{ factor = {{ {stated} }} }}\n')
+    assert settled(folder).are_right == is_right
 
 
 @pytest.mark.parametrize("bench", CATALOGUES)

@@ -15,7 +15,7 @@ CAMPAIGN = """
 [campaign]
 holdout = "none"
 [device]
-machine_file = "szesynrm_0"
+machine_file = "szesynrm"
 poles = 4
 phase_resistance_mohm = 139
 [[table]]

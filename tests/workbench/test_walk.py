@@ -224,6 +224,45 @@ def test_the_walk_tries_the_next_name_where_one_is_refused(tmp_path):
     assert judged == sorted(judged, reverse=True) and judged[-1] < 1.4
 
 
+def test_a_name_that_has_no_answer_alone_is_refused_and_the_walk_goes_on(tmp_path, monkeypatch):
+    """As saturation of a motor that its supply cannot hold without what else is missing."""
+
+    asked = []
+
+    def tried(model, campaign, library, name, *more):
+        asked.append(name)
+        if len(asked) == 1:
+            raise WorkbenchError("no steady state")
+        return try_effect(model, campaign, library, name, *more)
+
+    monkeypatch.setattr("workbench.ledger.walk.try_effect", tried)
+    model, campaign = of(written(tmp_path / "c", lambda x: cubic(x) + even(x)))
+    ledger, _ = walk(model, campaign, LIBRARY, tmp_path)
+    start, refused, *rest = ledger.steps
+    assert (refused.effect, refused.decision) == (asked[0], "refused") and start.decision == "start"
+    assert "cannot be added: no steady state" in refused.reason
+    assert [step.step for step in ledger.steps] == list(range(len(ledger.steps)))
+    assert {step.effect for step in rest if step.decision == "accepted"} == {"hardening", "bump"}
+
+
+def test_what_is_refused_one_by_one_is_tried_together(tmp_path, monkeypatch):
+    """Each alone has no answer; both at once, from the sizes of the diagnosis, are accepted as one step."""
+
+    def never(model, campaign, library, name, *more):
+        raise WorkbenchError("no steady state")
+
+    monkeypatch.setattr("workbench.ledger.walk.try_effect", never)
+    model, campaign = of(written(tmp_path / "c", lambda x: cubic(x) + even(x)))
+    ledger, last = walk(model, campaign, LIBRARY, tmp_path)
+    *refused, together = ledger.steps
+    assert set(together.effect.split(" + ")) == {"hardening", "bump"} and together.decision == "accepted"
+    assert {step.decision for step in refused} == {"start", "refused"} and last.verdict == "nothing_missing"
+    assert {name.split(".")[0] for name in together.parameters} == {"hardening", "bump"}
+    assert together.chi2_per_n < 1.4 < refused[0].chi2_per_n
+    learned = (tmp_path / "model.toml").read_text()
+    assert 'name = "hardening"' in learned and 'name = "bump"' in learned
+
+
 def test_names_are_tried_by_the_evidence_of_each_alone(diagnosed):
     one, other = diagnosed.ranking[0].name, diagnosed.ranking[1].name
     assert by_evidence(replace(diagnosed, names=(other, one))) == (one, other)

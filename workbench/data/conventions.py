@@ -518,6 +518,12 @@ def fixes_of(campaign: Campaign) -> tuple[Fix, ...]:
     return tuple(found)
 
 
+def stated_factors(campaign: Campaign, file: str) -> frozenset[str]:
+    """Columns of a file whose factor the campaign states, be it 1: it is not doubted again."""
+    entry = campaign.conventions.get(file, {})
+    return frozenset(part for name in entry.get("factor", {}) for part in (name, split_unit(name)[0]))
+
+
 def _fixes(campaign: Campaign, table: Table, key: str, value: object) -> list[Fix]:
     where = f"[conventions] {table.file}: {key}"
     if key not in _READERS:

@@ -61,6 +61,12 @@ KINDS: dict[str, Kind] = {
         says="l_a: change of the flux linkage of a phase over its own current. Of a drawn machine over angle_mech, at "
         "a current or a small one: l_a, l_m (of B by A), l_ab, l_bc, l_ca between two lines, the third open.",
     ),
+    "holding_current": Kind(
+        ("current",),
+        ("angle_mech",),
+        says="A driver holds the rotor of a drawn machine against its cogging. current: the peak along the q axis that "
+        "it needs, positive where it drives counter-clockwise; direction +1 and -1 where the rotor creeps.",
+    ),
     "phase_resistance": Kind(
         ("r_?", "r_??", "resistance"),
         ("winding_T",),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import exp
 
 import numpy as np
 
@@ -33,12 +34,14 @@ from workbench.data.conventions import (
     pole_pairs,
     section_of,
     section_text,
+    stated_factors,
 )
 from workbench.data.table import Campaign, Response, Table
 from workbench.explain.misfit import Sums, allowances, predicted, sums
 from workbench.explain.mistakes import (
     COMMON,
     HAND_SET,
+    NEAR,
     OVERWHELMING,
     RARE,
     Order,
@@ -65,6 +68,7 @@ ALIKE_FACTOR = 9.0  # the same between two factors on one column, since a hidden
 ONCE_MORE = 0.3  # nats for a fix that another file needs too
 APART = 4.0  # nats where tables of one encoder do not agree about its angle
 SAME = 1.0  # nats that a fix may cost a table that cannot tell whether it needs it
+OFF_BY_ONE_FACTOR = 5.0  # nats for a device whose readings of one quantity are all off by one factor, up to NEAR
 MET = 0.12  # relative misfit of a channel, below which there is nothing to settle in it
 EXPLAINED = 0.5  # that a channel may be left with by a fix that improves it; signs and exchanges have no size to fit
 EXPLAINED_SIGN = 0.8
@@ -176,9 +180,15 @@ class _Reader:
         self.turns = ANGLE in table.conditions and bool(self.pairs)
         self.allowed = allowances(model, table, campaign.tolerances)
         self.angles = angle_factors(campaign, table) if self.turns else {}
-        self.first = of_the_table(table, self.pairs, self.angles) + self._offsets()
+        self.stated = stated_factors(campaign, table.file)
+        doubted = [part for part in of_the_table(table, self.pairs, self.angles) if not self._is_stated(part[0])]
+        self.first = doubted + self._offsets()
         self.slack = slack(self.pairs) if self.pairs and self.turns else np.zeros(1)
         self._orders: dict[tuple[str, ...], list[Order]] = {}
+
+    def _is_stated(self, fix: Fix) -> bool:
+        """Whether the campaign states the factor that a fix would change."""
+        return isinstance(fix, Scaled) and not self.stated.isdisjoint(fix.columns)
 
     def orders(self, names: tuple[str, ...]) -> list[Order]:
         if names not in self._orders:
@@ -214,8 +224,16 @@ class _Reader:
 
     @cached_property
     def as_it_is(self) -> Reading:
-        """The reading without any fix."""
-        return self._alone((), (), self.slack)
+        """The reading without any fix, of the device as drawn or of one that is off by a factor that effects reach."""
+        drawn = self._alone((), (), self.slack)
+        found = self.sums((), self.slack)
+        same, best = np.arange(len(found.names))[None], drawn.log_likelihood
+        for group in scaled_groups(found.names):
+            members = np.array([name in group for name in found.names])
+            gain = np.clip(found.gains(same[0], np.ones(len(same[0])), members), exp(-NEAR), exp(NEAR))
+            off = found.log_likelihood(same, np.where(members, gain, 1.0)[None]).max()
+            best = max(best, float(off) - OFF_BY_ONE_FACTOR)
+        return replace(drawn, log_likelihood=best)
 
     def _alone(self, fixes: tuple[Fix, ...], costs: tuple[float, ...], offsets: np.ndarray) -> Reading:
         found = self.sums(fixes, offsets)
@@ -273,7 +291,7 @@ class _Reader:
         """With a factor on some responses; only beside orders that leave room for it."""
         out = []
         for order in (o for o in chosen if len(o.fixes) < room):
-            for group in scaled_groups(found.names):
+            for group in (g for g in scaled_groups(found.names) if self.stated.isdisjoint(g)):
                 members = np.array([name in group for name in found.names])
                 gain = found.gains(order.holds, order.sign, members)
                 alone = len(group) == 1 < sum(quantity(n) == quantity(group[0]) for n in found.names)
@@ -600,6 +618,8 @@ def _sentences(fixes: tuple[Fix, ...], others: list[_Whole]) -> tuple[str, ...]:
         same = "; ".join(" and ".join(dict.fromkeys(fix.words for fix in other.fixes)) for other in others[:3])
         said.append(f"These data cannot tell that from: {same}.")
     said.append("Say so in campaign.toml and no effect is looked for before: the text is below.")
+    if any(isinstance(fix, Scaled) for fix in fixes):
+        said.append("Where the readings are right as they are, a factor of 1 says so, and it is not doubted again.")
     return tuple(said)
 
 

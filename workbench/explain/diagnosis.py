@@ -3,7 +3,7 @@ weighed by one likelihood; simulated campaigns of the same bench say from which 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter
 
@@ -17,6 +17,7 @@ from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
 from workbench.explain.calibrate import Simulator, detection_limits, plainly_nothing, thresholds_of
+from workbench.explain.contradictions import contradiction
 from workbench.explain.conventions import diagnosis_of as of_conventions
 from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior
@@ -76,13 +77,14 @@ def diagnosis_of(
     best = leading(search, said)
     sealed = opened(bench, best)
     said = _with_sealed(said, sealed)
+    ranked = ranking(search, p)
     return Diagnosis(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
         verdict=said.kind,
         names=said.names,
         probability=said.probability,
-        ranking=ranking(search, p),
+        ranking=ranked,
         p_nothing_missing=p.nothing,
         p_none_of_these=p.none_of_these,
         p_something_remains=p.remains,
@@ -99,8 +101,16 @@ def diagnosis_of(
         posteriors=_posteriors(search, said),
         complaints=bench.complaints + _not_tried(search.failed),
         checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
+        contradictions=_contradictions(search, ranked, said.names),
         provenance=dict(bench.campaign.file_hashes),
     )
+
+
+def _contradictions(search: Search, ranked: Sequence[Ranked], names: Collection[str]) -> tuple[str, ...]:
+    named = {row.name: row.parameters for row in ranked if row.name in names}
+    classes = {name: type(search.signatures.found[name][0].effect) for name in named}
+    found = (contradiction(classes[name], sizes, search.bench.campaign.tolerances) for name, sizes in named.items())
+    return tuple(filter(None, found))
 
 
 def leading(search: Search, said: Verdict) -> Hypothesis:

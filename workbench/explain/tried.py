@@ -29,6 +29,7 @@ from workbench.likelihood.unknown_laws import LAWS, UnknownLaw
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
+STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
 KEPT = 40  # promises beside one fit that are followed up
 
 Progress = Callable[[str], None]
@@ -184,7 +185,7 @@ def fit_set(search: Search, promise: Promise) -> bool:
     every = promise.every
     guess = search.guessed.pop(every, -np.inf)
     try:
-        found = fitted_from(search.bench, promise.effects, promise.x, promise.z)
+        found = _fitted(search.bench, promise)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
         if every not in search.fitted:
             search.failed[promise.label] = str(error)
@@ -196,6 +197,25 @@ def fit_set(search: Search, promise: Promise) -> bool:
     search.forms[every] = promise.forms
     _lower(search, every, max(guess - search.log_evidence(every), 0.0))
     return True
+
+
+def _fitted(bench: Bench, promise: Promise) -> Hypothesis:
+    """From where linear algebra promises it; where the model has no answer there, from ever nearer to the null.
+
+    Raises:
+        WorkbenchError: the model has no answer at any of these places.
+    """
+
+    def begun(share: float) -> Hypothesis:
+        x = share * promise.x + (1 - share) * bench.null.x
+        return fitted_from(bench, promise.effects, x, share * promise.z)
+
+    for share in STARTS[:-1]:
+        try:
+            return begun(share)
+        except WorkbenchError:
+            continue
+    return begun(STARTS[-1])
 
 
 def _lower(search: Search, every: Set, shortfall: float) -> None:

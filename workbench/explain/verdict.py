@@ -41,19 +41,21 @@ def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Ver
     """Exactly one verdict. Where an unknown function is there for sure no name is printed beside it: an effect may be
     what its shape lacks of the true law.
 
-    plainly_nothing: P(nothing that these data would show plainly)
+    plainly_nothing: P(nothing that these data would show plainly); where that is unlikely, be the alarm threshold not
+        reached, nothing is said to be missing and nothing to be right
     """
     sure, can_tell = thresholds.sure, thresholds.can_tell
     named = p.nothing < thresholds.quiet and can_tell and p.remains < sure
     if named and (groups := printed(p, sure)):
         return _of_groups(p, groups)
-    something = 1.0 - p.nothing
-    if p.nothing >= thresholds.quiet:
-        kind = NOTHING_MISSING if can_tell else CANNOT_TELL
-        return Verdict(kind, (), plainly_nothing if can_tell else p.nothing, {})
-    if p.remains >= LIKELY and can_tell:
+    is_quiet = p.nothing >= thresholds.quiet
+    if is_quiet and not can_tell:
+        return Verdict(CANNOT_TELL, (), p.nothing, {})
+    if is_quiet and plainly_nothing >= LIKELY:
+        return Verdict(NOTHING_MISSING, (), plainly_nothing, {})
+    if p.remains >= LIKELY and can_tell and not is_quiet:
         return Verdict(NONE_OF_THESE, (), p.remains, {})
-    return Verdict(CANNOT_TELL, (), something, {})
+    return Verdict(CANNOT_TELL, (), 1.0 - p.nothing, {})
 
 
 def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:

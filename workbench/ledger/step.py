@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import log, log1p
+from math import log, log1p, prod
 from pathlib import Path
 
 import numpy as np
@@ -22,10 +22,11 @@ from workbench.believed import SURE
 from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.contradictions import contradiction
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import Hypothesis, estimates
 from workbench.explain.search import best_alone
-from workbench.findings import Estimate, Ledger, LedgerStep
+from workbench.findings import Estimate, Ledger, LedgerStep, Ranked
 from workbench.ledger.model_file import model_hash
 from workbench.likelihood.bench import Bench, bench_of
 from workbench.likelihood.prediction import predicted
@@ -33,6 +34,7 @@ from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
 START, ACCEPTED, REFUSED = "start", "accepted", "refused"
+TOGETHER = " + "  # between effects of one step
 OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent")
 COLUMNS = (
     "step", "effect", "title", "decision", "parameters", "log_evidence_gain", "chi2_per_n", "held_out_chi2_per_n",
@@ -73,15 +75,56 @@ def try_effect(
     fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
     gain = hypothesis.log_evidence - before.null.log_evidence
     decision, reason = decide(before, after, gain, cls.base_rate)
+    sizes = estimates(hypothesis)[name]
+    doubt = contradiction(cls, sizes, campaign.tolerances)
     step = replace(
         step_of(after, number, decision),
         effect=name,
         title=cls.title,
-        parameters=estimates(hypothesis)[name],
+        parameters=sizes,
         log_evidence_gain=float(gain),
+        reason=f"{reason}; {doubt}" if doubt else reason,
+    )
+    return Trial(before, after, replace(model, effects=fitted_again) if decision == ACCEPTED else model, step)
+
+
+def try_together(
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    named: Sequence[Ranked],
+    number: int = 1,
+    progress: Callable[[str], None] = lambda words: None,
+) -> Trial:
+    """As ``try_effect`` with several effects at once, from the sizes that a diagnosis found.
+
+    Raises:
+        WorkbenchError: the model has no answer with them, or one of them has several forms.
+    """
+    before, trial = bench_of(model, campaign, library), model
+    progress(f"fitting {TOGETHER.join(row.name for row in named)}")
+    for row in named:
+        trial = trial + _sized(library[row.name], row, model)
+    after = bench_of(trial, campaign, library)
+    fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
+    gain = min(row.log_evidence for row in named)
+    decision, reason = decide(before, after, gain, prod(library[row.name].base_rate for row in named))
+    step = replace(
+        step_of(after, number, decision),
+        effect=TOGETHER.join(row.name for row in named),
+        title=TOGETHER.join(row.title for row in named),
+        parameters={f"{row.name}.{name}": size for row in named for name, size in row.parameters.items()},
+        log_evidence_gain=gain,
         reason=reason,
     )
     return Trial(before, after, replace(model, effects=fitted_again) if decision == ACCEPTED else model, step)
+
+
+def _sized(cls: type[Effect], row: Ranked, model: Model) -> Effect:
+    forms = cls.variants(model.design)
+    if len(forms) > 1:
+        raise WorkbenchError(f"{row.name} has {len(forms)} forms and cannot be added beside others at once")
+    return replace(forms[0], **{name: size.value for name, size in row.parameters.items()})
 
 
 def best_fit(bench: Bench, cls: type[Effect]) -> Hypothesis:

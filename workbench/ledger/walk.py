@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from effects.base import Effect
 from workbench.believed import LIKELY
 from workbench.compare.comparison import comparison_of
 from workbench.data.table import Campaign
+from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import SEED, diagnose
+from workbench.explain.verdict import CONVENTION, GROUP
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep
 from workbench.ledger.final import final_parameters, learned_at
 from workbench.ledger.learned import Learned, learned_from
 from workbench.ledger.model_file import NAME, read_model, write_model
 from workbench.ledger.skeleton import skeleton
-from workbench.ledger.step import ACCEPTED, append, read_ledger, start_step, try_effect
+from workbench.ledger.step import (
+    ACCEPTED,
+    REFUSED,
+    TOGETHER,
+    Trial,
+    append,
+    read_ledger,
+    start_step,
+    step_of,
+    try_effect,
+    try_together,
+)
 from workbench.likelihood.bench import bench_of
 from workbench.models.model import Model
 
@@ -50,10 +64,43 @@ def add_effect(
     out: folder of ``ledger.csv`` and ``model.toml``, which are the only files written
     before: diagnosis of the model as it is, where it was made already; it holds on if the effect is refused
     """
+    number = len(read_ledger(out / LEDGER, campaign.id, model.base.name).steps)
+    trial = try_effect(model, campaign, library, name, number or 1, progress)
+    return _decided(trial, model, campaign, library, out, seed, progress, before)
+
+
+def add_together(
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    before: Diagnosis,
+    out: Path,
+    seed: int | None = None,
+    progress: Callable[[str], None] = lambda words: None,
+) -> Added:
+    """As ``add_effect`` with all that a diagnosis names at once: one may make no sense without the others.
+
+    before: diagnosis of the model as it is
+    """
+    number = len(read_ledger(out / LEDGER, campaign.id, model.base.name).steps)
+    named = [ranked for ranked in before.ranking if ranked.name in before.names]
+    trial = try_together(model, campaign, library, named, number or 1, progress)
+    return _decided(trial, model, campaign, library, out, seed, progress, before)
+
+
+def _decided(
+    trial: Trial,
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    out: Path,
+    seed: int | None,
+    progress: Callable[[str], None],
+    before: Diagnosis | None,
+) -> Added:
+    """Writes what was decided of a trial; compares and diagnoses again. model: before it"""
     path = out / LEDGER
-    ledger = read_ledger(path, campaign.id, model.base.name)
-    trial = try_effect(model, campaign, library, name, len(ledger.steps) or 1, progress)
-    if not ledger.steps:
+    if not read_ledger(path, campaign.id, model.base.name).steps:
         append(path, start_step(trial.before), campaign, model)
     diagnosis = before
     if diagnosis is None or trial.step.decision == ACCEPTED:
@@ -98,18 +145,18 @@ def walk(
 ) -> tuple[Ledger, Diagnosis]:
     """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
 
-    Of several names the one with the most evidence by itself is tried first.
+    Of several names the one with the most evidence by itself is tried first; where each alone is refused, all together.
     out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the fitted inputs also where nothing was added
+    Nothing is tried or written while conventions are not settled.
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
+    if diagnosis.verdict == CONVENTION:
+        return read_ledger(out / LEDGER, campaign.id, model.base.name), diagnosis
     for _ in range(MOST_STEPS):
-        for name in by_evidence(diagnosis):
-            added = add_effect(model, campaign, library, name, out, seed, progress, diagnosis)
-            if added.step.decision == ACCEPTED:
-                model, diagnosis = added.model, added.diagnosis
-                break
-        else:
+        added = next((a for a in _trials(model, campaign, library, diagnosis, out, seed, progress) if _holds(a)), None)
+        if added is None:
             break
+        model, diagnosis = added.model, added.diagnosis
     path = out / LEDGER
     if not path.exists() or not (out / NAME).exists():
         bench = bench_of(model, campaign, library)
@@ -118,6 +165,47 @@ def walk(
     if not (out / NAME).exists():
         write_model(out / NAME, learned_from(bench))
     return told(read_ledger(path, campaign.id, model.base.name), read_model(out / NAME, library)), diagnosis
+
+
+def _holds(added: Added) -> bool:
+    return added.step.decision == ACCEPTED
+
+
+def _trials(
+    model: Model,
+    campaign: Campaign,
+    library: Mapping[str, type[Effect]],
+    diagnosis: Diagnosis,
+    out: Path,
+    seed: int | None,
+    progress: Callable[[str], None],
+) -> Iterator[Added]:
+    """What is named, one after the other, then together; what has no answer is refused in the ledger."""
+    attempts = {
+        name: partial(add_effect, model, campaign, library, name, out, seed, progress, diagnosis)
+        for name in by_evidence(diagnosis)
+    }
+    if len(diagnosis.names) > 1 and diagnosis.verdict != GROUP:
+        every = TOGETHER.join(diagnosis.names)
+        attempts[every] = partial(add_together, model, campaign, library, diagnosis, out, seed, progress)
+    for name, attempt in attempts.items():
+        try:
+            yield attempt()
+        except WorkbenchError as no_answer:
+            _refuse(name, str(no_answer), model, campaign, library, out / LEDGER)
+
+
+def _refuse(
+    name: str, why: str, model: Model, campaign: Campaign, library: Mapping[str, type[Effect]], path: Path
+) -> None:
+    """Writes the row of an effect, or of some together, with which the model has no answer."""
+    bench = bench_of(model, campaign, library)
+    number = len(read_ledger(path, campaign.id, model.base.name).steps)
+    if not number:
+        append(path, start_step(bench), campaign, model)
+    title = TOGETHER.join(library[one].title for one in name.split(TOGETHER))
+    refused = replace(step_of(bench, number or 1, REFUSED), effect=name, title=title)
+    append(path, replace(refused, reason=f"it cannot be added: {why}"), campaign, model)
 
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -215,7 +215,7 @@ def _verdict(d: Diagnosis) -> Section:
     if d.verdict == "convention":
         return Section("Verdict", (first, meaning(d)))
     sealed = () if d.sealed is None or d.sealed.holds else (Remark(sealed_sentence(d)),)
-    bounds_met = tuple(map(Remark, bound_sentences(d)))
+    bounds_met = tuple(map(Remark, (*bound_sentences(d), *d.contradictions)))
     return Section("Verdict", (first, meaning(d), *bounds_met, *sealed, *_verdict_numbers(d), power_sentence(d)))
 
 

@@ -415,7 +415,8 @@ def _none_of_these(d: Diagnosis) -> str:
 
 def _by_sealed_rows(d: Diagnosis) -> bool:
     """Whether only the sealed rows speak for something missing."""
-    return d.sealed is not None and not d.sealed.holds and isclose(d.probability, 1.0 - d.sealed.p_value)
+    shown = isclose(d.probability, d.p_something_remains)
+    return d.sealed is not None and not d.sealed.holds and not shown
 
 
 def _where(d: Diagnosis) -> str:

@@ -18,7 +18,7 @@ from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.search import best_alone, searched
-from workbench.explain.tried import Search, student_gain
+from workbench.explain.tried import Promise, Search, fit_set, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
 from workbench.likelihood.marginal import Catalogue
@@ -369,6 +369,26 @@ def test_probabilities_of_a_search_add_up_to_one(bench):
     found = searched(bench, LIBRARY).posterior
     assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)
     assert found.nothing + found.none_of_these <= 1.0
+
+
+def test_a_fit_begins_nearer_to_the_null_where_the_promise_has_no_answer(tmp_path):
+    """As where a supply is too weak for the promised size: from half of it the fit arrives at the true 0.25."""
+
+    class Weak(WAVES["wave2"]):
+        def on_response(self, response, conditions, kind, design):
+            if self.size > 0.35:
+                raise WorkbenchError("no steady state")
+            return super().on_response(response, conditions, kind, design)
+
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    search = searching(bench, {frozenset(): null_of(bench)})
+    whole = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    z = np.array([1.5 * whole.fit.z[0] + 0.3])
+    assert Weak().at(z).size > 0.35 > Weak().at(z / 2).size
+    name = frozenset((Weak.name(),))
+    promise = Promise(0.0, Weak.name(), name, (Weak(),), bench.null.x, z, 0.0)
+    assert fit_set(search, promise)
+    assert search.fitted[name].fit.z == pytest.approx(whole.fit.z, abs=1e-3)
 
 
 def test_a_fit_that_has_no_answer_is_left_out_and_said(bench):

@@ -49,6 +49,12 @@ def test_each_verdict(name):
     assert (found.kind, found.names, found.probability) == (*expected[:2], pytest.approx(expected[2]))
 
 
+def test_what_is_unlikely_is_no_verdict_though_no_alarm_was_raised():
+    easy = Thresholds(sure=0.95, quiet=0.05, can_tell=True)
+    found = verdict(p({"": 0.1, "a": 0.1}, {"": 0.8}), easy, plainly_nothing=0.4)
+    assert (found.kind, found.names, found.probability) == ("cannot_tell", (), pytest.approx(0.9))
+
+
 def test_what_a_doubtful_member_of_a_pair_may_be_is_said():
     found = verdict(CASES["two, one doubtful"][0], SURE, 0.0)
     assert found.alternatives == {"b": ("c",)}

@@ -21,7 +21,7 @@ from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.models.dq.control import least_current
 from workbench.models.dq.model import BASE
-from workbench.models.dq.operation import Operation
+from workbench.models.dq.operation import Operation, newton
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = DqMachine(4, 0.1, 3e-3, 4e-3, 0.5)
@@ -271,3 +271,13 @@ def test_a_dynamometer_map_is_read_from_a_file(tmp_path):
     assert table.responses["efficiency"].values == pytest.approx([0.8, 0.85])
     ours = BASE.respond(BASE.design(campaign.device), table.kind, table.conditions)
     assert set(table.responses) <= set(ours)
+
+
+def test_newton_halves_a_step_that_makes_a_row_worse():
+    """From 2, the whole steps of arctan x = 0 go -3.5, 14, -279, ... and never come back."""
+    start = np.array([2.0, 0.5])
+    x, y = newton(lambda x, y: (np.arctan(x), y - 1.0), start, np.zeros(2), np.ones(2), np.ones(2))
+    np.testing.assert_allclose(x, 0.0, atol=1e-9)
+    np.testing.assert_allclose(y, 1.0)
+    with pytest.raises(WorkbenchError, match=r"row \d: no such"):
+        newton(lambda x, y: (x**2 + 1.0, y), start, np.zeros(2), np.ones(2), np.ones(2), "no such")

@@ -5,17 +5,21 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from effects.drawn.bridge_width import BridgeWidth
+from effects.drawn.eddy_screening import EddyScreening
 from effects.drawn_design import rim_field
 from effects.electrical.winding_turns import WindingTurns
 from effects.machine.airgap_change import AirgapChange
 from effects.machine.end_leakage import EndLeakage
 from effects.machine.magnet_temperature import MagnetTemperature
+from electrical.winding_connection import Delta, Star, WindingConnection
 from geometry.half_cell import MeshDensity
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.torque import arkkio_torque
+from study.machine_file import MACHINES
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.drawn.answers import Answers, _around, _unfolded
@@ -43,7 +47,10 @@ def test_a_sixth_of_three_phases_makes_a_period():
     angle = np.arange(36) * 2 * pi / 36
     wave = np.cos(angle - 0.3) + 0.2 * np.cos(5 * angle) + 0.1 * np.sin(3 * angle)
     lagging = [np.roll(wave, 12 * k) for k in range(3)]
-    assert np.allclose(_unfolded(np.stack([one[:6] for one in lagging], axis=1)), wave)
+    assert np.allclose(_unfolded(np.stack([one[:6] for one in lagging], axis=1), 6), wave)
+    uneven = wave + 0.3 * np.sin(2 * angle + 0.1)
+    lagging = [np.roll(uneven, 12 * k) for k in range(3)]
+    assert np.allclose(_unfolded(np.stack([one[:12] for one in lagging], axis=1), 3), uneven)
 
 
 def test_a_polynomial_between_angles_is_met():
@@ -109,6 +116,25 @@ def test_effects_do_what_they_say(outrunner):
     assert not BridgeWidth.can_act_on(design)
 
 
+def test_eddies_take_the_flux_that_crosses_the_gap_and_leave_what_all_phases_share(outrunner):
+    """Slots, ends and whatever the three phases have in common stay: L + 2 M does not change."""
+    bench, design = outrunner
+    one = {"angle_mech": np.array([0.1])}
+    bare = bench.respond(design, "inductance", one)
+    seen = EddyScreening(0.2).on_response(bare, one, "inductance", design)
+    assert seen["l_m"] == pytest.approx(0.8 * bare["l_m"]) and bare["l_m"] < 0
+    assert seen["l_a"] + 2 * seen["l_m"] == pytest.approx(bare["l_a"] + 2 * bare["l_m"])
+    assert seen["l_ab"] - bare["l_ab"] == pytest.approx(2 * (seen["l_a"] - seen["l_m"] - bare["l_a"] + bare["l_m"]))
+    assert EddyScreening(0.2).on_response(bare, one, "flux_linkage", design) is bare
+
+
+def test_a_stack_has_no_more_steel_than_length(outrunner):
+    bench, design = outrunner
+    tight = Tolerance("stacking_factor", 0.02, relative=False)
+    full = bench.with_tolerance(replace(design, stacking_factor=0.97), tight, 5.0)
+    assert full.stacking_factor == 1.0
+
+
 def test_the_expansion_is_exact_at_its_nodes_and_centre(outrunner):
     bench, design = outrunner
     weaker = design.with_magnet(remanence=0.9 * design.magnet.remanence)
@@ -146,6 +172,190 @@ def test_the_resistance_between_lines_is_seen():
     assert bench.doubts(right) == ()
     (said,) = bench.doubts(replace(right, phase_resistance=8.9462))
     assert "between two lines" in said
+
+
+# ---- windings in delta and with parallel paths, seen from their terminals --------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def wound(outrunner):
+    """The outrunner's design, its coils joined otherwise."""
+
+    def otherwise(**changes):
+        drawing = replace(outrunner[1].drawing, **changes)
+        return replace(outrunner[1], drawing=drawing, phase_resistance=0.02)
+
+    connections = {"delta": WindingConnection(1, Delta()), "paths": WindingConnection(3, Star())}
+    return {
+        name: otherwise(coil_currents=one.coil_currents, star_lag=one.closing.lag, is_delta=one.closing.circulates)
+        for name, one in connections.items()
+    }
+
+
+def test_the_file_says_how_coils_are_joined(tmp_path):
+    text = (MACHINES / "outrunner_9_12.toml").read_text(encoding="utf-8").replace('"curves/', f'"{MACHINES}/curves/')
+    joined = tmp_path / "joined.toml"
+    joined.write_text(text.replace("turns_per_coil = 8", 'turns_per_coil = 8\nconnection = "delta"'))
+    drawing = DrawnBench().design({"machine_file": str(joined)}).drawing
+    assert drawing.is_delta and drawing.star_lag == pi / 6
+    assert drawing.coil_currents @ np.array([1.0, -1.0, 0.0]) == pytest.approx([2 / 3, -1 / 3, -1 / 3])
+
+
+def test_a_delta_shows_the_voltage_of_a_phase_without_what_goes_round(outrunner, wound):
+    bench, design = outrunner
+    turn = {"angle_mech": np.arange(120) * 2 * pi / 720, "speed": np.full(120, 50.0)}
+    phase = np.fft.rfft(bench.respond(design, "back_emf", turn)["v_a"]) / 60
+    phase[::3] = 0.0
+    line = bench.respond(wound["delta"], "back_emf", {"speed": np.array([50.0])})
+    assert line["v_ll"][0] == pytest.approx(np.linalg.norm(phase) / sqrt(2), rel=1e-9)
+    over_angle = bench.respond(wound["delta"], "back_emf", turn)
+    assert np.fft.rfft(over_angle["v_a"] - over_angle["v_b"])[1] / 60 == pytest.approx(phase[1], rel=1e-9)
+
+
+def test_lines_of_a_delta_feed_its_phases_by_their_resistances(outrunner, wound):
+    """A between terminals A and B, B between B and C, C between C and A; what is fed in divides 2 to 1."""
+    bench, design = outrunner
+    lines, angle = np.array([3.0, -5.0, 2.0]), np.array([5 * bench.expansion.samples.step])
+    nodes = np.array([[1, 0, -1], [-1, 1, 0], [1, 1, 1]])
+    phases = np.linalg.solve(nodes, [lines[0], lines[1], 0.0])
+    at = {"angle_mech": angle} | {f"i_{x}": lines[[k]] for k, x in enumerate("abc")}
+    exact = bench.expansion.samples.model(design).solve(PhaseCurrents(angle[0], tuple(phases * design.turns)))
+    found = bench.respond(wound["delta"], "locked_rotor", at)["torque"][0]
+    assert found == pytest.approx(arkkio_torque(exact) * design.length, rel=1e-6)
+
+
+def test_inductance_between_the_lines_of_a_delta_is_that_of_two_branches(outrunner, wound):
+    """One phase beside two in series, each with what the others induce in it, from the matrix of three phases."""
+    bench, design = outrunner
+    angle = np.array([0.02])
+    matrix = np.zeros((3, 3))
+    for k, x in enumerate("abc"):
+        at = {"angle_mech": angle} | {f"i_{y}": np.array([0.5 if y == x else 0.0]) for y in "abc"}
+        change = bench.respond(design, "flux_linkage", at)
+        matrix[:, k] = [change[f"dpsi_{y}"][0] / 0.5 for y in "abc"]
+    branches = np.array([[1, 0], [0, -1], [0, -1]])  # A, and B and C the other way round
+    two = branches.T @ matrix @ branches
+    found = bench.respond(wound["delta"], "inductance", {"angle_mech": angle})
+    assert found["l_ab"][0] == pytest.approx(1 / np.linalg.inv(two).sum(), rel=2e-3)
+    assert "l_a" not in found
+
+
+def test_alternating_currents_divide_by_inductances_where_phases_are_not_alike(outrunner, wound, monkeypatch):
+    matrix = np.array([[3.0, -1.0, -0.5], [-1.0, 2.0, -0.8], [-0.5, -0.8, 2.5]])
+    monkeypatch.setattr(Answers, "_coil_change", lambda _, angle, currents: currents @ matrix)
+    branches = np.array([[1, 0], [0, -1], [0, -1]])
+    fed = np.array([1.0, -1.0, 0.0])
+    found = answers(outrunner, wound["delta"]).alternating_change(np.zeros(1), fed[None])[0] @ fed
+    assert found == pytest.approx(1 / np.linalg.inv(branches.T @ matrix @ branches).sum(), rel=1e-12)
+
+
+def test_what_goes_round_a_delta_brakes_as_its_differential_equation_says(outrunner, wound):
+    """R i + L di/dt = -e over one loop of three phases, e a third of their sum, integrated until it repeats."""
+    bench, design = outrunner
+    speed, seen, plain = 900.0, answers(outrunner, wound["delta"]), answers(outrunner)
+    resistance, inductance, third = 3 * 0.02, seen._common_inductance, 2 * pi / 6 / 3 / speed
+
+    def rate(t, i):
+        return -(speed * plain.linkage_slopes(np.array([speed * t])).sum() / 3 + resistance * i) / inductance
+
+    end = third * np.ceil(8 * inductance / resistance / third)
+    run = solve_ivp(rate, (0.0, end + third), [0.0], rtol=1e-8, atol=1e-10, t_eval=end + third * np.arange(200) / 200)
+    loss = np.array([3 * resistance * np.mean(run.y[0] ** 2)])
+    assert seen.circulating_loss(np.array([speed])) == pytest.approx(loss, rel=2e-3)
+    brake = {name: bench.respond(one, "drag", {"speed": np.array([speed])})["torque"] for name, one in wound.items()}
+    assert brake["paths"] == 0.0 and -brake["delta"] * speed == pytest.approx(loss, rel=2e-3)
+
+
+def test_three_paths_are_a_third_of_the_voltage_at_three_times_the_current(outrunner, wound):
+    bench, design = outrunner
+    at = {"speed": np.array([100.0])}
+    series, parallel = (bench.respond(one, "back_emf", at)["v_ll"][0] for one in (design, wound["paths"]))
+    assert parallel == pytest.approx(series / 3, rel=1e-12)
+
+    def torque(one, i):
+        state = {"angle_mech": np.array([0.05]), "i_a": np.array([i]), "i_b": np.array([-i / 2])}
+        return bench.respond(one, "locked_rotor", state | {"i_c": np.array([-i / 2])})["torque"][0]
+
+    assert torque(wound["paths"], 12.0) == pytest.approx(torque(design, 4.0), rel=1e-9)
+
+
+# ---- kinds of measurement --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("joined", ("series", "delta"))
+def test_the_holding_current_leaves_no_torque_in_the_field(outrunner, wound, joined):
+    bench, design = outrunner
+    asked = design if joined == "series" else wound[joined]
+    samples = bench.expansion.samples
+    steps = np.array([3, 5, 9])
+    current = bench.respond(asked, "holding_current", {"angle_mech": steps * samples.step})["current"]
+    model = samples.model(design)
+    for step, i in zip(steps, current, strict=True):
+        turned = 6 * step * samples.step - design.drawing.layout.phase_axis - asked.drawing.star_lag
+        lines = -i * np.sin(turned - 2 * pi / 3 * np.arange(3))
+        coils = asked.turns * asked.drawing.coil_currents @ lines
+        both = (PhaseCurrents(step * samples.step, tuple(one)) for one in (0 * coils, coils))
+        idle, held = (arkkio_torque(model.solve(point)) for point in both)
+        assert abs(idle) > 1e-3 and abs(held) < 0.01 * abs(idle)
+
+
+def test_the_holding_current_carries_the_friction_of_a_creeping_rotor(outrunner):
+    """Half the difference of both ways is friction over the torque constant, wherever cogging is."""
+    bench, design = outrunner
+    stiff = replace(design, dry_friction=2e-4)
+    angle = np.array([0.02, 0.05])
+    ways = [bench.respond(stiff, "holding_current", {"angle_mech": angle, "direction": np.full(2, d)})["current"]
+            for d in (1.0, -1.0)]  # fmt: skip
+    constant = 1.5 * 6 * abs(answers(outrunner).waves[1])
+    assert (ways[0] - ways[1]) / 2 == pytest.approx(np.full(2, 2e-4 / constant), rel=0.1)
+
+
+def test_torque_against_the_current_angle_is_that_of_the_field(outrunner):
+    bench, design = outrunner
+    angle = 4 * bench.expansion.samples.step
+    model = bench.expansion.samples.model(design)
+    for gamma in (0.0, 0.9):
+        turned = 6 * angle - design.drawing.layout.phase_axis - 2 * pi / 3 * np.arange(3)
+        lines = -4.0 * (np.sin(gamma) * np.cos(turned) + np.cos(gamma) * np.sin(turned))
+        at = {"angle_mech": np.array([angle])} | {f"i_{x}": lines[[k]] for k, x in enumerate("abc")}
+        exact = arkkio_torque(model.solve(PhaseCurrents(angle, tuple(lines * design.turns)))) * design.length
+        assert bench.respond(design, "locked_rotor", at)["torque"][0] == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def driven(outrunner):
+    """The design with what currents at speed need, and its constants read off the field."""
+    design = replace(outrunner[1], phase_resistance=0.05, largest_current=5.0, viscous_friction=1e-6)
+    psi = abs(answers(outrunner).waves[1])
+    at = {"angle_mech": np.array([0.02]), "current": np.array([1.0])}
+    return design, psi, outrunner[0].respond(design, "inductance", at)["l_ab"][0] / 2
+
+
+def test_no_load_speed_current_and_power_by_hand(outrunner, driven):
+    """Driven: the voltage of the magnets and the power of the friction. Fed: the voltage that leaves i_d zero needs the
+    current of the friction alone."""
+    bench, (design, psi, inductance) = outrunner[0], driven
+    speed = np.array([400.0])
+    open_ends = bench.respond(design, "no_load", {"speed": speed})
+    assert open_ends["v_ll"][0] == pytest.approx(6 * 400 * psi * sqrt(1.5), rel=2e-3)
+    assert open_ends["power"][0] == pytest.approx(1e-6 * 400**2, rel=1e-9)
+    i_q = 1e-6 * 400 / (1.5 * 6 * psi)
+    volts = abs(complex(0.05 * i_q + 6 * 400 * psi, 6 * 400 * inductance * i_q)) * sqrt(1.5)
+    fed = bench.respond(design, "no_load", {"speed": speed, "v_ll": np.array([volts])})
+    assert fed["power"][0] == pytest.approx(1e-6 * 400**2 + 1.5 * 0.05 * i_q**2, rel=0.02)
+    assert fed["current"][0] == pytest.approx(i_q / sqrt(2), rel=0.15), "what is left of i_d counts quadratically"
+
+
+def test_a_dynamometer_map_by_hand(outrunner, driven):
+    """Magnets on the surface: i_q = T / (1.5 p psi), i_d = 0."""
+    bench, (design, psi, inductance) = outrunner[0], driven
+    speed, torque = np.array([300.0]), np.array([0.008])
+    i_q = (0.008 + 1e-6 * 300) / (1.5 * 6 * psi)
+    found = bench.respond(design, "dyno_map", {"speed": speed, "torque": torque})
+    volts = abs(complex(0.05 * i_q + 6 * 300 * psi, 6 * 300 * inductance * i_q)) * sqrt(1.5)
+    assert found["current"][0] == pytest.approx(i_q / sqrt(2), rel=5e-3)
+    assert found["v_ll"][0] == pytest.approx(volts, rel=5e-3)
+    assert found["loss"][0] == pytest.approx(1.5 * 0.05 * i_q**2 + 1e-6 * 300**2, rel=0.01)
 
 
 def test_what_is_not_known_is_refused():

@@ -239,6 +239,13 @@ def test_without_sealed_rows_and_regions_prediction_is_said_to_be_untested(diagn
     assert "not tested" not in " ".join(conclusions(diagnosis))
 
 
+def test_what_the_fitted_rows_show_is_not_blamed_on_sealed_rows(diagnosis):
+    """Both probabilities are nearly one."""
+    bad = replace(diagnosis.sealed, p_value=0.0, chi2_per_n=23.4, holds=False)
+    found = replace(of(diagnosis, "none_of_these"), sealed=bad, probability=1.0, p_something_remains=1.0)
+    assert "do not show it" not in verdict_sentence(found)
+
+
 def test_parameters_on_a_bound_are_said_where_they_are_named(diagnosis):
     bound = tuple(replace(r, at_bound=("force",)) for r in diagnosis.ranking)
     assert bound_sentences(diagnosis) == ()

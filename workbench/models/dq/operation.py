@@ -14,7 +14,7 @@ from workbench.errors import WorkbenchError
 PEAK_OF_LINE_RMS = sqrt(2.0 / 3.0)  # peak phase voltage of an RMS line-to-line voltage
 STEPS = 60  # of Newton's method; some six are needed
 CLOSE = 1e-11  # residual, of its scale
-FAR = 1e9  # the same, where Newton has left every machine
+HALVINGS = 12  # of a step that makes a row worse
 TOO_LOW = "the machine has no steady state there, the voltage is too low for the torque"
 _STILL = 1e-3  # rad/s, electrical, below which hysteresis no longer brakes
 _SLOPE_STEP = 1e-3  # of the current that cancels the magnets, for slopes by central differences
@@ -139,23 +139,40 @@ def newton(
 ) -> Currents:
     """x, y of residual(x, y) = (a, b) = 0, all rows at once, slopes over small steps; scales of a and b to judge by.
 
+    A step that makes a row worse is halved there: flux maps bend.
     failed: what it means when there is no answer, for example a voltage too low for the torque
     Raises WorkbenchError there.
     """
-    step = 1e-6 * (np.abs(x).max() + np.abs(y).max() + 1.0)
+
+    def off(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.maximum(np.abs(a) / size_a, np.abs(b) / size_b)
+
+    h = 1e-6 * (np.abs(x).max() + np.abs(y).max() + 1.0)
+    a, b = residual(x, y)
     for _ in range(STEPS):
-        a, b = residual(x, y)
-        worst = np.maximum(np.abs(a) / size_a, np.abs(b) / size_b)
-        if worst.max() < CLOSE:
-            return x, y
-        if not worst.max() < FAR:
+        worst = off(a, b)
+        if worst.max() < CLOSE or not np.isfinite(worst).all():
             break
-        (a_x, b_x), (a_y, b_y) = residual(x + step, y), residual(x, y + step)
-        a_x, b_x, a_y, b_y = (a_x - a) / step, (b_x - b) / step, (a_y - a) / step, (b_y - b) / step
-        determinant = a_x * b_y - a_y * b_x
-        determinant = np.where(determinant == 0.0, np.finfo(float).tiny, determinant)  # a far step: it is refused above
-        x, y = x - (a * b_y - b * a_y) / determinant, y - (a_x * b - b_x * a) / determinant
+        step_x, step_y = _newton_step(residual, x, y, a, b, h)
+        share = np.ones(x.shape)
+        for _ in range(HALVINGS):
+            a, b = residual(x + share * step_x, y + share * step_y)
+            worse = ~(off(a, b) <= np.maximum(worst, CLOSE))
+            if not worse.any():
+                break
+            share = np.where(worse, 0.5 * share, share)
+        x, y = x + share * step_x, y + share * step_y
+        a, b = residual(x, y)
     if worst.max() < 1e3 * CLOSE:
         return x, y
-    row = int(np.argmax(worst))
+    row = int(np.argmax(np.nan_to_num(worst, nan=np.inf)))
     raise WorkbenchError(f"row {row}: {failed}")
+
+
+def _newton_step(residual, x, y, a, b, h: float) -> Currents:
+    """What Newton adds to x and y, slopes over h."""
+    (a_x, b_x), (a_y, b_y) = residual(x + h, y), residual(x, y + h)
+    a_x, b_x, a_y, b_y = (a_x - a) / h, (b_x - b) / h, (a_y - a) / h, (b_y - b) / h
+    determinant = a_x * b_y - a_y * b_x
+    determinant = np.where(determinant == 0.0, np.finfo(float).tiny, determinant)  # a far step: it is halved
+    return -(a * b_y - b * a_y) / determinant, -(a_x * b - b_x * a) / determinant

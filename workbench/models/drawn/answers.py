@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi
 
 import numpy as np
@@ -14,6 +14,7 @@ from effects.drawn_design import DrawnAsBuilt
 from losses.iron import FrequencyTerms
 from magnetostatics.flux_linkage import park
 from materials.conductor import COPPER
+from workbench.errors import WorkbenchError
 from workbench.models.drawn.expansion import Expansion
 from workbench.models.drawn.field import State
 
@@ -22,6 +23,7 @@ _POINTS = 6  # of the grid of angles that a value between them is made of
 _SAME = 1e-3  # relative, of currents that are those of an anchor
 _NEAR = 0.3  # relative, of currents that are read off an anchor
 _SCALES = (0.9, 1.0, 1.1)  # of an anchor, that what its size does is taken from
+_SMALL = 1.0  # A, that inductances without saturation are read at
 _APART = 4  # steps of the grid between angles at which changes of the drawing are taken: they are small and smooth
 
 
@@ -67,26 +69,52 @@ class Answers:
     # ---- at rotor angles and constant currents ------------------------------------------------------------------
 
     def torque(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
-        """At angles [rad] (n,) and phase currents [A] (n, 3) [Nm]; see ``MachineAsBuilt`` for the leakage."""
-        both = self._samples(angle, currents)[:, 0]
+        """At angles [rad] (n,) and line currents [A] (n, 3) [Nm]; see ``BuiltMachine`` for the leakage."""
+        return self._with_leakage(
+            self._samples(angle, self._in_coils(currents))[:, 0], lambda: self._samples(angle, 0 * currents)[:, 0]
+        )
+
+    def _with_leakage(self, both: np.ndarray, alone: Callable[[], np.ndarray]) -> np.ndarray:
+        """Torque [Nm] (n,) from that per length with and without current [Nm/m] (n,)."""
         if not self.design.end_leakage:
             return self.design.length * both
-        alone = self._samples(angle, 0 * currents)[:, 0]
-        return self.design.length * (self.kept * (both - alone) + self.kept**2 * alone)
+        none = alone()
+        return self.design.length * (self.kept * (both - none) + self.kept**2 * none)
 
     def linkage_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
-        """Flux linkages of the phases against those without current [Wb] (n, 3); the end winding adds L_end i."""
-        change = (self._samples(angle, currents) - self._samples(angle, 0 * currents))[:, 1:]
-        return self.design.turns * self.design.length * change + self.design.end_winding_inductance * currents
+        """Flux linkages of the phases of the star against those without current [Wb] (n, 3); the end winding adds
+        L_end i. Round a delta no current goes: it has died away at the constant currents of a line [A] (n, 3)."""
+        change = self._coil_change(angle, self._in_coils(currents)) @ self.design.drawing.coil_currents
+        return change + self.design.end_winding_inductance * currents
+
+    def alternating_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        """The same for line currents that alternate so fast that no resistance counts: what goes round a delta leaves
+        no flux common to its three phases [Wb] (n, 3)."""
+        coils = self._in_coils(currents)
+        if self.design.drawing.is_delta:
+            size = np.abs(coils).max(axis=1, keepdims=True)
+            common = self._coil_change(angle, size * np.ones(3)).sum(axis=1, keepdims=True)
+            coils = coils - size * self._coil_change(angle, coils).sum(axis=1, keepdims=True) / common
+        change = self._coil_change(angle, coils) @ self.design.drawing.coil_currents
+        return change + self.design.end_winding_inductance * currents
 
     def magnet_linkage(self, angle: np.ndarray) -> np.ndarray:
-        """Flux linkages of the phases without current [Wb] (n, 3)."""
-        alone = self._samples(angle, np.zeros((len(angle), 3)))[:, 1:]
+        """Flux linkages of the phases of the star without current [Wb] (n, 3)."""
+        alone = self._samples(angle, np.zeros((len(angle), 3)))[:, 1:] @ self.design.drawing.coil_currents
         return self.design.turns * self.design.length * self.kept * alone
 
-    def _samples(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+    def _in_coils(self, currents: np.ndarray) -> np.ndarray:
+        """Of lines in those of the coils of the phases [A] (n, 3)."""
+        return currents @ self.design.drawing.coil_currents.T
+
+    def _coil_change(self, angle: np.ndarray, coil_currents: np.ndarray) -> np.ndarray:
+        """Flux linkages of all coils of a phase in series against those without current [Wb] (n, 3)."""
+        change = (self._samples(angle, coil_currents) - self._samples(angle, 0 * coil_currents))[:, 1:]
+        return self.design.turns * self.design.length * change
+
+    def _samples(self, angle: np.ndarray, coil_currents: np.ndarray) -> np.ndarray:
         """(n, 4): between angles of the grid by a polynomial, between sizes of the current by a parabola."""
-        ampere_turns = self.design.turns * currents
+        ampere_turns = self.design.turns * coil_currents
         kinds, group = np.unique(ampere_turns, axis=0, return_inverse=True)
         found = np.empty((len(angle), 4))
         for k, kind in enumerate(kinds):
@@ -96,16 +124,20 @@ class Answers:
 
     def _at_currents(self, angle: np.ndarray, ampere_turns: np.ndarray) -> np.ndarray:
         anchor, scale = self.anchors.of(ampere_turns) if ampere_turns.any() else ((0.0, 0.0, 0.0), 1.0)
-        exact = self._between(angle, anchor, 1, lambda states: self._in_size(states, scale))
-        change = self._between(angle, anchor, _APART, lambda states: self.expansion.change(self.design, states))
+        at = partial(_state, anchor)
+        exact = self._between(angle, at, 1, lambda states: self._in_size(states, scale))
+        change = self._between(angle, at, _APART, lambda states: self.expansion.change(self.design, states))
         return exact + scale * change
 
-    def _between(self, angle: np.ndarray, anchor: Triple, apart: int, values: Callable[[list[State]], np.ndarray]):
-        """Values (states, 4) at every ``apart``th angle of the grid made into those at angles (n, 4)."""
+    def _between(
+        self, angle: np.ndarray, at: Callable[[int], State], apart: int, values: Callable[[list[State]], np.ndarray]
+    ) -> np.ndarray:
+        """Values (states, 4) at every ``apart``th angle of the grid made into those at angles (n, 4); at: the state of
+        a step"""
         samples = self.expansion.samples
         places, weights = _around(angle / (apart * samples.step))
         steps, inverse = np.unique(apart * places % samples.period, return_inverse=True)
-        found = values([State(int(step), anchor) for step in steps])
+        found = values([at(int(step)) for step in steps])
         return np.einsum("nk,nkq->nq", weights, found[inverse.reshape(places.shape)])
 
     def _in_size(self, states: list[State], scale: float) -> np.ndarray:
@@ -122,21 +154,32 @@ class Answers:
 
     @cached_property
     def waves(self) -> np.ndarray:
-        """Complex amplitudes of phase A's flux linkage over the electrical angle [Wb] (orders,).
+        """Complex amplitudes of the flux linkage of phase A of the star over the electrical angle [Wb] (orders,)."""
+        lag = np.exp(-2j * pi / 3 * np.outer(np.arange(3), np.arange(len(self.coil_waves))))
+        return self.coil_waves * (self.design.drawing.coil_currents[:, 0] @ lag)
+
+    @cached_property
+    def coil_waves(self) -> np.ndarray:
+        """The same of all coils of A in series [Wb] (orders,).
 
         A sixth of a period of all phases makes a whole one of A: B and C lag by a third each, half a period turns the
-        sign.
+        sign; a third where north and south poles are not alike.
         """
         samples, pairs = self.expansion.samples, self.design.machine.pole_pairs
-        period = samples.steps // pairs
-        strides = (d for d in range(2, period // 6 + 1) if period % (6 * d) == 0 and period // d >= _ORDERS)
+        period, parts = samples.steps // pairs, self._parts
+        strides = (d for d in range(2, period // parts + 1) if period % (parts * d) == 0 and period // d >= _ORDERS)
         stride = max(strides, default=1)
-        states = [State(k * stride, (0.0, 0.0, 0.0)) for k in range(period // stride // 6)]
-        sixth = (self.expansion.at_centre(states) + self.expansion.change(self.design, states))[:, 1:]
-        whole = _unfolded(sixth)
+        states = [State(k * stride, (0.0, 0.0, 0.0)) for k in range(period // stride // parts)]
+        part = (self.expansion.at_centre(states) + self.expansion.change(self.design, states))[:, 1:]
+        whole = _unfolded(part, parts)
         found = 2 * np.fft.rfft(whole) / len(whole)
         found[0] /= 2
         return self.design.turns * self.design.length * self.kept * found
+
+    @property
+    def _parts(self) -> int:
+        """Into which an electrical period divides, of which each has all that the three phases see."""
+        return 6 if self.design.machine.half_wave else 3
 
     def linkage_slopes(self, angle: np.ndarray) -> np.ndarray:
         """d psi/d angle of the phases at rotor angles [rad] (n,): [Wb] (n, 3)."""
@@ -158,6 +201,36 @@ class Answers:
         size = float(self.design.length * self.design.stacking_factor * self.design.iron_loss_factor * flux)
         return FrequencyTerms(*(size * float(term) for term in (total.hysteresis, total.eddy, total.excess)))
 
+    def circulating_loss(self, speed: np.ndarray) -> np.ndarray:
+        """Of the current round a delta at open terminals [W] (n,), at speeds [rad/s] (n,); none in a star.
+
+        P = 3/2 R sum over n = 3, 9, 15 ... of (n w psi_0n)^2 / (R^2 + (n w L_0)^2), w electrical, of the phases of the
+        delta. Source: ``electrical.circulating``.
+        """
+        d = self.design
+        if not (d.drawing.is_delta and speed.any()):
+            return np.zeros(len(speed))
+        if not d.phase_resistance:
+            raise WorkbenchError("a delta brakes by the current that goes round it: give phase_resistance in [device]")
+        orders = np.arange(3, len(self.coil_waves), 3)
+        rate = np.abs(speed)[:, None] * d.machine.pole_pairs * orders
+        resistance, inductance, paths = 3 * d.phase_resistance, self._common_inductance, self._paths
+        square = (rate * np.abs(self.coil_waves[orders]) / paths) ** 2
+        return 1.5 * resistance * (square / (resistance**2 + (rate * inductance) ** 2)).sum(axis=1)
+
+    @cached_property
+    def _common_inductance(self) -> float:
+        """L_0 of a phase of a delta [H]: its flux linkage by one small current in all three, mean over a part."""
+        step = self.expansion.samples.step
+        angle = step * np.round(np.arange(3) * 2 * pi / self.design.machine.pole_pairs / self._parts / 3 / step)
+        change = self._coil_change(angle, np.full((3, 3), _SMALL / self._paths)) / self._paths
+        return float(change.mean() / _SMALL)
+
+    @property
+    def _paths(self) -> float:
+        """Parallel ones of a phase of a delta."""
+        return 1 / (3 * float(np.abs(self.design.drawing.coil_currents).max()))
+
     # ---- windings -----------------------------------------------------------------------------------------------
 
     def resistance(self, at: Columns) -> np.ndarray:
@@ -169,21 +242,39 @@ class Answers:
 
     # ---- currents that turn with the rotor ----------------------------------------------------------------------
 
-    def mean_dq(self, i_d: np.ndarray, i_q: np.ndarray, positions: int = 3) -> np.ndarray:
-        """psi_d, psi_q (n, 2) [Wb] at currents along both axes [A] (n,): means over a sixth of an electrical period,
-        of three positions without sixth and twelfth orders."""
-        layout, pairs = self.design.drawing.layout, self.design.machine.pole_pairs
-        step = self.expansion.samples.steps // pairs / 6 / positions
+    def mean_dq(self, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
+        """psi_d, psi_q (n, 2) [Wb] at currents along both axes [A] (n,): means over a part of an electrical period, of
+        three positions in a sixth without sixth and twelfth orders."""
+        pairs, positions = self.design.machine.pole_pairs, 18 // self._parts
+        step = self.expansion.samples.steps // pairs / self._parts / positions
         found = np.zeros((len(i_d), 2))
         for k in range(positions):
             place = round((k + 0.5) * step)
             theta = pairs * place * self.expansion.samples.step
-            turned = theta - layout.phase_axis - 2 * pi / 3 * np.arange(3)
-            phases = self.design.turns * (i_d[:, None] * np.cos(turned) - i_q[:, None] * np.sin(turned))
-            states = [State(place, _triple(np.round(row, 6))) for row in phases]
+            states = [self._turning_state(d, q, place) for d, q in zip(i_d, i_q, strict=True)]
             samples = self.expansion.at_centre(states) + self.expansion.change(self.design, states)
-            found += np.array([park(one, theta, layout.phase_axis) for one in samples[:, 1:]]) / positions
+            phases = samples[:, 1:] @ self.design.drawing.coil_currents
+            found += np.array([park(one, theta, self._star_axis) for one in phases]) / positions
         return self.design.turns * self.design.length * found
+
+    def turning_torque(self, angle: np.ndarray, i_q: float) -> np.ndarray:
+        """At rotor angles [rad] (n,) with a current along the q axis that turns with the rotor [A] [Nm] (n,)."""
+        at = partial(self._turning_state, 0.0, i_q)
+        both = self._between(angle, at, 1, self.expansion.at_centre)
+        change = self._between(angle, at, _APART, lambda states: self.expansion.change(self.design, states))
+        return self._with_leakage((both + change)[:, 0], lambda: self._samples(angle, np.zeros((len(angle), 3)))[:, 0])
+
+    def _turning_state(self, i_d: float, i_q: float, step: int) -> State:
+        """With line currents [A] along both axes at a step of the grid."""
+        theta = self.design.machine.pole_pairs * step * self.expansion.samples.step
+        turned = theta - self._star_axis - 2 * pi / 3 * np.arange(3)
+        lines = i_d * np.cos(turned) - i_q * np.sin(turned)
+        return State(step, _triple(np.round(self.design.turns * self._in_coils(lines), 6)))
+
+    @property
+    def _star_axis(self) -> float:
+        """Electrical angle of the axis of phase A of the star [rad]."""
+        return self.design.drawing.layout.phase_axis + self.design.drawing.star_lag
 
 
 def _scaled(state: State, factor: float) -> State:
@@ -203,11 +294,18 @@ def _around(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places, weights
 
 
-def _unfolded(sixth: np.ndarray) -> np.ndarray:
-    """A period of phase A from a sixth of all three (m, 3): psi_A(x - 120 deg k) = psi_k(x), psi(x + 180 deg) = -psi.
+def _state(ampere_turns: Triple, step: int) -> State:
+    return State(step, ampere_turns)
 
-    In the order of A's own angle 0, 60, ...: 0 is A, 60 is -B (180 - 120), 120 is C (-240), then the same negative.
+
+def _unfolded(part: np.ndarray, parts: int) -> np.ndarray:
+    """A period of phase A from a third or a sixth of all three (m, 3): psi_A(x - 120 deg k) = psi_k(x).
+
+    In the order of A's own angle 0, 120, 240: A, C (-240), B (-120). With a sixth psi(x + 180 deg) = -psi too, so that
+    0 is A, 60 is -B (180 - 120), 120 is C, then the same negative.
     """
-    a, b, c = sixth.T
+    a, b, c = part.T
+    if parts == 3:
+        return np.concatenate([a, c, b])
     half = np.concatenate([a, -b, c])
     return np.concatenate([half, -half])

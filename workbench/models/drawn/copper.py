@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+import numpy as np
 
 from effects.drawn_design import DrawnAsBuilt
 from materials.conductor import COPPER
@@ -27,18 +27,12 @@ def doubts_of_resistance(design: DrawnAsBuilt) -> tuple[str, ...]:
 
 
 def copper_resistance(design: DrawnAsBuilt) -> float:
-    """R = rho n coils l_turn / A of a phase at 20 degC [ohm], l_turn = 2 l + pi w.
+    """Of a phase of the equivalent star at 20 degC [ohm]: rho n coils l_turn / A of all coils in series, by what each
+    carries of the current of a line; l_turn = 2 (l + l_et).
 
-    w: mean width of a coil, across which the ends are half circles (estimate; they have 30 to 60 % of the resistance)
+    l_et: of an end turn, an estimate where coils span more than a tooth (the ends have 30 to 60 % of the resistance)
     """
-    layout = design.drawing.layout
-    turn = 2 * design.length + pi * _coil_width(design)
-    turns = design.turns * layout.coils_in_series
-    return COPPER.reference_resistivity * turns * turn / design.copper_area
-
-
-def _coil_width(design: DrawnAsBuilt) -> float:
-    """Between the middles of the sides of a coil, half way down the tooth [m]; tooth coils lie beside each other."""
-    (x, low), (_, high) = design.machine.stator.tooth_probe
-    pitch, pitches = design.machine.slot_pitch * x, design.drawing.layout.coil_pitch
-    return pitches * pitch if pitches > 1 else (pitch + high - low) / 2
+    turns = design.turns * design.drawing.layout.coils_in_series
+    series = COPPER.reference_resistivity * turns * 2 * (design.length + design.drawing.end_turn) / design.copper_area
+    between_two = design.drawing.coil_currents @ np.array([1.0, -1.0, 0.0])
+    return float(series * (between_two**2).sum() / 2)

@@ -2,7 +2,7 @@
 
 Needed: machine_file, in quotes: a name in ``machines/`` or the path of a file like those. If known:
 
-    phase_resistance_mohm         of a phase at 20 degC
+    phase_resistance_mohm         of a phase of the equivalent star at 20 degC, half of that between two terminals
     largest_current_A             of a phase, peak, that is on the bench: flux linkages are mapped up to it
     slots, poles                  of the file once more, where angles are to be checked
     remanence_T                   of the magnets where it is not that of the file
@@ -53,15 +53,24 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
     except (StudyError, GeometryError, MaterialError) as error:
         raise WorkbenchError(f"[device]: {error}") from None
     _check_counts(found, values)
+    closing = found.connection.closing
     drawing = Drawing(
-        found.machine, found.layout, found.materials.stator_steel, found.materials.rotor_steel, found.density
-    )  # type: ignore[arg-type]
+        found.machine,
+        found.layout,
+        found.materials.stator_steel,  # type: ignore[arg-type]
+        found.materials.rotor_steel,  # type: ignore[arg-type]
+        found.density,
+        found.end_turn_length,
+        found.connection.coil_currents,
+        closing.lag,
+        closing.circulates,
+    )
     return DrawnAsBuilt(
         drawing,
         found.machine,
-        _magnet(found, values),
-        found.active_length,
         found.turns,
+        magnet=_magnet(found, values),
+        length=found.active_length,
         phase_resistance=values.get("phase_resistance", 0.0),
         end_winding_inductance=values.get("end_winding_inductance", 0.0),
         stacking_factor=values.get("stacking_factor", 1.0),
@@ -119,6 +128,8 @@ def with_tolerance(design: DrawnAsBuilt, tolerance: Tolerance, z: float) -> Draw
         return replace(design, magnet=design.magnet.at(moved(design.magnet.reference_temperature)))
     if name in _OF_THE_MAGNET:
         return design.with_magnet(**{name: moved(getattr(design.magnet, name))})
+    if name == "stacking_factor":  # no more steel than the length; a fit that would have more stops there
+        return replace(design, stacking_factor=min(moved(design.stacking_factor), 1.0))
     if name in _OWN:
         return replace(design, **{name: moved(getattr(design, name))})
     part, dimension = name.split(".")

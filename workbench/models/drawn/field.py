@@ -88,7 +88,7 @@ class FieldSamples:
         """Of a revolution: edges of the sliding circle, several at once where that leaves enough positions."""
         m = self.nominal.drawing.machine
         edges = self._density.edges_around(m)
-        apart = edges // lcm(m.slots, m.poles)
+        apart = edges // lcm(m.slots, m.repeats)
         most = max(1, edges // (m.pole_pairs * self.plan.positions))
         return edges // max(d for d in range(1, apart + 1) if apart % d == 0 and d <= most)
 
@@ -99,15 +99,16 @@ class FieldSamples:
 
     @property
     def period(self) -> int:
-        """Steps after which a sample is the same at the same currents: two poles, or one where there is no magnet."""
+        """Steps after which a sample is the same at the same currents: two poles, or one where there is no magnet and
+        all poles are alike."""
         m = self.nominal.drawing.machine
-        return self.steps // (m.pole_pairs if m.rotor.magnets_per_pole else m.poles)
+        return self.steps // (m.pole_pairs if m.rotor.magnets_per_pitch else m.repeats)
 
     @property
     def idle_period(self) -> int:
         """Steps after which the torque without current is the same."""
         m = self.nominal.drawing.machine
-        return self.steps // lcm(m.slots, m.poles)
+        return self.steps // lcm(m.slots, m.repeats)
 
     # ---- samples ------------------------------------------------------------------------------------------------
 
@@ -183,9 +184,12 @@ def _altered(law: Reluctivity, design: DrawnAsBuilt) -> Reluctivity:
 def in_field(design: DrawnAsBuilt) -> DrawnAsBuilt:
     """The design with what its field does not know left out, so that alike fields are found again."""
     magnet = replace(design.magnet, temperature_coefficient=0.0, reference_temperature=0.0)
-    bare = DrawnAsBuilt(design.drawing, design.machine, magnet, 1.0, 1.0)
-    return replace(
-        bare,
+    return DrawnAsBuilt(
+        design.drawing,
+        design.machine,
+        turns=1.0,
+        magnet=magnet,
+        length=1.0,
         field_scale=design.field_scale,
         saturation_scale=design.saturation_scale,
         stacking_factor=design.stacking_factor,

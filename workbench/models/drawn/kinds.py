@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import pi, sqrt
 
 import numpy as np
@@ -12,22 +13,20 @@ from scipy.interpolate import RectBivariateSpline
 from effects.base import Columns
 from effects.dq_design import DqMachine
 from workbench.errors import WorkbenchError
-from workbench.models.dq.model import BASE as DQ
+from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamental, by_phase, phase_currents
 from workbench.models.drawn.answers import Answers
 
-PHASES = "abc"
 _STILL = 1e-9  # rad/s
+_LEAST_TORQUE = 1e-9  # Nm, where nothing is to be held
 _SMALL = 1.0  # A between lines, of an inductance where the table has no current
 _SHARES = (-1.0, -0.55, -0.25, 0.0, 0.25, 0.55, 1.0)  # of the largest current of a map
-
-Found = dict[str, np.ndarray]
 
 
 def _back_emf(answers: Answers, at: Columns) -> Found:
     """v = speed d psi/d angle over an angle; without one RMS: of a phase's fundamental, between lines of all orders."""
     if "angle_mech" in at:
         slopes = answers.linkage_slopes(at["angle_mech"]) * at["speed"][:, None]
-        return _by_phase("v", slopes)
+        return by_phase("v", slopes)
     orders = np.arange(len(answers.waves))
     each = answers.design.machine.pole_pairs * orders * np.abs(answers.waves)
     between = each * np.abs(1 - np.exp(-2j * pi / 3 * orders))
@@ -42,28 +41,50 @@ def _cogging(answers: Answers, at: Columns) -> Found:
 
 
 def _locked_rotor(answers: Answers, at: Columns) -> Found:
-    return {"torque": answers.torque(at["angle_mech"], _currents(at)) + lost_torque(answers, at)}
+    return {"torque": answers.torque(at["angle_mech"], phase_currents(at)) + lost_torque(answers, at)}
 
 
 def _flux_linkage(answers: Answers, at: Columns) -> Found:
-    change = answers.linkage_change(at["angle_mech"], _currents(at))
+    change = answers.linkage_change(at["angle_mech"], phase_currents(at))
     whole = change + answers.magnet_linkage(at["angle_mech"])
-    return _by_phase("dpsi", change) | _by_phase("psi", whole)
+    return by_phase("dpsi", change) | by_phase("psi", whole)
 
 
 def _inductance(answers: Answers, at: Columns) -> Found:
-    """Change of flux linkage over current: of phase A fed alone, its mutual one, and between two lines in series."""
+    """Change of flux linkage over current: of phase A fed alone, its mutual one, and between two lines in series.
+
+    A delta has no phase that can be fed alone.
+    """
     angle = at["angle_mech"]
     current = at.get("current", np.full(len(angle), _SMALL))
 
     def per_current(fed: tuple[int, int, int]) -> np.ndarray:
-        return answers.linkage_change(angle, np.outer(current, fed)) / current[:, None]
+        return answers.alternating_change(angle, np.outer(current, fed)) / current[:, None]
 
-    alone = per_current((1, 0, 0))
-    found = {"l_a": alone[:, 0], "l_m": alone[:, 1]}
+    found = {}
+    if not answers.design.drawing.is_delta:
+        alone = per_current((1, 0, 0))
+        found = {"l_a": alone[:, 0], "l_m": alone[:, 1]}
     for name, fed in (("l_ab", (1, -1, 0)), ("l_bc", (0, 1, -1)), ("l_ca", (-1, 0, 1))):
         found[name] = per_current(fed) @ np.array(fed)
     return found
+
+
+def _holding_current(answers: Answers, at: Columns) -> Found:
+    """Peak current of a line along the q axis that leaves no torque on the rotor, friction included.
+
+    From the torque at none and at both signs of the largest that a machine without reluctance would need, a parabola.
+    """
+    angle = at["angle_mech"]
+    idle = answers.turning_torque(angle, 0.0) + lost_torque(answers, at)
+    psi = abs(answers.waves[1])
+    if not psi:
+        raise WorkbenchError("a driver holds a rotor with magnets; this one has none: remove the holding_current")
+    size = max(float(np.abs(idle).max()), _LEAST_TORQUE) / (1.5 * answers.design.machine.pole_pairs * psi)
+    ahead, behind = (answers.turning_torque(angle, sign * size) + lost_torque(answers, at) for sign in (1.0, -1.0))
+    slope, bend = (ahead - behind) / 2, (ahead + behind) / 2 - idle
+    share = -2 * idle / (slope * (1 + np.sqrt(1 - 4 * bend * idle / slope**2)))
+    return {"current": size * share}
 
 
 def _phase_resistance(answers: Answers, at: Columns) -> Found:
@@ -92,7 +113,7 @@ def lost_torque(answers: Answers, at: Columns) -> np.ndarray:
         loss, pairs = answers.iron_loss, d.machine.pole_pairs
         frequency = pairs * np.maximum(size, _STILL) / (2 * pi)
         brake = brake + pairs / (2 * pi) * loss.at(frequency) / frequency
-    return -sign * brake
+    return -sign * (brake + answers.circulating_loss(speed) / np.maximum(size, _STILL))
 
 
 # ---- by the fundamental ----------------------------------------------------------------------------------------------
@@ -117,16 +138,6 @@ class FluxMap:
         return np.asarray(spline.ev(d, q) + along)
 
 
-@dataclass(frozen=True, eq=False)
-class _Drag:
-    """What brakes the rotor, as a law of the dq machine."""
-
-    answers: Answers
-
-    def lost_torque(self, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
-        return -lost_torque(self.answers, {"speed": speed})
-
-
 def dq_machine(answers: Answers) -> DqMachine:
     """The machine by its fundamental, with the flux linkages of the field at every current on its bench."""
     largest = answers.design.largest_current
@@ -142,7 +153,7 @@ def dq_machine(answers: Answers) -> DqMachine:
     left = psi - np.stack([psi_m + l_d * axis[:, None] + 0 * axis, l_q * axis + 0 * axis[:, None]], axis=2)
     law = FluxMap(*(RectBivariateSpline(axis, axis, left[:, :, k], s=0) for k in (0, 1)), largest)
     machine = DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, answers.design.phase_resistance)
-    return machine.with_flux(law).with_torque(_Drag(answers))
+    return machine.with_flux(law).with_torque(Drag(partial(lost_torque, answers)))
 
 
 def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
@@ -155,34 +166,17 @@ def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
     return np.concatenate([found[:, :0:-1] * np.array([1.0, -1.0]), found], axis=1)
 
 
-def _by_its_fundamental(kind: str) -> Callable[[Answers, Columns], Found]:
-    def answer(answers: Answers, at: Columns) -> Found:
-        machine = dq_machine(answers)
-        state = {name: values for name, values in at.items() if name not in ("winding_T", "magnet_T")}
-        warm = answers.resistance(at) / machine.resistance
-        return DQ.respond(machine, kind, state | {"resistance_factor": warm})
-
-    return answer
-
-
 KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
     "back_emf": _back_emf,
     "cogging": _cogging,
     "locked_rotor": _locked_rotor,
     "flux_linkage": _flux_linkage,
     "inductance": _inductance,
+    "holding_current": _holding_current,
     "phase_resistance": _phase_resistance,
     "drag": _drag,
-    **{kind: _by_its_fundamental(kind) for kind in ("dq_supply", "dq_operation", "dyno_map", "no_load")},
+    **{
+        kind: by_its_fundamental(kind, dq_machine, Answers.resistance)
+        for kind in ("dq_supply", "dq_operation", "dyno_map", "no_load")
+    },
 }
-
-
-def _by_phase(quantity: str, rows: np.ndarray) -> Found:
-    return {f"{quantity}_{x}": rows[:, k] for k, x in enumerate(PHASES)}
-
-
-def _currents(at: Columns) -> np.ndarray:
-    missing = [f"i_{x}" for x in PHASES if f"i_{x}" not in at]
-    if missing:
-        raise WorkbenchError(f"a loaded row needs the currents of all phases: the column {missing[0]} is missing")
-    return np.stack([at[f"i_{x}"] for x in PHASES], axis=1)

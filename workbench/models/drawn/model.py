@@ -12,9 +12,14 @@ but the resistance takes ``magnet_T``: the remanence follows it, row by row.
     flux_linkage      angle_mech, i_a, i_b, i_c            -> dpsi_a .., psi_a ..     change by the current, and whole
     inductance        angle_mech [, current]               -> l_a, l_m, l_ab ..       of a phase fed alone, its mutual
                                                                                       one, and between lines
+    holding_current   angle_mech [, direction]             -> current                 peak, on the q axis, of a driver
+                                                                                      that holds the rotor
     phase_resistance  [winding_T]                          -> r_a .., r_ab .., resistance   of a phase, between lines
     drag              speed [, direction]                  -> torque, power           open terminals
     dq_supply, dq_operation, dyno_map, no_load             as of the dq model, with the flux linkages of the field
+
+A winding in delta, or of parallel paths, is seen from its terminals: phases are those of the equivalent star, and
+``inductance`` has lines alone. Constant currents do not go round a delta; alternating ones do, and at speed they brake.
 
 Signs are those of the bench of machines with tooth coils (``workbench.models.machine``). All kinds of stators and
 rotors of ``geometry`` are taken; defects of single magnets, coils or slots are not, and nothing across the length but

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from math import pi, sqrt
 
 import numpy as np
@@ -14,23 +14,20 @@ from effects.machine_design import MachineAsBuilt
 from units import DEGREE
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
-from workbench.models.dq.model import BASE as DQ
+from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamental, by_phase, phase_currents
 from workbench.models.machine.answers import Answers, load_angles
 from workbench.models.machine.drag import lost_torque
 from workbench.models.machine.field import LoadedState
 
-PHASES = "abc"
 _PROBE = 5e-4  # A, of an inductance; half of what still counts as no current
 _ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
 _AROUND = round(2 * pi / _ANGLE_GRID)
 _TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
 
-Found = dict[str, np.ndarray]
-
 
 def _back_emf(answers: Answers, at: Columns) -> Found:
     """v = speed * d psi/d angle."""
-    return _by_phase("v", answers.flux_slopes(at["angle_mech"]) * at["speed"])
+    return by_phase("v", (answers.flux_slopes(at["angle_mech"]) * at["speed"]).T)
 
 
 def _cogging(answers: Answers, at: Columns) -> Found:
@@ -38,24 +35,24 @@ def _cogging(answers: Answers, at: Columns) -> Found:
 
 
 def _locked_rotor(answers: Answers, at: Columns) -> Found:
-    return {"torque": answers.loaded_torque(at["angle_mech"], _currents(at)) + lost_torque(answers, at)}
+    return {"torque": answers.loaded_torque(at["angle_mech"], phase_currents(at)) + lost_torque(answers, at)}
 
 
 def _flux_linkage(answers: Answers, at: Columns) -> Found:
-    change = answers.flux_change(at["angle_mech"], _currents(at))
+    change = answers.flux_change(at["angle_mech"], phase_currents(at))
     whole = change + answers.magnet_linkage(at["angle_mech"])
-    return _by_phase("dpsi", change.T) | _by_phase("psi", whole.T)
+    return by_phase("dpsi", change) | by_phase("psi", whole)
 
 
 def _inductance(answers: Answers, at: Columns) -> Found:
     """l_x = dpsi_x / i_x, of the phases that carry current in every row."""
-    currents = _currents(at)
+    currents = phase_currents(at)
     change = answers.flux_change(at["angle_mech"], currents)
     return {f"l_{x}": change[:, k] / currents[:, k] for k, x in enumerate(PHASES) if np.all(currents[:, k] != 0.0)}
 
 
 def _phase_resistance(answers: Answers, at: Columns) -> Found:
-    return _by_phase("r", answers.resistances(at).T)
+    return by_phase("r", answers.resistances(at))
 
 
 def _drag(answers: Answers, at: Columns) -> Found:
@@ -74,7 +71,7 @@ def _short_circuit(answers: Answers, at: Columns) -> Found:
     torque = -np.divide(power, speed, out=np.zeros_like(power), where=speed != 0.0)
     each = np.abs(currents) / sqrt(2.0)
     found = {"torque": torque + lost_torque(answers, at), "current": np.sqrt((each**2).mean(axis=1))}
-    return found | _by_phase("i", each.T)
+    return found | by_phase("i", each)
 
 
 def _joined_terminals(answers: Answers, speed: np.ndarray, resistances: np.ndarray) -> np.ndarray:
@@ -89,16 +86,6 @@ def _joined_terminals(answers: Answers, speed: np.ndarray, resistances: np.ndarr
     return np.linalg.solve(matrix, driven)[:, :3, 0]
 
 
-@dataclass(frozen=True, eq=False)
-class _Drag:
-    """What brakes the rotor, as a law of the dq machine."""
-
-    answers: Answers
-
-    def lost_torque(self, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
-        return -lost_torque(self.answers, {"speed": speed})
-
-
 def dq_machine(answers: Answers) -> DqMachine:
     """The machine by its fundamental, means over phases and angles: what remains of it under load at speed.
 
@@ -109,7 +96,9 @@ def dq_machine(answers: Answers) -> DqMachine:
     _need_resistance(answers.design)
     resistance = float(answers.resistances({"speed": np.zeros(1)}).mean())
     psi_m = float(np.abs(waves).mean())
-    return DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, resistance).with_torque(_Drag(answers))
+    return DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, resistance).with_torque(
+        Drag(partial(lost_torque, answers))
+    )
 
 
 def _rotor_frame(answers: Answers, axis: np.ndarray) -> tuple[float, float]:
@@ -123,14 +112,8 @@ def _rotor_frame(answers: Answers, axis: np.ndarray) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def _by_its_fundamental(kind: str) -> Callable[[Answers, Columns], Found]:
-    def answer(answers: Answers, at: Columns) -> Found:
-        warm = answers.resistances(at).mean(axis=1)
-        machine = dq_machine(answers)
-        state = {name: values for name, values in at.items() if name not in ("winding_T", "magnet_T")}
-        return DQ.respond(machine, kind, state | {"resistance_factor": warm / machine.resistance})
-
-    return answer
+def _mean_resistance(answers: Answers, at: Columns) -> np.ndarray:
+    return answers.resistances(at).mean(axis=1)
 
 
 KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
@@ -142,8 +125,8 @@ KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
     "phase_resistance": _phase_resistance,
     "drag": _drag,
     "short_circuit": _short_circuit,
-    "no_load": _by_its_fundamental("no_load"),
-    "dyno_map": _by_its_fundamental("dyno_map"),
+    "no_load": by_its_fundamental("no_load", dq_machine, _mean_resistance),
+    "dyno_map": by_its_fundamental("dyno_map", dq_machine, _mean_resistance),
 }
 _WITH_CURRENTS = ("locked_rotor", "flux_linkage", "inductance")
 _WITH_INDUCTANCE = ("short_circuit", "no_load", "dyno_map")
@@ -152,17 +135,6 @@ _WITH_INDUCTANCE = ("short_circuit", "no_load", "dyno_map")
 def _need_resistance(design: MachineAsBuilt) -> None:
     if not all(design.phase_resistance):
         raise WorkbenchError("currents at speed need the resistance of the winding: give phase_resistance in [device]")
-
-
-def _by_phase(quantity: str, rows: np.ndarray) -> Found:
-    return {f"{quantity}_{x}": rows[k] for k, x in enumerate(PHASES)}
-
-
-def _currents(at: Columns) -> np.ndarray:
-    missing = [f"i_{x}" for x in PHASES if f"i_{x}" not in at]
-    if missing:
-        raise WorkbenchError(f"a loaded row needs the currents of all phases: the column {missing[0]} is missing")
-    return np.stack([at[f"i_{x}"] for x in PHASES], axis=1)
 
 
 # ---- loaded states -------------------------------------------------------------------------------------------------
@@ -188,7 +160,7 @@ def _states_of(design: MachineAsBuilt, table: Table) -> list[LoadedState]:
     if table.kind not in _WITH_CURRENTS:
         return []
     found = []
-    for angle, currents in zip(table.conditions["angle_mech"], _currents(table.conditions)):
+    for angle, currents in zip(table.conditions["angle_mech"], phase_currents(table.conditions)):
         a, b, c = map(_few_digits, currents)
         found.append(LoadedState(_on_grid(angle), (a, b, c)))
         if table.kind != "locked_rotor":
