@@ -1,10 +1,10 @@
-# What a user does, as rules. STUDY is the name of a file in studies/ or the path of one.
+# What a user does, as rules. STUDY is the name of a file in studies/ (or, for pipeline, in machines/) or a path.
 STUDY ?= motorcycle
 
 PYTHON := .venv/bin/python
 SET_UP := .venv/.set-up
 # The stages of the graph that pipeline/stages.py declares; a test holds the two together.
-STAGES := requirements linkage sweep optima limits fits match flux_map current_losses gap_stress gearbox winding drive braking magnets mechanics losses heat fields outcome tolerances uncertainty package ride energy
+STAGES := requirements linkage sweep optima limits fits match flux_map current_losses gap_stress gearbox winding drive braking magnets mechanics losses heat fields outcome tolerances uncertainty package ride energy judged strategies quarter_car bench chapters
 
 # Every solve runs on one thread; the sweep keeps the cores busy with designs.
 export OPENBLAS_NUM_THREADS := 1
@@ -17,6 +17,7 @@ help:
 	@echo "make pipeline   all stages, results in results/<study>/ (report.html first)"
 	@echo "make <stage>    one stage with those before it: $(STAGES)"
 	@echo "make optimise   radius, slots, length, ratio and linkage together, beside the stage-by-stage design"
+	@echo "make chapters   chapters 4 and 5 of the thesis with the designed actuator, beside the printed tables"
 	@echo "make inspect    the machine and its field in a window, or as PNG and HTML without a display"
 	@echo "make check      is the study file usable?"
 	@echo "make compare    where does the model fail against the bench data in CAMPAIGN=<folder>?"
@@ -26,7 +27,7 @@ help:
 	@echo "make benchmark  speed and accuracy against other codes"
 	@echo "make blind-score  how often the diagnosis is right, on campaigns made by other laws"
 	@echo "make clean      delete the results of all studies (not results/reference)"
-	@echo "STUDY=<name>    another study than $(STUDY): a file of studies/ or a path"
+	@echo "STUDY=<name>    another study than $(STUDY): a file of studies/ or machines/, or a path"
 
 pipeline: $(SET_UP)
 	@.venv/bin/airgap run "$(STUDY)"

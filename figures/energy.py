@@ -25,7 +25,7 @@ from figures.style import (
     styled,
 )
 from vehicle.energy import Scatter, scatter
-from vehicle.energy_stage import EnergyOutcome
+from vehicle.energy_stage import REAL, EnergyOutcome
 
 _SEEN = (1.0, 1e3)  # Hz
 _PARTS = (("battery.active", "to the battery", BLUE), ("machine_loss", "lost in machine and drive", VERMILION),
@@ -35,7 +35,7 @@ _PARTS = (("battery.active", "to the battery", BLUE), ("machine_loss", "lost in 
 @styled
 def powers_over_time(found: EnergyOutcome) -> Figure:
     """Force, wanted and given, and power of the first road with the real actuator, one row a command."""
-    data = found.traces
+    data = found.traces.sel(actuator=REAL)
     figure = new_figure(0.6 + 1.7 * data.sizes["command"])
     axes = figure.subplots(data.sizes["command"], 2, sharex=True, squeeze=False)
     for row, name in zip(axes, data.command.values, strict=True):
@@ -66,7 +66,7 @@ def working_points(found: EnergyOutcome) -> Figure:
     """Force over velocity at the suspension and torque over speed at the rotor, with the torque limit."""
     figure = new_figure(4.6)
     left, right = figure.subplots(1, 2)
-    data, limit = found.traces, found.own.actuator.drive.limit
+    data, limit = found.traces.sel(actuator=REAL), found.own.actuator.drive.limit
     for number, name in enumerate(data.command.values):
         one, look = data.sel(command=name), {"color": SERIES[number], "linestyle": "", "marker": ".", "markersize": 1.5}
         left.plot(one.velocity, one.force, label=name, **look)

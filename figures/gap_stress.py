@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from figures.style import BLACK, BLUE, DESIGN_MAP, GREY, ORANGE, VERMILION, letter, new_figure, show_grid, styled
 from magnetostatics.gap_stress import amplitude_of, moving
 from magnetostatics.gap_stress_stage import GapStress
-from magnetostatics.rotation_stage import STATES
+from magnetostatics.rotation import STATES, Rotation
 from units import DEGREE, FACTORS
 
 _PLACES = 361  # around the gap
@@ -24,16 +24,16 @@ def gap_stress(found: GapStress) -> Figure:
     """Map at the overload current, waves that move in all states, torque with current and without."""
     figure = new_figure(7.6)
     axes = figure.subplots(2, 2, width_ratios=(1.15, 1.0)).ravel()
-    _map(figure, axes[0], found)
-    _waves(axes[1], found)
+    _map(figure, axes[0], found.rotation)
+    _waves(axes[1], found.rotation)
     _cogging(axes[2], found)
-    _ripple(axes[3], found)
+    _ripple(axes[3], found.rotation)
     letter(axes)
     show_grid(*axes[1:])
     return figure
 
 
-def _map(figure: Figure, axes: Axes, found: GapStress) -> None:
+def _map(figure: Figure, axes: Axes, found: Rotation) -> None:
     places = np.linspace(0.0, 2 * np.pi, _PLACES)
     angles = found.data.angle.values
     drawn = axes.pcolormesh(
@@ -48,7 +48,7 @@ def _map(figure: Figure, axes: Axes, found: GapStress) -> None:
     figure.colorbar(drawn, ax=axes, pad=0.02).set_label("radial stress / MPa")
 
 
-def _waves(axes: Axes, found: GapStress) -> None:
+def _waves(axes: Axes, found: Rotation) -> None:
     shown = moving(found.waves("overload"))[:_WAVES]
     height = 0.8 / len(STATES)
     for number, state in enumerate(STATES):
@@ -64,17 +64,17 @@ def _waves(axes: Axes, found: GapStress) -> None:
 
 
 def _cogging(axes: Axes, found: GapStress) -> None:
-    angles = np.arange(found.cogging_torque.shape[1]) * found.cogging_span / found.cogging_torque.shape[1]
-    looks = (("usual mesh", ORANGE, "o"), ("triangles of half the size", BLACK, "x"))
-    for torque, (label, colour, marker) in zip(found.cogging_torque, looks, strict=True):
-        axes.plot(angles / DEGREE, torque, color=colour, marker=marker, label=label)
+    angles = found.rotation.cogging_angles - found.rotation.null_angle
+    usual = found.rotation.torque("no_current")[: len(angles)]
+    axes.plot(angles / DEGREE, usual, color=ORANGE, marker="o", label="usual mesh")
+    axes.plot(angles / DEGREE, found.cogging_torque, color=BLACK, marker="x", label="triangles of half the size")
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.set(xlabel="rotor angle / °", ylabel="torque per length / (Nm/m)")
     axes.set_title("cogging over its period", loc="left")
     _legend_above(axes)
 
 
-def _ripple(axes: Axes, found: GapStress) -> None:
+def _ripple(axes: Axes, found: Rotation) -> None:
     angles = found.data.angle.values
     for state in ("nominal", "overload"):
         relative = found.torque(state) / found.mean_torque_per_length(state)

@@ -20,8 +20,8 @@ from geometry.cross_section import CrossSection
 from magnetostatics.case import FieldCase
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, refine_order
+from magnetostatics.fields_stage import NullFields
 from magnetostatics.model import FieldSolution, OperatingPoint, OperatingState
-from magnetostatics.rotation_stage import STATES, NullFields
 from units import AMPERE_PER_SQUARE_MILLIMETRE, DEGREE
 
 # Reference coordinates of the six nodes and the gradients of the six functions there (function, direction, node).
@@ -110,8 +110,8 @@ def whole_field(solution: FieldSolution) -> WholeField:
 
 
 def null_field(fields: NullFields, case: FieldCase, state: str) -> WholeField:
-    """The whole machine of a kept field, in one of ``magnetostatics.rotation_stage.STATES``."""
-    point = fields.points[STATES.index(state)]
+    """The whole machine of a kept field, in one of ``magnetostatics.rotation.STATES``."""
+    point = fields.point(state)
     return copied_around(fields.section(case), fields.potential(state), point.angle, fields.rest, describe(point))
 
 

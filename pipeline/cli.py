@@ -31,6 +31,8 @@ COMMANDS = {
                          "make a study of a design that was found over all stages at once"),
     "export-fmu": Command("pipeline.export_fmu_command", "add_export_fmu",
                           "write the actuator of a study for other simulation tools (FMI 2, co-simulation)"),
+    "hil": Command("pipeline.hil_command", "add_hil",
+                   "the actuator of a study on a bench against its vehicle, paced by the clock"),
     "graph": Command("pipeline.graph_command", "add_graph", "draw the stages of a study and what flows between them"),
     "campaign-from": Command("pipeline.campaign_command", "add_campaign_from",
                              "write the bench campaign of a design, to be measured"),

@@ -1,8 +1,8 @@
 """Artefacts as text and back: one codec for results, checkpoints and hashes.
 
 Frozen dataclasses of plain values become JSON that says which class stood there; arrays become lists with their type;
-an ``xarray.Dataset`` stands beside the text, by its number. Only dataclasses of the project's own rooms are built
-again, so that a file of results can be read but never executed.
+an ``xarray.Dataset`` stands beside the text, by its number, or in it where nothing can stand beside. Only dataclasses
+of the project's own rooms are built again, so that a file of results can be read but never executed.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Datasets(Protocol):
 
 
 def encoded(value: Any, datasets: list[xr.Dataset] | None = None) -> Any:
-    """What ``json.dumps`` takes for a value; datasets met on the way are appended, and refused where None.
+    """What ``json.dumps`` takes for a value; datasets met on the way are appended, and written out where None.
 
     Raises CodecError for a value that is neither plain nor a dataclass of such.
     """
@@ -50,6 +50,8 @@ def encoded(value: Any, datasets: list[xr.Dataset] | None = None) -> Any:
     if isinstance(value, xr.Dataset) and datasets is not None:
         datasets.append(value)
         return {"dataset": len(datasets) - 1}
+    if isinstance(value, xr.Dataset):
+        return {"whole dataset": encoded(value.to_dict(data="array"))}
     return _encoded_container(value, datasets)
 
 
@@ -123,6 +125,7 @@ _READERS: dict[str, Callable[[dict[str, Any], Datasets | None], Any]] = {
     "dict": lambda content, datasets: {decoded(key): decoded(one, datasets) for key, one in content["dict"]},
     "dataclass": _decoded_record,
     "dataset": _decoded_dataset,
+    "whole dataset": lambda content, _: xr.Dataset.from_dict(decoded(content["whole dataset"])),
 }
 
 

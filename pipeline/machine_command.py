@@ -7,11 +7,12 @@ from pathlib import Path
 
 from figures.files import File
 from figures.report import Section
+from pipeline.closure import packages_of
 from pipeline.machine_stages import graph_of_machine
 from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.run import Failure, Run
-from pipeline.run_command import add_pool, page, pool_of, run_all, wanted
+from pipeline.running import add_pool, page, pool_of, run_all, wanted
 from pipeline.sentences import sentences
 from study.machine_file import MachineFile, read_machine
 
@@ -39,4 +40,4 @@ def machine_command(options: argparse.Namespace) -> None:
 
 
 def _page_of(read: MachineFile, sections: list[Section], failures: list[Failure]) -> File:
-    return page(read.title, _SUBTITLE, {"machine": read.path.name}, sections, failures)
+    return page(read.title, _SUBTITLE, {"machine": read.path.name, **packages_of(machine_command)}, sections, failures)

@@ -8,6 +8,10 @@ searched or stated; gears or a direct drive.
 from __future__ import annotations
 
 from actuator.errors import ActuatorError
+from bench.chapters import chapters_stage
+from bench.errors import RecordError
+from bench.report import simulated
+from bench.simulated import bench_stage
 from control.errors import ControlError
 from drivetrain.four_bar import LinkageError
 from drivetrain.gear_views import braking_demand, direct_drive, gear_demand, stated_loads, transmission
@@ -41,11 +45,11 @@ from gearbox.stage import gearbox_stage
 from geometry.errors import GeometryError
 from losses.stage import LossError, current_losses_stage, loss_law, losses_stage
 from magnetostatics.case import field_case, stated_machine
+from magnetostatics.fields_stage import fields_stage
 from magnetostatics.flux_map import FluxMapError
 from magnetostatics.flux_map_stage import flux_map_stage
 from magnetostatics.gap_stress_stage import gap_stress_stage
 from magnetostatics.newton import FieldSolutionError
-from magnetostatics.rotation_stage import rotations_stage
 from materials.errors import MaterialError
 from mechanics.stage import mechanics_stage
 from optimisation.constrained_optimum import NoOptimumError
@@ -54,6 +58,7 @@ from optimisation.limits import limits_stage
 from optimisation.optima import optima_stage
 from optimisation.polynomial_fits import FitRefused
 from optimisation.sweep import sweep_stage
+from pipeline import chapters_page
 from pipeline.graph import Function, Graph, Node, Source, Stage, View
 from report import (
     braking,
@@ -66,6 +71,7 @@ from report import (
     gap_stress,
     gearbox,
     heat,
+    judged,
     linkage,
     losses,
     magnets,
@@ -74,8 +80,10 @@ from report import (
     optimise,
     outcome,
     package,
+    quarter_car,
     requirements,
     ride,
+    strategies,
     sweep,
     tolerances,
     uncertainty,
@@ -110,18 +118,21 @@ from thermal.stage import heat_stage
 from uncertainty.stage import uncertainty_stage
 from uncertainty.tolerance_stage import tolerances_stage
 from vehicle.demands import required, requirements_stage
-from vehicle.designed import designed_actuator
+from vehicle.designed import bench_machine, designed_actuator
 from vehicle.energy_stage import energy_stage
 from vehicle.errors import VehicleError
 from vehicle.gear_loads import road_loads
 from vehicle.heat_duty import road_duty
+from vehicle.judged_designs import judged_stage
+from vehicle.quarter_car_stage import quarter_car_stage
 from vehicle.ride_again import ride_again_stage
 from vehicle.ride_heat import thermal_machine
+from vehicle.strategies import strategies_stage
 
 REFUSALS = (
     ActuatorError, ControlError, FieldSolutionError, FitRefused, FluxMapError, FluxMapMachineError,
     GearboxError, GearError, GeometryError, LinkageError, LossError, MatchError, MaterialError,
-    NoOptimumError, StepError, ThermalError, VehicleError, WindingError,
+    NoOptimumError, RecordError, StepError, ThermalError, VehicleError, WindingError,
 )  # fmt: skip
 
 _SOURCES = (
@@ -148,6 +159,12 @@ _ENERGY: tuple[Node, ...] = (
     View(designed_actuator),
     View(thermal_machine),
     Stage("energy", energy_stage, "power and duty on the road", energy.files, remarks=energy.remarks),
+    Stage("judged", judged_stage, "all designs on the road", judged.files, on_request=True, remarks=judged.remarks),
+    Stage("strategies", strategies_stage, "control laws over their settings", strategies.files, on_request=True),
+    Stage("quarter_car", quarter_car_stage, "in the thesis's quarter car", quarter_car.files, on_request=True),
+    View(bench_machine),
+    Stage("bench", bench_stage, "what benches would read", simulated.files, on_request=True),
+    Stage("chapters", chapters_stage, "beside chapters 4 and 5", chapters_page.files, on_request=True),
 )
 _STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))
 _SEARCHED: tuple[Node, ...] = (
@@ -193,7 +210,7 @@ _MACHINE: tuple[Node, ...] = (
     Stage("mechanics", mechanics_stage, "magnets, rotor, shafts, bearings", mechanics.files, remarks=mechanics.remarks),
     View(built_machine),
     Stage("heat", heat_stage, "what the temperatures allow", heat.files, remarks=heat.remarks),
-    Stage("fields", rotations_stage, "over one turn of the rotor", fields.files),
+    Stage("fields", fields_stage, "in the null position", fields.files),
     Stage("outcome", outcome_stage, "what holds, what would help", outcome.files, remarks=outcome.remarks),
     View(stated_tolerances),
     Stage("tolerances", tolerances_stage, "which one to buy", tolerances.files, remarks=tolerances.remarks),

@@ -195,8 +195,9 @@ def _ledger(options: argparse.Namespace) -> None:
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)
-        _write_ledger(out, ledger)
-        _print_ledger(ledger)
+        if ledger.steps:
+            _write_ledger(out, ledger)
+            _print_ledger(ledger)
         _print_diagnosis(diagnosis, out)
 
 
@@ -304,7 +305,7 @@ def _print_diagnosis(d: Diagnosis, out: Path) -> None:
     print("", *(f"! {check}" for check in d.checks), sep="\n")
     if d.verdict != "convention":
         _print_found(d)
-    print(verdict_sentence(d), meaning(d), *bound_sentences(d), *conclusions(d), sep="\n")
+    print(verdict_sentence(d), meaning(d), *bound_sentences(d), *d.contradictions, *conclusions(d), sep="\n")
     if d.fix:
         print("", d.fix, "", sep="\n")
     print(f"results in {out}")

@@ -203,45 +203,46 @@ def winding_rows(
     yield row("hottest place of the winding", inputs.insulation.hottest, "degC", "permitted by that class")
     for temperature, factor in ((heat.cold, heat.cold_resistance), (heat.hot, heat.hot_resistance)):
         resistance, at = wound.phase_resistance * factor, f"{temperature:g} °C, direct current"
-        yield row("phase resistance", resistance, "mOhm", at, budget.resistance)
-        yield row("resistance between terminals", 2 * resistance, "mOhm", at, budget.resistance)
+        yield row("phase resistance", resistance, "mOhm", at, budget.constants.resistance)
+        yield row("resistance between terminals", 2 * resistance, "mOhm", at, budget.constants.resistance)
 
 
 def constants(package: Package, winding: WindingOutcome, budget: Budget) -> Iterator[Row]:
     """What a drive is set up with."""
-    chosen, idle = winding.chosen, package.unsaturated
+    chosen, idle, known = winding.chosen, package.unsaturated, budget.constants
     full = f"at {chosen.current_peak:.4g} A"
-    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load", budget.torque_constant)
-    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load", budget.inductance_d)
-    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load", budget.inductance_q)
-    yield row("L_d", chosen.inductance_d, "uH", f"phase, apparent, {full} on the q axis and a quarter of it against d")
-    yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis")
+    yield row("magnet flux linkage", idle.psi_m, "mWb", "of a phase, peak, no load", known.torque_constant)
+    yield row("L_d", idle.inductance_d, "uH", "phase, incremental, no load", known.inductance_d)
+    yield row("L_q", idle.inductance_q, "uH", "phase, incremental, no load", known.inductance_q)
+    weakened = f"phase, apparent, {full} on the q axis and a quarter of it against d"
+    yield row("L_d", chosen.inductance_d, "uH", weakened, known.loaded_inductance_d)
+    yield row("L_q", chosen.inductance_q, "uH", f"phase, apparent, {full} on the q axis", known.loaded_inductance_q)
     no_load = chosen.no_load_torque_constant, "mNm_per_A", "per peak ampere, no load"
-    yield row("torque constant", *no_load, budget.torque_constant)
+    yield row("torque constant", *no_load, known.torque_constant)
     loaded = f"per peak ampere, {full} on the q axis"
-    yield row("torque constant", chosen.torque_constant, "mNm_per_A", loaded, budget.loaded_constant)
+    yield row("torque constant", chosen.torque_constant, "mNm_per_A", loaded, known.loaded_constant)
     emf = sqrt(3) * idle.pole_pairs * idle.psi_m * _THOUSAND_RPM
-    yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm", budget.torque_constant)
+    yield row("back-EMF", emf, "V", "line to line, peak, at 1000 rpm", known.torque_constant)
     rms = "line to line, RMS of the fundamental, at 1000 rpm"
-    yield row("back-EMF", emf / sqrt(2), "V", rms, budget.torque_constant)
+    yield row("back-EMF", emf / sqrt(2), "V", rms, known.torque_constant)
 
 
 def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs, budget: Budget) -> Iterator[Row]:
     """Torques, speeds, currents and the supply."""
-    chosen, bus = winding.chosen, inputs.limits.dc_voltage
+    chosen, bus, known = winding.chosen, inputs.limits.dc_voltage, budget.performance
     rated, full = package.continuous, package.overload
     nominal, overload = (_density(one) for one in (inputs.nominal_density, inputs.limits.overload_current_density))
-    yield row("peak torque", winding.peak_torque, "Nm", overload, budget.peak_torque)
-    yield row("torque ripple", winding.peak_torque_ripple, "Nm", "peak to peak, at the peak torque")
-    yield row("cogging torque", package.cogging, "Nm", "peak to peak, without current, magnets alike", budget.cogging)
-    yield row("continuous torque", rated.torque, "Nm", nominal, budget.continuous_torque)
-    yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given", budget.base_speed)
-    yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque", budget.power_at_base_speed)
+    yield row("peak torque", winding.peak_torque, "Nm", overload, known.peak_torque)
+    yield row("torque ripple", winding.peak_torque_ripple, "Nm", "peak to peak, at the peak torque", known.ripple)
+    yield row("cogging torque", package.cogging, "Nm", "peak to peak, without current, magnets alike", known.cogging)
+    yield row("continuous torque", rated.torque, "Nm", nominal, known.continuous_torque)
+    yield row("base speed", chosen.base_speed, "rpm", "up to which the peak torque is given", known.base_speed)
+    yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque", known.power_at_base_speed)
     if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
         fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
         yield row("largest power", chosen.maximum_power, "W", fastest)
     lower = "base speed, or the largest of the study where that is lower"
-    yield row("rated speed", rated.speed, "rpm", lower, budget.rated_speed)
+    yield row("rated speed", rated.speed, "rpm", lower, known.rated_speed)
     yield row("bus voltage", bus, "V", "direct")
     connection = chosen.design.connection
     yield row("peak line current", chosen.current_peak, "A", f"amplitude, {overload}")
@@ -250,16 +251,18 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("continuous line current", rated.current_peak / sqrt(2), "A", f"RMS, {nominal}")
     limit = float(connection.phase_voltage(winding.limits.voltage_peak))
     yield row("largest voltage across a phase", limit, "V", "peak, of the winding, by the bus voltage")
-    speed = f"{full.speed / RPM:.0f} rpm"
-    yield row("bus current", full.power_in / bus, "A", f"peak torque at {speed}, with copper loss")
+    at = f"peak torque at {full.speed / RPM:.0f} rpm, with copper loss"
+    yield row("bus current", full.power_in / bus, "A", at, known.overload_input)
 
 
 def warm_rows(warm: HeatOutcome, budget: Budget) -> Iterator[Row]:
     """Torque and current without end, by the thermal network."""
     slow, limits = warm.slow, warm.inputs.limits
     at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
-    yield row("continuous torque", slow.torque, "Nm", at, budget.continuous_effort)
-    yield row("continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}", budget.continuous_current)
+    yield row("continuous torque", slow.torque, "Nm", at, budget.output.continuous_effort)
+    yield row(
+        "continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}", budget.performance.continuous_current
+    )
     yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
     yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
 
@@ -271,7 +274,8 @@ def magnet_rows(magnets: MagnetsOutcome | None) -> Iterator[Row]:
     yield Row("grade", magnets.inputs.grade.name, "", magnets.inputs.grade.material)
     yield row("knee", magnets.knee, "T", f"flux density along the magnetisation at {magnets.temperature:g} °C")
     worst = max(magnets.states, key=lambda state: state.lost)
-    yield row("volume beyond the knee", worst.lost, "percent", f"in the worst state: {worst.name}")
+    where = f"in the worst state: {worst.name}" if worst.lost else "in every state that was looked at"
+    yield row("volume beyond the knee", worst.lost, "percent", where)
     if isfinite(magnets.demagnetising_current):
         allowed = f"{in_unit(magnets.inputs.lost_max, 'percent'):g} % of the volume beyond the knee"
         yield row("demagnetising current", magnets.demagnetising_current, "A", f"peak, against the magnets, {allowed}")
@@ -281,25 +285,25 @@ def loss_rows(
     package: Package, steel: LossInputs, inputs: WindingInputs, heat: CopperHeat, budget: Budget
 ) -> Iterator[Row]:
     """Losses and efficiency, efficiency with hot copper too; none where the study has no loss data."""
-    losses, rated = package.losses, package.continuous
+    losses, rated, known = package.losses, package.continuous, budget.losses
     if losses is None:
         return
     at = f"{rated.torque:.4g} Nm at {rated.speed / RPM:.0f} rpm"
     hot = replace(losses, copper=losses.copper * heat.hot_resistance)
-    yield row("power", losses.mechanical, "W", f"mechanical, {at}", budget.rated_power)
+    yield row("power", losses.mechanical, "W", f"mechanical, {at}", budget.performance.rated_power)
     cold = f"{steel.winding_temperature:g} °C, direct current"
-    yield row("copper loss", losses.copper, "W", cold, budget.copper_loss)
+    yield row("copper loss", losses.copper, "W", cold, known.copper_loss)
     if losses.circulating:
         yield row("loss round the delta", losses.circulating, "W", f"{steel.winding_temperature:g} °C, third harmonic")
     grade = f"by the loss data of {steel.loss_grade}"
-    yield row("stator iron loss", losses.stator_iron, "W", grade, budget.iron_loss)
+    yield row("stator iron loss", losses.stator_iron, "W", grade, known.iron_loss)
     yield row("rotor iron loss", losses.rotor_iron, "W", grade)
     yield row("magnet loss", losses.magnet, "W", "eddy currents, estimate")
-    yield row("losses", losses.total, "W", "without bearings, windage and inverter", budget.losses)
+    yield row("losses", losses.total, "W", "without bearings, windage and inverter", known.losses)
     cold = f"{at}, copper at {steel.winding_temperature:g} °C"
-    yield row("efficiency", losses.efficiency, "percent", cold, budget.efficiency)
-    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C", budget.efficiency)
-    yield row("bus current", losses.electrical / inputs.limits.dc_voltage, "A", at)
+    yield row("efficiency", losses.efficiency, "percent", cold, known.efficiency)
+    yield row("efficiency", hot.efficiency, "percent", f"{at}, copper at {heat.hot:g} °C", known.efficiency)
+    yield row("bus current", losses.electrical / inputs.limits.dc_voltage, "A", at, known.rated_input)
 
 
 def braking_rows(package: Package, braking: BrakingOutcome, output: Output, budget: Budget) -> Iterator[Row]:
@@ -307,25 +311,26 @@ def braking_rows(package: Package, braking: BrakingOutcome, output: Output, budg
     found, (cold, hot) = package.short_circuit, braking.poles
     asked = output.at_speed(braking.demand.speed_peak)
     largest, shorted = f"peak, largest up to {asked} {output.place}", "shorted, without iron loss and friction"
-    yield row("short-circuit current", found.current_peak, "A", largest, budget.short_circuit_current)
-    yield row("largest braking torque", found.torque, "Nm", shorted, budget.braking_torque)
+    yield row("short-circuit current", found.current_peak, "A", largest, budget.braking.short_circuit_current)
+    yield row("largest braking torque", found.torque, "Nm", shorted, budget.braking.braking_torque)
     for speed, at, degrees in (
         (found.best_speed_cold, cold, braking.heat.cold),
         (found.best_speed_hot, hot, braking.heat.hot),
     ):
         where = f"{degrees:g} °C, {output.at_speed(at)} {output.place}"
-        yield row("speed of the largest braking torque", speed, "rpm", where, budget.braking_speed)
+        yield row("speed of the largest braking torque", speed, "rpm", where, budget.braking.braking_speed)
     line = f"line to line, peak, at {asked} {output.place}"
-    yield row("back-EMF at the largest speed", braking.back_emf, "V", line, budget.torque_constant)
+    yield row("back-EMF at the largest speed", braking.back_emf, "V", line, budget.constants.torque_constant)
 
 
 def mass_rows(masses: PartMasses, budget: Budget) -> Iterator[Row]:
     """By part, and what turns."""
-    *parts, (whole, total, _) = masses.rows
-    for part, mass, _ in parts:
-        yield row(part, mass, "kg")
-    yield row(whole, total, "kg", known=budget.mass)
-    yield row("rotor inertia", masses.rotor_inertia, "kg_mm2", "laminations, magnets and shaft over the active length")
+    known = budget.masses
+    by_row = (known.stator_laminations, known.copper, known.rotor_laminations, known.magnets, known.shaft, known.mass)
+    for (part, mass, _), uncertain in zip(masses.rows, by_row, strict=True):
+        yield row(part, mass, "kg", known=uncertain)
+    turning = "laminations, magnets and shaft over the active length"
+    yield row("rotor inertia", masses.rotor_inertia, "kg_mm2", turning, known.rotor_inertia)
 
 
 def plus_minus(expanded: float) -> str:

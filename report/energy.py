@@ -57,7 +57,7 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
         "Energy on the road",
         (
             _text(found),
-            *_stand_ins(found),
+            *stand_ins(found),
             *(Remark(line) for line in remarks(found)),
             Table(power_table(found), f"Mean powers over the random road; ± over the roads. All of it is in {TABLE}."),
             Picture(
@@ -75,7 +75,7 @@ def section(found: EnergyOutcome, case: RideCase) -> Section:
     )
 
 
-def _stand_ins(found: EnergyOutcome) -> Iterator[str]:
+def stand_ins(found: EnergyOutcome) -> Iterator[str]:
     """Which parts of the actuator are another's, because the study states none of its own."""
     own = found.own
     taken = {"mount": own.actuator.mount == PROTOTYPE_MOUNT, "force loop": own.loop == PROTOTYPE_LOOP,

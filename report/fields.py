@@ -15,27 +15,26 @@ from figures.rotation import rotation as rotation_figure
 from figures.whole_field import WholeField, null_field
 from geometry.cross_section import mesh_cross_section
 from magnetostatics.case import FieldCase
-from magnetostatics.rotation_stage import STATES, Rotation, Rotations
+from magnetostatics.fields_stage import NullFields, SolvedFields
+from magnetostatics.gap_stress_stage import GapStress
+from magnetostatics.rotation import STATES, Rotation
 from units import DEGREE
 
 _FIELD_FIGURES = {"reference": ("nominal",), "matched": ("nominal", "overload")}
 
 
-def files(found: Rotations, case: FieldCase) -> Iterator[File]:
+def files(found: SolvedFields, stress: GapStress | None, case: FieldCase) -> Iterator[File]:
     """For each machine its drawing, table and figure over the turning rotor, fields as .vtu and as figures."""
-    machines = {"reference": found.reference} | ({"matched": found.matched} if found.matched is not None else {})
-    for name, one in machines.items():
-        yield from _of_machine(name, one, case)
+    yield from _of_machine("reference", found.rotation, found.reference, case)
+    if stress is not None and found.matched is not None:
+        yield from _of_machine("matched", stress.rotation, found.matched, case)
 
 
-def machine(found: Rotations) -> Section:
+def machine(found: SolvedFields) -> Section:
     """The study's own machine and its field."""
-    seen = found.reference
     text = (
-        f"The machine of the study file at the nominal current density: mean torque {_torque(seen)} over one "
-        "electrical period (± bounds the error of the mesh) with the current on the q axis, ripple "
-        f"{seen.ripple:.2f} Nm/m peak to peak, cogging {seen.cogging:.2f} Nm/m peak to peak. "
-        f"The two torque routes differ by at most {seen.routes_apart:.2%}."
+        f"The machine of the study file at the nominal current density: {_torques(found.rotation, found.reference)}. "
+        f"The two torque routes differ by at most {found.rotation.routes_apart('nominal'):.2%}."
     )
     return Section(
         "Reference machine and its field",
@@ -48,15 +47,13 @@ def machine(found: Rotations) -> Section:
     )
 
 
-def matched(found: Rotations) -> Section | None:
+def matched(found: SolvedFields, stress: GapStress) -> Section | None:
     """The matched machine solved again, None where nothing was matched."""
-    seen = found.matched
-    if seen is None:
+    if found.matched is None:
         return None
     text = (
-        f"The machine that the polynomials lead to, meshed and solved again: mean torque {_torque(seen)} over one "
-        f"electrical period with the current on the q axis, ripple {seen.ripple:.2f} Nm/m peak to peak, cogging "
-        f"{seen.cogging:.2f} Nm/m peak to peak."
+        "The machine that the polynomials lead to, meshed and solved again at the nominal current density: "
+        f"{_torques(stress.rotation, found.matched)}."
     )
     return Section(
         "The matched machine",
@@ -70,18 +67,23 @@ def matched(found: Rotations) -> Section | None:
     )
 
 
-def rotation_table(seen: Rotation) -> pd.DataFrame:
-    """Torques and probes over the rotor angle in drawing units."""
-    data = seen.data
+def rotation_table(seen: Rotation, torque_error: float) -> pd.DataFrame:
+    """Torques, and probes at the nominal current, over one electrical period in drawing units.
+
+    torque_error: at the nominal current [Nm/m]
+    """
+    data = seen.one_period
+    nominal = data.sel(state="nominal")
     columns = {
         "angle_mech_deg": data.angle.values / DEGREE,
-        "torque_arkkio_Nm_per_m": data.torque_ring.values,
-        "torque_maxwell_Nm_per_m": data.torque_circle.values,
-        "torque_error_Nm_per_m": seen.torque_error,
-        "torque_no_current_Nm_per_m": data.torque_no_current.values,
+        "torque_arkkio_Nm_per_m": nominal.torque.values,
+        "torque_maxwell_Nm_per_m": nominal.torque_circle.values,
+        "torque_error_Nm_per_m": torque_error,
+        "torque_no_current_Nm_per_m": data.torque.sel(state="no_current").values,
+        "torque_overload_Nm_per_m": data.torque.sel(state="overload").values,
     }
     probes = sorted((str(name) for name in data.probe.values), key=_place_in_table)
-    return pd.DataFrame(columns | {f"{name}_T": data.flux_density.sel(probe=name).values for name in probes})
+    return pd.DataFrame(columns | {f"{name}_T": nominal.flux_density.sel(probe=name).values for name in probes})
 
 
 def _place_in_table(probe: str) -> tuple[str, int]:
@@ -89,15 +91,15 @@ def _place_in_table(probe: str) -> tuple[str, int]:
     return kind, int(number)
 
 
-def _of_machine(name: str, seen: Rotation, case: FieldCase) -> Iterator[File]:
+def _of_machine(name: str, seen: Rotation, fields: NullFields, case: FieldCase) -> Iterator[File]:
     section = mesh_cross_section(seen.machine, case.layout(seen.machine))
     yield figure_file(f"cross_section_{name}", cross_section(section, seen.null_angle))
-    table = rotation_table(seen)
+    table = rotation_table(seen, fields.torque_error)
     yield table_file(f"rotation_{name}.csv", table)
     null, q_axis = seen.null_angle / DEGREE, seen.q_axis_angle / DEGREE
     yield figure_file(f"rotation_{name}", rotation_figure(table, null_angle_deg=null, q_axis_angle_deg=q_axis))
     for state in STATES:
-        field = null_field(seen.fields, case, state)
+        field = null_field(fields, case, state)
         yield _vtu(f"{name}_{state}.vtu", field)
         if state in _FIELD_FIGURES[name]:
             yield figure_file(f"field_{name}_{state}", field_map(field))
@@ -107,8 +109,13 @@ def _vtu(name: str, field: WholeField) -> File:
     return File(name, lambda path: write_field(path, field))
 
 
-def _torque(seen: Rotation) -> str:
-    return f"{seen.mean_torque:.2f} ± {seen.torque_error:.2f} Nm/m"
+def _torques(seen: Rotation, fields: NullFields) -> str:
+    ripple, cogging = seen.ripple("nominal"), seen.ripple("no_current")
+    return (
+        f"mean torque {seen.mean_torque_per_length('nominal'):.2f} ± {fields.torque_error:.2f} Nm/m over one "
+        "electrical period (± bounds the error of the mesh) with the current on the q axis, ripple "
+        f"{ripple:.2f} Nm/m peak to peak, cogging {cogging:.2f} Nm/m peak to peak"
+    )
 
 
 def _picture(name: str, caption: str) -> Picture:

@@ -13,16 +13,16 @@ from geometry.machine import dimensions_of
 from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import amplitude_of, classical_pull, effective_gap, moving
 from magnetostatics.gap_stress_stage import GapStress
-from magnetostatics.rotation_stage import STATES
+from magnetostatics.rotation import STATES, Rotation
 from units import DEGREE, FACTORS, MILLIMETRE
 
-WAVES, TORQUES, FIGURE = "gap_stress_waves.csv", "torque_over_angle.csv", "gap_stress"
+WAVES, FIGURE = "gap_stress_waves.csv", "gap_stress"
 _IN_REPORT = 10
 _SMALL = 1e-3  # of the mean stress; smaller waves are left out
 _MPA, _KN = FACTORS["MPa"], FACTORS["kN"]
 _TORQUE = (
-    "Torque per length over half an electrical period, the current on the q axis at the copper fill of the study; all "
-    f"of it is in {TORQUES}."
+    "Torque per length over half an electrical period, the current on the q axis at the copper fill of the study; over "
+    "the angle it stands in rotation_matched.csv."
 )
 _ORDERS = (
     "The ten largest waves of the radial stress at the overload current, and the same waves in the other states. "
@@ -32,9 +32,8 @@ _ORDERS = (
 
 
 def files(found: GapStress) -> Iterator[File]:
-    """Waves and torques as tables, and their figure."""
-    yield table_file(WAVES, waves_table(found))
-    yield table_file(TORQUES, torques_table(found))
+    """Waves as a table, and the figure."""
+    yield table_file(WAVES, waves_table(found.rotation))
     yield figure_file(FIGURE, gap_stress_figure(found))
 
 
@@ -43,22 +42,22 @@ def section(found: GapStress, case: FieldCase) -> Section:
     return Section(
         "Cogging, ripple and radial stress",
         (
-            Table(ripple_table(found), _TORQUE),
+            Table(ripple_table(found.rotation), _TORQUE),
             _cogging(found),
             Picture(picture_name(FIGURE), "Radial stress around the gap, its moving waves, cogging and torque ripple."),
-            _stress(found),
-            Table(waves_table(found).head(_IN_REPORT), _ORDERS),
+            _stress(found.rotation),
+            Table(waves_table(found.rotation).head(_IN_REPORT), _ORDERS),
             _pull(found, case),
         ),
     )
 
 
-def ripple_table(found: GapStress) -> pd.DataFrame:
+def ripple_table(found: Rotation) -> pd.DataFrame:
     """One state with current a row."""
     return pd.DataFrame([_ripple_row(found, state) for state in STATES if state != "no_current"])
 
 
-def _ripple_row(found: GapStress, state: str) -> dict[str, object]:
+def _ripple_row(found: Rotation, state: str) -> dict[str, object]:
     mean, orders = found.mean_torque_per_length(state), list(found.ripple_orders(state).items())[:3]
     return {
         "current": state,
@@ -69,7 +68,7 @@ def _ripple_row(found: GapStress, state: str) -> dict[str, object]:
     }
 
 
-def waves_table(found: GapStress) -> pd.DataFrame:
+def waves_table(found: Rotation) -> pd.DataFrame:
     """Waves by their size at the overload current, with those of the other states, in drawing units."""
     states = {state: found.waves(state) for state in STATES}
     return pd.DataFrame(
@@ -82,21 +81,15 @@ def waves_table(found: GapStress) -> pd.DataFrame:
     )
 
 
-def torques_table(found: GapStress) -> pd.DataFrame:
-    """Torque per length of every state over the rotor angle."""
-    torques = {f"torque_{state}_Nm_per_m": found.torque(state) for state in STATES}
-    return pd.DataFrame({"angle_mech_deg": found.data.angle.values / DEGREE, **torques})
-
-
 def _cogging(found: GapStress) -> str:
     return (
         f"Without current the torque goes from peak to peak by {found.cogging:.3g} Nm/m every "
-        f"{found.cogging_span / DEGREE:.3g}° of the rotor, solved on triangles of half the size; on the mesh of the "
-        f"sweep it is {found.cogging_error:.2g} Nm/m apart."
+        f"{found.rotation.cogging_span / DEGREE:.3g}° of the rotor, solved on triangles of half the size; on the mesh "
+        f"of the sweep it is {found.cogging_error:.2g} Nm/m apart."
     )
 
 
-def _stress(found: GapStress) -> str:
+def _stress(found: Rotation) -> str:
     spoken_of = [wave for wave in moving(found.waves("overload")) if wave.amplitude > _SMALL * found.mean_stress]
     bending = [wave for wave in spoken_of if wave.spatial_order]
     lowest = min(bending, key=lambda wave: (abs(wave.spatial_order), -wave.amplitude))
@@ -109,9 +102,9 @@ def _stress(found: GapStress) -> str:
 
 
 def _pull(found: GapStress, case: FieldCase) -> str:
-    machine = dimensions_of(found.machine)
+    machine = dimensions_of(found.rotation.machine)
     gap = effective_gap(machine, case.materials.magnet.recoil_permeability)
-    classical = classical_pull(found.mean_stress, machine.mid_gap_radius, gap)
+    classical = classical_pull(found.rotation.mean_stress, machine.mid_gap_radius, gap)
     idle, overload, formula = (one * found.shift / _KN for one in (*found.pull_per_shift, classical))
     return (
         f"{_centred(found)} With the rotor {found.shift / MILLIMETRE:.3g} mm off centre the stator pulls it further "

@@ -83,9 +83,9 @@ def _asked_and_reached(found: Outcome, output: Output, uncertainty: Uncertainty 
 def _known(budget: Budget) -> dict[type[Requirement], float]:
     """U of what is reached, relative."""
     return {
-        PeakEffortAtRest: budget.peak_effort.expanded,
-        ContinuousEffort: budget.continuous_effort.expanded,
-        LowSpeedDamping: budget.low_speed_damping.expanded,
+        PeakEffortAtRest: budget.output.peak_effort.expanded,
+        ContinuousEffort: budget.output.continuous_effort.expanded,
+        LowSpeedDamping: budget.output.low_speed_damping.expanded,
     }
 
 

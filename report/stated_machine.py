@@ -15,6 +15,7 @@ from electrical.driven_machine import CopperTemperature, DrivenMachine
 from electrical.kind_search import KindDesign, KindOutcome
 from electrical.performance import Performance
 from electrical.turning_stage import TurningMachine, full_supply
+from electrical.wound_machine import WoundMachine
 from export.dxf import laminations, write_dxf
 from figures.field_map import field_map
 from figures.files import File, figure_file, picture_name, table_file
@@ -162,9 +163,10 @@ def sheet_files(driven: DrivenMachine, case: FieldCase, found: MachineSheet) -> 
 
 def section(driven: DrivenMachine, found: MachineSheet) -> Section:
     """The machine on one page."""
+    has_magnets = driven.wound.machine.rotor.magnets_per_pitch > 0
     text = (
         "Phase values are of the equivalent star; peak means amplitude. The d axis is "
-        + ("the axis of a magnet pole. " if driven.wound.machine.rotor.magnets_per_pole else "that of high permeance. ")
+        + ("the axis of a magnet pole. " if has_magnets else "that of high permeance. ")
         + f"{SHEET} holds the same rows."
     )
     return Section(
@@ -266,9 +268,18 @@ def _winding(case: FieldCase, copper: CopperTemperature, driven: DrivenMachine) 
     yield row("wires in hand", wound.design.strands, "")
     yield row("wire diameter", wound.design.wire.copper_diameter, "mm", "bare copper")
     yield row("active length", wound.active_length, "mm")
-    yield row("end turn", wound.end_turn_length, "mm", "half a circle over the pitch of the coil, estimate")
+    yield row("end turn", wound.end_turn_length, "mm", f"{wound.end_turn.name.replace('_', ' ')}, estimate")
+    yield _end_winding_inductance(wound)
     at = f"{copper.value:g} °C, direct current"
     yield row("resistance between terminals", 2 * wound.phase_resistance, "mOhm", at)
+
+
+def _end_winding_inductance(wound: WoundMachine) -> Row:
+    name = "end-winding inductance"
+    try:
+        return row(name, wound.end_turn_inductance, "uH", "of a phase, estimate; not in the flux map")
+    except ValueError as unknown:
+        return Row(name, "not known", "", str(unknown))
 
 
 def _torques(
@@ -291,7 +302,7 @@ def _torques(
 def _constants(driven: DrivenMachine, flux_map: FluxMap, found: Performance) -> Iterator[Row]:
     machine, full = driven.wound.on_map(flux_map.data), found.full
     psi = float(machine.flux_linkage(0.0, 0.0)[0])
-    if driven.wound.machine.rotor.magnets_per_pole:
+    if driven.wound.machine.rotor.magnets_per_pitch:
         emf = sqrt(3) * machine.pole_pairs * psi * _THOUSAND_RPM
         yield row("magnet flux linkage", psi, "mWb", "of a phase, peak, no load")
         yield row("back-EMF", emf / sqrt(2), "V", "line to line, RMS of the fundamental, at 1000 rpm")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields
 
 import numpy as np
 import pandas as pd
@@ -44,13 +43,24 @@ _WORDS = {
     "resistance": ("phase resistance", "mOhm"),
     "inductance_d": ("L_d, incremental, no load", "uH"),
     "inductance_q": ("L_q, incremental, no load", "uH"),
+    "loaded_inductance_d": ("L_d, apparent, overload current", "uH"),
+    "loaded_inductance_q": ("L_q, apparent, overload current", "uH"),
     "base_speed": ("base speed", "rpm"),
+    "ripple": ("ripple of the peak torque, peak to peak", "Nm"),
     "cogging": ("cogging, peak to peak", "Nm"),
     "copper_loss": ("copper loss at the continuous torque", "W"),
+    "stator_laminations": ("mass of the stator laminations", "kg"),
+    "rotor_laminations": ("mass of the rotor laminations", "kg"),
+    "magnets": ("mass of the magnets", "kg"),
+    "shaft": ("mass of the shaft", "kg"),
+    "copper": ("mass of the copper with end turns", "kg"),
     "mass": ("mass of the active parts", "kg"),
+    "rotor_inertia": ("rotor inertia", "kg_mm2"),
     "needed_length": ("active length that the peak torque needs", "mm"),
     "power_at_base_speed": ("power at base speed", "W"),
     "rated_speed": ("rated speed", "rpm"),
+    "overload_input": ("electrical input at peak torque and rated speed", "W"),
+    "rated_input": ("electrical input at the rated point", "W"),
     "rated_power": ("power at the rated point", "W"),
     "iron_loss": ("stator iron loss at the rated point, its mesh not counted", "W"),
     "losses": ("losses at the rated point", "W"),
@@ -95,8 +105,7 @@ def section(found: Uncertainty, output: Output) -> Section:
 def budget_table(budget: Budget, output: Output) -> pd.DataFrame:
     """One headline number a row, in drawing units."""
     words = _words(output)
-    known = {one.name: getattr(budget, one.name) for one in fields(budget)}
-    return pd.DataFrame([_row(*words[name], one) for name, one in known.items() if one is not None])
+    return pd.DataFrame([_row(*words[name], one) for name, one in budget.known.items()])
 
 
 def spread_table(found: Uncertainty, output: Output) -> pd.DataFrame:

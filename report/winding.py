@@ -47,7 +47,8 @@ def section(found: WindingOutcome, inputs: WindingInputs, match: MatchOutcome | 
                 near.drop(columns=[*_DESIGN, "chosen"]),
                 f"{_kind(found.chosen)}: for each number of turns the most wires that fit, at the length they "
                 f"need, valued on the flux map; all numbers of turns are in {TABLE}. The chosen one is marked; the "
-                "largest power is given of those near it.",
+                "largest power is given of those near it. Resistances are those at "
+                "winding_selection.winding_temperature_degC, on the data sheet at the temperatures that it states.",
                 marked=tuple(near.index[near.chosen]),
             ),
         ),

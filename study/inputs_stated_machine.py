@@ -40,7 +40,9 @@ def stated_design(read: MachineFile) -> StatedDesign:
     strands = int(read.number("winding", "wires_in_hand"))
     design = WindingDesign(read.turns, strands, wire(read), read.connection)
     layout = read.layout
-    wound = WoundMachine(read.machine, layout.coils_in_series, layout.coil_pitch, design, read.active_length)
+    wound = WoundMachine(
+        read.machine, layout.coils_in_series, layout.coil_pitch, design, read.active_length, read.end_turn
+    )
     driven = DrivenMachine(wound, limits, read.number("drive", "speed_max_rpm"))
     return StatedDesign(field_case(solving(read), driven), driven)
 

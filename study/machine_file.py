@@ -9,6 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from electrical.end_turn import END_TURNS, EndTurn, Lap, Wave, coil_seat, usual_end_turn
 from electrical.kind_search import KindSearch
 from electrical.winding_connection import CLOSINGS, WindingConnection
 from geometry.checks import check_machine
@@ -31,12 +32,13 @@ from study.toml_file import read_table
 from units import to_si
 
 VARIABLES = "variables"
+_OUTLINES = ("outline", "magnets")  # dimensions of a part that are curves of a DXF file
 MACHINES = Path(__file__).resolve().parent.parent / "machines"
 # Sections and keys beside those of the two parts; those with a value may be left out.
 _OTHERS: dict[str, dict[str, Any]] = {
     "machine": {"title": "", "active_length_mm": None},
     "winding": {"layers": 2, "coil_pitch": None, "turns_per_coil": None, "parallel_paths": 1, "connection": "star",
-                "wires_in_hand": 1, "wire_diameter_mm": None},
+                "end_turn": None, "overlength": None, "wires_in_hand": 1, "wire_diameter_mm": None},
     "drive": {"dc_bus_voltage_V": None, "line_current_peak_A": None, "speed_max_rpm": None,
               "winding_temperature_degC": 20.0},
     "flux_map": {"angles": ANGLES, "currents": CURRENTS},
@@ -52,6 +54,7 @@ class MachineFile:
     """A machine as it is drawn and wound, and what stands beside it in the file.
 
     turns: of every coil, dimensionless; active_length [m]
+    end_turn: how the coils go round the ends
     conductors, supply: what is stated of the wires and of the drive, by key with unit; None where a key is left out
     map_points: angles over 60 electrical degrees and currents along an axis of the flux map
     steel: of the stator, as the file names it; loss_grade: whose loss data stand for it, None without
@@ -63,6 +66,7 @@ class MachineFile:
     machine: ComposedMachine
     layout: WindingLayout
     connection: WindingConnection
+    end_turn: EndTurn
     turns: float
     active_length: float
     materials: MachineMaterials
@@ -79,6 +83,11 @@ class MachineFile:
         """Of a coil of the equivalent star, all coils of a phase in series."""
         return float(self.connection.equivalent_turns(self.turns))
 
+    @property
+    def end_turn_length(self) -> float:
+        """Of one end turn [m]."""
+        return self.end_turn.length(coil_seat(self.machine, self.layout.coil_pitch, self.layout.layers))
+
     def number(self, section: str, key: str) -> float:
         """What [winding] or [drive] states, in SI. Raises StudyError where it is left out or no number."""
         stated = self.supply if section == "drive" else self.conductors
@@ -86,13 +95,26 @@ class MachineFile:
         return to_si(key, found)[1]
 
 
+def names_machine(path_or_name: str | Path) -> bool:
+    """Whether a path or a name means a machine's file and not a study: both its parts are stated by their kinds."""
+    path = _path_of(path_or_name)
+    if not path.is_file():
+        return False
+    sections = read_table(path)
+    return all(isinstance(sections.get(part), dict) and "kind" in sections[part] for part in ("stator", "rotor"))
+
+
+def _path_of(path_or_name: str | Path) -> Path:
+    path = Path(path_or_name)
+    return path if path.suffix else MACHINES / f"{path_or_name}.toml"
+
+
 def read_machine(path_or_name: str | Path) -> MachineFile:
     """The machine of a file, or of a file in ``machines/`` named without its ending.
 
     Raises StudyError with one sentence about the first thing that is wrong.
     """
-    path = Path(path_or_name)
-    path = path if path.suffix else MACHINES / f"{path_or_name}.toml"
+    path = _path_of(path_or_name)
     if not path.exists():
         known = ", ".join(sorted(file.stem for file in MACHINES.glob("*.toml")))
         raise StudyError(f"{path} does not exist; give the path of a machine file or one of the names {known}.")
@@ -123,15 +145,17 @@ def _machine(table: _Table) -> MachineFile:
     machine = ComposedMachine(_part(table, "stator", STATORS), _part(table, "rotor", ROTORS))  # type: ignore[arg-type]
     check_machine(machine)
     winding, mesh = values["winding"], values["mesh"]
+    layout = star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"])
     return MachineFile(
         table.path,
         values["machine"]["title"],
         machine,
-        star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"]),
+        layout,
         _connection(table, winding),
+        _end_turn(table, winding, machine, layout),
         _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
-        _materials(table, values["materials"], machine.rotor.magnets_per_pole),
+        _materials(table, values["materials"], machine.rotor.magnets_per_pitch),
         MeshDensity(
             mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
         ),
@@ -150,6 +174,22 @@ def _connection(table: _Table, stated: Mapping[str, Any]) -> WindingConnection:
     return WindingConnection(
         _count(table, "winding", {"winding": stated}, "parallel_paths", 1), CLOSINGS[stated["connection"]]
     )
+
+
+def _end_turn(table: _Table, stated: Mapping[str, Any], machine: ComposedMachine, layout: WindingLayout) -> EndTurn:
+    """Of the name that is stated, or as is usual for the coil pitch."""
+    name, overlength = stated["end_turn"], stated["overlength"]
+    if name is not None and name not in END_TURNS:
+        raise table.wrong("winding", f"end_turn = {name!r} is unknown; take {' or '.join(END_TURNS)}")
+    kind = type(usual_end_turn(layout.coil_pitch)) if name is None else END_TURNS[name]
+    if overlength is not None and not issubclass(kind, Lap):
+        raise table.wrong("winding", f"overlength belongs to {Lap.name} and {Wave.name}, not to {kind.name}: remove it")
+    found = kind() if overlength is None else kind(_number(table, "winding", "overlength", overlength))  # type: ignore
+    try:
+        found.length(coil_seat(machine, layout.coil_pitch, layout.layers))
+    except ValueError as error:
+        raise table.wrong("winding", f"end_turn: {error}") from error
+    return found
 
 
 def _count(table: _Table, section: str, values: Mapping[str, Any], key: str, least: int) -> int:
@@ -182,13 +222,13 @@ def _number(table: _Table, section: str, key: str, value: Any) -> float:
     return float(value)
 
 
-def _materials(table: _Table, stated: Mapping[str, Any], magnets_per_pole: int) -> MachineMaterials:
+def _materials(table: _Table, stated: Mapping[str, Any], magnets_per_pitch: int) -> MachineMaterials:
     name = stated["stator_steel"]
     if not isinstance(name, str):
         raise table.wrong("materials", "lacks stator_steel; add the name of a steel or the path of its curve")
     steel, folder = load_steel(name, table.path.parent), table.path.parent
     other = stated["rotor_steel"]
-    remanence = _number(table, "materials", "remanence_T", stated["remanence_T"]) if magnets_per_pole else 0.0
+    remanence = _number(table, "materials", "remanence_T", stated["remanence_T"]) if magnets_per_pitch else 0.0
     permeability = _number(table, "materials", "recoil_permeability", stated["recoil_permeability"])
     return MachineMaterials(
         steel, steel if other is None else load_steel(other, folder), Magnet(remanence, permeability)
@@ -270,8 +310,10 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
     value = stated[key]
     if one.name == "magnetisation":
         return _magnetisation(table, section, value)
-    if one.name == "outline":
-        return _outline(table, section, value)
+    if one.name in _OUTLINES:
+        return _outline(table, section, key, value)
+    if "tuple" in str(one.type):
+        return _numbers(table, section, key, value)
     number = _number(table, section, key, value)
     if one.type == "int":
         if number != int(number):
@@ -280,10 +322,16 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
     return to_si(key, number)[1]
 
 
-def _outline(table: _Table, section: str, stated: object) -> tuple[Curve, ...]:
+def _numbers(table: _Table, section: str, key: str, stated: object) -> tuple[float, ...]:
+    if not isinstance(stated, list):
+        raise table.wrong(section, f"{key} = {stated!r} is no list; write {key} = [...] with one number for each")
+    return tuple(to_si(key, tuple(_number(table, section, key, number) for number in stated))[1])
+
+
+def _outline(table: _Table, section: str, key: str, stated: object) -> tuple[Curve, ...]:
     """Of a DXF file, ``"rotor.dxf"`` or one layer, ``"rotor.dxf:cut"``; its path counts from the machine's file."""
     if not isinstance(stated, str):
-        raise table.wrong(section, f'outline = {stated!r} is no file; write outline = "rotor.dxf" or "rotor.dxf:layer"')
+        raise table.wrong(section, f'{key} = {stated!r} is no file; write {key} = "rotor.dxf" or "rotor.dxf:layer"')
     name, _, layer = stated.partition(":")
     return read_outline(table.path.parent / name, layer or None)
 

@@ -5,11 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from actuator.drive import MappedLoss, TorqueLimit
 from actuator.errors import ActuatorError
 from figures.energy import force_loop, powers_over_time, where_the_power_goes, working_points
+from figures.quarter_car import beside_the_thesis, comfort_setting, vehicle_over_time
 from pipeline.codec import decoded, encoded
+from report import quarter_car as quarter_car_report
 from report.energy import duty_table, files, loop_table, power_table, remarks, section
 from tasks import InThisProcess
 from tests.actuator.thesis import FORCE_LOOP, prototype
@@ -18,6 +21,7 @@ from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
 from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage
 from vehicle.printed_energy import printed_energy
+from vehicle.quarter_car_stage import QuarterCarRides
 from vehicle.ride import Scenario
 from vehicle.road import IsoRoad, roughness_of_class
 
@@ -73,6 +77,39 @@ def test_tables_and_section(found, case):
 def test_figures_are_readable(found, assert_readable):
     for draw in (powers_over_time, working_points, where_the_power_goes, force_loop):
         assert_readable(draw(found))
+
+
+@pytest.fixture(scope="module")
+def rides(found):
+    time = np.linspace(0.0, 15.0, 50)
+    data = {name: ("time", np.sin(time)) for name in ("felt", "tyre_load", "force")}
+    return QuarterCarRides(found, xr.Dataset(data, {"time": time}))
+
+
+def test_every_printed_number_stands_beside_ours(rides):
+    """19 rows of nine printed columns; where nothing is printed there is nothing behind the bar."""
+    every = quarter_car_report.every_table(rides)
+    assert len(every) == 9 * 19 and set(every.table) == {f"4.{k}" for k in range(6, 15)}
+    real = quarter_car_report.beside(rides, REAL).set_index("quantity")
+    assert real.loc["electrical power / W", "LQR handling"].endswith("| 9.8")
+    quasi = quarter_car_report.beside(rides, QUASI_IDEAL).set_index("quantity")
+    assert "|" not in quasi.loc["power factor, machine shaft", "maximum"]
+    assert "lifts from" in quarter_car_report.section(rides).content[-1].caption
+
+
+def test_figures_beside_the_thesis_are_readable(rides, assert_readable):
+    for draw in (vehicle_over_time, lambda one: beside_the_thesis(one, printed_energy())):
+        assert_readable(draw(rides.energy))
+    assert_readable(comfort_setting(rides))
+
+
+@pytest.mark.physics
+def test_spring_and_mass_only_lend_power(found):
+    """Their mean is what they keep at the end, nothing beside what goes through them."""
+    real = found.traces.sel(actuator=REAL)
+    for name in ("elastic", "inertial"):
+        assert (np.abs(real[name].mean("time")) < 0.1 * np.abs(real[name]).mean("time")).all()
+    assert not np.abs(found.traces.elastic.sel(actuator=QUASI_IDEAL)).max()
 
 
 def test_printed_numbers_balance_as_the_thesis_says():

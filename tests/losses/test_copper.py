@@ -51,4 +51,4 @@ def test_end_turns():
     assert PRINTED.end_turn_length == pytest.approx(16.30 * MILLIMETRE, rel=1e-3)
     assert PRINTED.end_turn_share == pytest.approx(0.2845, rel=1e-3)
     distributed = replace(PRINTED, coil_pitch=3)
-    assert distributed.end_turn_length == pytest.approx(71.9 * MILLIMETRE, rel=1e-3)
+    assert distributed.end_turn_length == pytest.approx(71.2 * MILLIMETRE, rel=1e-3)

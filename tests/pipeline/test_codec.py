@@ -53,12 +53,19 @@ def test_datasets_stand_beside_the_text():
     assert decoded(encoded(squares, []), datasets).data.identical(squares.data)
 
 
+def test_a_dataset_stands_in_the_text_where_nothing_can_stand_beside():
+    """As in the lines of a checkpoint: coordinates, names and the last bit."""
+    data = xr.Dataset({"a": (("state", "k"), np.arange(6).reshape(2, 3) / 7)}, {"state": ["idle", "full"]}, {"n": 1})
+    text = json.dumps(encoded(Squares((), data)))
+    assert decoded(json.loads(text)).data.identical(data)
+
+
 def test_the_law_of_a_steel_comes_back():
     steel = load_steel("35PN270")
     assert (back(steel).nu(np.linspace(0, 5, 50)) == steel.nu(np.linspace(0, 5, 50))).all()
 
 
-@pytest.mark.parametrize("value", [object(), lambda: 0, {1, 2}, xr.Dataset(), Record])
+@pytest.mark.parametrize("value", [object(), lambda: 0, {1, 2}, Record])
 def test_what_cannot_be_written_is_refused(value):
     with pytest.raises(CodecError, match="cannot be written"):
         encoded(value)

@@ -34,12 +34,13 @@ def run(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("drivetrain.matching.RADII", 8)
         patch.setattr("losses.map.STEPS", 6)
-        patch.setattr("magnetostatics.gap_stress_stage.STEPS", 12)
+        patch.setattr("magnetostatics.rotation.COGGING_STEPS", 3)
         patch.setattr("losses.map.DIRECT", (-1.0, -0.5, 0.0, 0.75))
         patch.setattr("uncertainty.match_spread.DRAWS", 4)
         patch.setattr("uncertainty.match_spread.FREE_DRAWS", 2)
         patch.setattr("uncertainty.scatter.STEPS", 2)
-        patch.setattr("uncertainty.field_slopes._STEPS", 6)
+        patch.setattr("uncertainty.field_slopes._STEPS", 12)
+        patch.setattr("uncertainty.field_slopes._OF_THE_FINER_MESH", 1)
         patch.setattr("losses.map.QUADRATURE", (0.0, 0.25, 0.5, 1.0))
         return here(study, folder / "results", fitted(study, without=("fields",)))
 

@@ -46,7 +46,7 @@ def value(rows, quantity, condition=""):
 @pytest.mark.slow
 def test_an_outer_rotor_from_its_map_to_its_sheet(tmp_path, quick):
     path = coarse("outrunner_9_12", tmp_path)
-    done = airgap("machine", path, "--out", tmp_path / "out", "--jobs", 1)
+    done = airgap("run", path, "--out", tmp_path / "out", "--jobs", 1)
     assert done.returncode == 0, done.stderr
     rows = sheet(tmp_path / "out")
     assert value(rows, "magnet flux linkage") == pytest.approx(0.2763, rel=5e-3)  # mWb, another code, fine mesh
@@ -68,6 +68,11 @@ def test_a_reluctance_machine_runs_on_its_magnetising_current(tmp_path, quick):
     assert "magnet flux linkage" not in {name for name, *_ in rows} and "magnets" not in {name for name, *_ in rows}
     assert value(rows, "L_d", "no load") > 4 * value(rows, "L_q", "no load")
     assert value(rows, "peak torque") > 10 and not (tmp_path / "out" / "magnets.dxf").exists()
+
+
+def test_a_model_of_a_bench_is_refused_for_a_machine(tmp_path):
+    done = airgap("run", coarse("outrunner_9_12", tmp_path), "--with", tmp_path / "model.toml")
+    assert done.returncode == 2 and "is a machine's file" in done.stderr
 
 
 VARIABLES = """

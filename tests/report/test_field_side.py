@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import magnetostatics.rotation_stage as rotation_module
 import report.fields
 import report.fits
 import report.sweep
 from figures.export import read_vtu
 from geometry.family import Combination, StatedMachine
-from magnetostatics.rotation_stage import STATES, rotations_stage
+from magnetostatics.fields_stage import fields_stage
+from magnetostatics.rotation import STATES
 from optimisation.fits import fits_stage
 from optimisation.freedom import AS_SWEPT
 from optimisation.limits import LimitComparison, LimitPoint
@@ -119,14 +119,14 @@ def test_fits_in_the_units_of_their_columns(tmp_path):
 
 
 def test_fields_as_files(tmp_path, monkeypatch):
-    monkeypatch.setattr(rotation_module, "_STEPS", 2)
-    found = rotations_stage(CASE, StatedMachine(CASE.family.reference), None, InThisProcess())
+    monkeypatch.setattr("magnetostatics.rotation.COGGING_STEPS", 1)
+    found = fields_stage(CASE, StatedMachine(CASE.family.reference), None, InThisProcess())
     figures = ("cross_section_reference", "rotation_reference", "field_reference_nominal")
     expected = {f"reference_{state}.vtu" for state in STATES} | {f"figures/{name}.png" for name in figures}
-    assert written(report.fields.files(found, CASE), tmp_path) == expected | {"rotation_reference.csv"}
+    assert written(report.fields.files(found, None, CASE), tmp_path) == expected | {"rotation_reference.csv"}
     table = pd.read_csv(tmp_path / "rotation_reference.csv")
     assert table.columns[:2].tolist() == ["angle_mech_deg", "torque_arkkio_Nm_per_m"]
     assert table.angle_mech_deg[0] == pytest.approx(-24.0) and "tooth_5_T" in table
     assert "28.284 A/mm²" in read_vtu(tmp_path / "reference_overload.vtu").description
-    assert report.fields.matched(found) is None
+    assert report.fields.matched(found, None) is None
     assert "mean torque" in paragraphs(report.fields.machine(found))

@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 
+from electrical.end_turn import Lap, ToothCoil, Wave
 from geometry.kinds import ROTORS, STATORS
 from study.errors import StudyError
 from study.machine_file import MACHINES, part_keys, read_machine
@@ -42,9 +43,18 @@ def test_winding_length_and_materials():
     assert (found.materials.magnet.remanence, found.materials.magnet.recoil_permeability) == (1.24, 1.05)
 
 
+def test_the_end_turn_is_stated_or_follows_from_the_coil_pitch(tmp_path):
+    text = (MACHINES / "prius_2004.toml").read_text(encoding="utf-8").replace('"curves/', f'"{MACHINES}/curves/')
+    stated = tmp_path / "stated.toml"
+    stated.write_text(text.replace("coil_pitch = 6", 'coil_pitch = 6\nend_turn = "wave"\noverlength = 2.1'))
+    assert read_machine("prius_2004").end_turn == Lap() and read_machine("outrunner_9_12").end_turn == ToothCoil()
+    assert read_machine(stated).end_turn == Wave(2.1)
+
+
 def test_kinds_are_the_files_of_their_folders():
     assert {"straight_teeth", "outward_teeth", "round_bottom_slots"} <= set(STATORS.known)
     magnets = {"surface_magnets", "outer_magnets", "inset_magnets", "v_shape", "spoke"}
+    magnets |= {"bread_loaf_magnets", "two_layer_v_shape", "consequent_pole", "outline_magnets"}
     assert magnets | {"flux_barriers"} <= set(ROTORS.known)
 
 
@@ -64,6 +74,9 @@ WRONG = {
     "magnetisation": ('"parallel"', '"axial"', "take parallel or radial or halbach"),
     "section": ("[mesh]", "[mash]", "did you mean mesh"),
     "turns": ("turns_per_coil = 8\n", "", "[winding] lacks turns_per_coil; add it"),
+    "end turn": ("turns_per_coil = 8", 'turns_per_coil = 8\nend_turn = "basket"', "take tooth_coil or lap or wave"),
+    "lap": ("turns_per_coil = 8", 'turns_per_coil = 8\nend_turn = "lap"', 'found 1: take "tooth_coil"'),
+    "overlength": ("turns_per_coil = 8", "turns_per_coil = 8\noverlength = 2.0", "not to tooth_coil: remove it"),
     "steel": ('"curves/M400-50A_bh.csv"', '"M1"', "unknown steel 'M1'"),
     "no steel": ('stator_steel = "curves/M400-50A_bh.csv"', "", "[materials] lacks stator_steel"),
     "remanence": ("remanence_T = 1.20", "", "[materials] lacks remanence_T"),
@@ -89,5 +102,5 @@ def test_an_own_class_that_is_none(written, tmp_path):
 
 
 def test_a_name_that_is_no_file_lists_what_there_is():
-    with pytest.raises(StudyError, match="outrunner_9_12, prius_2004, synrm_48_4"):
+    with pytest.raises(StudyError, match="outrunner_9_12_free, prius_2004, synrm_48_4"):
         read_machine("nothing")

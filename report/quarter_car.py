@@ -1,0 +1,150 @@
+"""The actuator of a study in the thesis's quarter car, for people: Tables 4.6 to 4.14 row by row beside the printed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from figures.energy import powers_over_time, working_points
+from figures.files import File, figure_file, picture_name, table_file
+from figures.quarter_car import beside_the_thesis, comfort_setting, vehicle_over_time
+from figures.report import Picture, Section, Table
+from report.energy import stand_ins
+from units import GRAVITY
+from vehicle.energy import Scatter, scatter
+from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase
+from vehicle.printed_car import PRINTED_CAR, PRINTED_SPEED, printed_road
+from vehicle.printed_energy import PrintedEnergy, printed_energy
+from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.spectral import mean_power_theorem
+
+TABLE = "quarter_car.csv"
+TIME, POINTS, CAR = "quarter_car_over_time", "quarter_car_points", "quarter_car_vehicle"
+COMFORT, BESIDE = "quarter_car_comfort_setting", "quarter_car_beside"
+_PERCENT = 100.0
+
+
+def files(found: QuarterCarRides) -> Iterator[File]:
+    """Every row of the tables beside the printed one, and the figures."""
+    yield table_file(TABLE, every_table(found))
+    yield figure_file(TIME, powers_over_time(found.energy))
+    yield figure_file(POINTS, working_points(found.energy))
+    yield figure_file(CAR, vehicle_over_time(found.energy))
+    yield figure_file(COMFORT, comfort_setting(found))
+    yield figure_file(BESIDE, beside_the_thesis(found.energy, printed_energy()))
+
+
+def section(found: QuarterCarRides) -> Section:
+    """What the tables of chapter 4 become with the actuator of the study."""
+    tables = [Table(beside(found, kind), words) for kind, words in _KINDS]
+    return Section(
+        "In the thesis's quarter car",
+        (
+            _text(),
+            *stand_ins(found.energy),
+            *tables,
+            Picture(picture_name(BESIDE), "Means over six roads; marks: the thesis's prototype, one road "
+                    "(Figs 4.54, 4.55)."),
+            Picture(picture_name(TIME), "Force and power with the real actuator (Figs 4.40 to 4.49)."),
+            Picture(picture_name(POINTS), "Working points at suspension and rotor (Figs 4.42 to 4.51)."),
+            Picture(picture_name(CAR), "Tyre load, acceleration as it is felt, and what spring and mass take and give "
+                    "back (Figs 4.24 to 4.50)."),
+            Picture(picture_name(COMFORT), _lifted(found)),
+        ),
+    )  # fmt: skip
+
+
+_KINDS = (
+    (QUASI_IDEAL, "Quasi-ideal actuator: Tables 4.6 to 4.9, printed numbers behind the bar."),
+    (REAL, "Real actuator with its force loop: Tables 4.10 to 4.13, printed numbers behind the bar."),
+    ("real, no force loop", "Without the force loop: Table 4.14, printed numbers behind the bar."),
+)
+
+
+def _text() -> str:
+    road = printed_road(0)
+    theorem = mean_power_theorem(PRINTED_CAR.tyre_stiffness, road.road, PRINTED_SPEED)  # type: ignore[arg-type]
+    return (
+        "The actuator of this study where the thesis drove its own: its quarter car (Table 4.4), the ISO B road at "
+        f"70 km/h for 15 s, once with each of six seeds, and its commands. Any stabilising law takes {theorem:.2f} W "
+        "from that road on the long run, whatever the actuator; what differs from the printed numbers is the machine, "
+        "the gears, the mass, the mount and the loop, and a scatter of 1 to 2 W over roads. The thesis's damper curves "
+        "are figures: their steepest part stands here."
+    )
+
+
+def _lifted(found: QuarterCarRides) -> str:
+    off = np.asarray(found.comfort.time)[np.asarray(found.comfort.tyre_load) <= 0]
+    words = f"the wheel lifts from {off[0]:.1f} s on" if off.size else "the wheel stays on this road"
+    return f"The comfort-oriented LQR in the non-linear car, quasi-ideal actuator: {words} (Fig. 4.28: from 10 s)."
+
+
+def every_table(found: QuarterCarRides) -> pd.DataFrame:
+    """One row of one printed table a row: here, its scatter over the roads, printed."""
+    return pd.DataFrame([row for printed, case in _pairs(found) for row in _rows(printed, case)])
+
+
+def beside(found: QuarterCarRides, actuator: str) -> pd.DataFrame:
+    """One quantity a row, one command a column: here | printed."""
+    columns: dict[str, dict[str, str]] = {}
+    for printed, case in _pairs(found):
+        if printed.actuator == actuator:
+            columns[printed.command] = {str(row["quantity"]): _both(row) for row in _rows(printed, case)}
+    frame = pd.DataFrame(columns)
+    return frame.rename_axis("quantity").reset_index()
+
+
+def _both(row: dict[str, object]) -> str:
+    printed = "" if row["printed"] is None else f"{row['printed']:.3g}"
+    return f"{row['here']:.3g} | {printed}".rstrip(" |") if printed else f"{row['here']:.3g}"
+
+
+def _pairs(found: QuarterCarRides) -> Iterator[tuple[PrintedEnergy, EnergyCase]]:
+    cases = {(case.command, case.actuator): case for case in found.energy.cases}
+    for printed in printed_energy():
+        yield printed, cases[printed.command, printed.actuator]
+
+
+def _rows(printed: PrintedEnergy, case: EnergyCase) -> Iterator[dict[str, object]]:
+    values = scatter(case.energies)
+    for name, (key, unit, stated) in _QUANTITIES.items():
+        value, beside = _value(values, key, case), getattr(printed, stated)
+        yield {
+            "table": printed.table, "command": printed.command, "actuator": printed.actuator, "quantity": name,
+            "here": value.mean / unit, "deviation": value.deviation / unit,
+            "printed": None if beside is None else beside / unit,
+        }  # fmt: skip
+
+
+def _value(values: dict[str, Scatter], key: str, case: EnergyCase) -> Scatter:
+    if key != "peak_electrical":
+        return values[key]
+    peaks = [one.peak_electrical for one in case.energies]
+    return Scatter(max(peaks, key=abs), float(np.std(peaks, ddof=1)) if len(peaks) > 1 else float("nan"))
+
+
+# Heading of a row -> number of ``vehicle.energy.scatter``, its unit, field of ``PrintedEnergy``. The mechanical element
+# of the thesis is friction here, the gears apart.
+_QUANTITIES = {
+    "electrical power / W": ("battery.active", 1.0, "electrical"),
+    "peak electrical power / W": ("peak_electrical", 1.0, "peak_electrical"),
+    "apparent, machine shaft / W": ("machine.apparent", 1.0, "machine_apparent"),
+    "active, machine shaft / W": ("machine.active", 1.0, "machine_power"),
+    "power factor, machine shaft": ("machine.factor", 1.0, "machine_power_factor"),
+    "apparent, suspension / W": ("shaft.apparent", 1.0, "shaft_apparent"),
+    "active, suspension / W": ("shaft.active", 1.0, "mechanical"),
+    "power factor, suspension": ("shaft.factor", 1.0, "shaft_power_factor"),
+    "loss of the machine / W": ("machine_loss", 1.0, "machine_loss"),
+    "loss of the mechanics / W": ("mechanical_loss", 1.0, "mechanical_loss"),
+    "loss of the mount / W": ("mount_loss", 1.0, "mount_loss"),
+    "loss of friction / W": ("friction_loss", 1.0, "element_loss"),
+    "active duty, suspension / %": ("shaft_duty.active", 1 / _PERCENT, "shaft_active"),
+    "active duty, machine / %": ("machine_duty.active", 1 / _PERCENT, "machine_active"),
+    "regenerating / %": ("regenerating", 1 / _PERCENT, "regenerating"),
+    "reactive, mount / W": ("elastic", 1.0, "elastic"),
+    "reactive, mass / W": ("inertial", 1.0, "inertial"),
+    "comfort / g": ("comfort", GRAVITY, "comfort"),
+    "road holding": ("road_holding", 1.0, "road_holding"),
+}
