@@ -20,7 +20,7 @@ from electrical.flux_map_machine import FluxMapMachine
 from electrical.sudden_short_circuit import first_peak
 from electrical.winding_stage import WindingOutcome
 from magnetostatics.case import FieldCase
-from magnetostatics.demagnetisation import MagnetMap
+from magnetostatics.demagnetisation import MagnetFlux, MagnetMap
 from magnetostatics.flux_map_stage import FluxMap
 from magnetostatics.turning_magnets import TurningMagnets, magnet_maps, turning_magnets
 from materials.magnet_grade import MagnetGrade
@@ -80,8 +80,8 @@ class MagnetsOutcome:
     states: no load first; demagnetising_current: against the magnets, at which the allowed share of their volume goes
         beyond the knee, peak [A]; 0 where it does without current, infinite where it does not up to largest_current [A]
     peak_in_map: whether the first peak of a sudden short circuit lies in the flux map that it was followed on
-    turn: one magnet in the worst state, upright, the smallest over a turn; at_once: all magnets of the sector at that
-        state's worst angle
+    flux: of one magnet in the worst state, the smallest over a turn; turn: that to be drawn, upright
+    at_once: all magnets of the sector at that state's worst angle
     """
 
     inputs: MagnetInputs
@@ -91,6 +91,7 @@ class MagnetsOutcome:
     demagnetising_current: float
     largest_current: float
     peak_in_map: bool
+    flux: MagnetFlux
     turn: MagnetMap
     at_once: MagnetMap
 
@@ -103,6 +104,11 @@ class MagnetsOutcome:
     def lost(self) -> float:
         """Share of the magnets' volume beyond the knee in the state where it is largest."""
         return max(state.lost for state in self.states)
+
+    @property
+    def at_knee(self) -> float | None:
+        """The demagnetising current [A] where there is one, None where none is needed or none is reached."""
+        return self.demagnetising_current if 0 < self.demagnetising_current < inf else None
 
     def margin(self, state: MagnetState) -> float:
         """Flux density [T] between the knee and what all but the allowed share of the volume exceeds."""
@@ -141,6 +147,7 @@ def magnets_stage(
         demagnetising_current([-i_d for i_d, _ in against], exceeded, knee),
         _AGAINST[-1] * largest,
         bool(machine.holds(*named[SUDDEN])),
+        worst.turn,
         *magnet_maps(case, wound.machine, worst),
     )
 

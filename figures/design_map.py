@@ -69,8 +69,8 @@ def design_map(
     figure = new_figure(8.4)
     axes = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
     _torque_panel(figure, axes[0], design, optimum)
-    for axis, (name, words) in zip(axes[1:], _PROBE_MAPS, strict=True):
-        _probe_panel(figure, axis, design, one[name].transpose("rotor_radius", "back_iron").values, words)
+    for axis, (probe, words) in zip(axes[1:], _PROBE_MAPS, strict=True):
+        _probe_panel(figure, axis, design, one[probe].transpose("rotor_radius", "back_iron").values, words)
     _label(axes)
     figure.suptitle(f"{name}, Ø {stator_diameter_mm:g} mm, limit {limit_T:g} T ({_in_words(reading)})")
     figure.legend(handles=_legend(), loc="outside lower center", ncols=5, frameon=False)

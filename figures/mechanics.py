@@ -24,7 +24,7 @@ def safety_margins(found: MechanicsOutcome) -> Figure:
         left=1.0,
         color=[BLUE if one.holds else VERMILION for one in found.checks],
     )
-    factors = [f" {amount(one.reached, '')} of {amount(one.wanted, '')} " for one in found.checks]
+    factors = [f" {_factor(one.reached)} of {amount(one.wanted, '')} " for one in found.checks]
     axes.bar_label(bars, factors, fontsize=9)
     axes.axvline(1.0, color=BLACK, linewidth=1.0)
     axes.set_xscale("log")
@@ -36,3 +36,7 @@ def safety_margins(found: MechanicsOutcome) -> Figure:
     axes.set_xlabel("factor reached over factor wanted")
     show_grid(axes)
     return figure
+
+
+def _factor(reached: float) -> str:
+    return amount(reached, "") if reached < _SHOWN else f"> {_SHOWN:g}"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from base64 import b64encode
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from math import floor, isinf, log10
+from math import floor, inf, isinf, log10
 from pathlib import Path
 from typing import ClassVar, SupportsFloat
 
@@ -49,6 +50,21 @@ class Table:
             (number in self.marked, [(number_text(value), kind) for value, kind in zip(row, kinds, strict=True)])
             for number, row in enumerate(rows)
         ]
+
+
+@dataclass(frozen=True)
+class MoreThan:
+    """What a table shows in the place of a number so large that its digits say nothing; limit: [unit of the number]"""
+
+    limit: float
+
+    def __str__(self) -> str:
+        return f"> {self.limit:g}"
+
+
+def capped(values: Iterable[float], most: float) -> list[float | MoreThan]:
+    """Numbers for a table, those from ``most`` on as ``MoreThan``, but for infinite ones; all in one unit."""
+    return [MoreThan(most) if most <= value < inf else value for value in values]
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ def section(found: BrakingOutcome, output: Output) -> Section:
             Table(summary_table(found, output), f"The brake {output.place}; the whole curves are in {TABLE}."),
             Picture(
                 picture_name(FIGURE),
-                f"Damping, {output.effort} and phase current over the {output.speed}; the grey line is its RMS value.",
+                f"Damping, {output.effort} and phase current over the {output.speed}{_lines(found)}.",
             ),
         ),
     )
@@ -92,6 +92,11 @@ def _text(found: BrakingOutcome, output: Output) -> str:
         "Beyond, the current weakens the magnets and the braking falls. Controlled, it brakes with the largest "
         f"{output.effort} that current and voltage allow. All from the flux map, without iron loss and friction."
     )
+
+
+def _lines(found: BrakingOutcome) -> str:
+    """What is drawn where a damping is asked for."""
+    return "; dotted what is asked for, grey the RMS value" if found.demand.damping else ""
 
 
 def remarks(found: BrakingOutcome, output: Output) -> Iterator[str]:

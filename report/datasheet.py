@@ -94,6 +94,11 @@ def row(quantity: str, value: float, unit: str, condition: str = "", known: Unce
     return Row(quantity, shown, written(unit), condition, None if known is None else shown * known.expanded)
 
 
+def give_or_take(one: Row, known: Uncertain | None, unit: str) -> Row:
+    """The row with the U of a number that differs from its own by a constant or in sign; unit: as in ``row``."""
+    return one if known is None else replace(one, expanded=in_unit(known.plus_minus, unit))
+
+
 def table_of(rows: tuple[Row, ...]) -> pd.DataFrame:
     """Columns quantity, value, plus_minus (U, 95 %), unit, condition."""
     table = pd.DataFrame([astuple(one) for one in rows], columns=["quantity", "value", "unit", "condition", PLUS_MINUS])
@@ -121,7 +126,7 @@ def data_sheet(
         Group("Winding", tuple(winding_rows(package, winding, inputs, heat, budget))),
         Group("Torque, speed and supply", tuple(performance(package, winding, inputs, budget))),
         Group("What the temperatures allow", tuple(warm_rows(warm, budget))),
-        Group("Magnets", tuple(magnet_rows(magnets))),
+        Group("Magnets", tuple(magnet_rows(magnets, budget))),
         Group("Losses at the rated point", tuple(loss_rows(package, steel, inputs, heat, budget))),
         Group("Constants", tuple(constants(package, winding, budget))),
         Group("Braking with shorted phases", tuple(braking_rows(package, braking, output, budget))),
@@ -240,7 +245,7 @@ def performance(package: Package, winding: WindingOutcome, inputs: WindingInputs
     yield row("power at base speed", chosen.power_at_base_speed, "W", "at the peak torque", known.power_at_base_speed)
     if chosen.maximum_power is not None and chosen.speed_at_maximum_power is not None:
         fastest = f"ideal field weakening, at {chosen.speed_at_maximum_power / RPM:.0f} rpm"
-        yield row("largest power", chosen.maximum_power, "W", fastest)
+        yield row("largest power", chosen.maximum_power, "W", fastest, known.largest_power)
     lower = "base speed, or the largest of the study where that is lower"
     yield row("rated speed", rated.speed, "rpm", lower, known.rated_speed)
     yield row("bus voltage", bus, "V", "direct")
@@ -260,25 +265,27 @@ def warm_rows(warm: HeatOutcome, budget: Budget) -> Iterator[Row]:
     slow, limits = warm.slow, warm.inputs.limits
     at = f"slowly turning, surroundings of {warm.inputs.cooling.ambient:g} °C; {binding(slow)}"
     yield row("continuous torque", slow.torque, "Nm", at, budget.output.continuous_effort)
-    yield row(
-        "continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}", budget.performance.continuous_current
-    )
-    yield row("hottest copper", slow.state.hottest_copper, "degC", f"then; limit {limits.copper:g} °C")
-    yield row("magnets", slow.state.temperature[MAGNETS], "degC", f"then; limit {limits.magnets:g} °C")
+    yield row("continuous line current", slow.current / sqrt(2), "A", f"RMS, {at}", budget.heat.continuous_current)
+    copper, magnets = (f"then; limit {limit:g} °C; ± at the same torque" for limit in (limits.copper, limits.magnets))
+    known = budget.heat
+    yield give_or_take(row("hottest copper", slow.state.hottest_copper, "degC", copper), known.copper_rise, "degC")
+    yield give_or_take(row("magnets", slow.state.temperature[MAGNETS], "degC", magnets), known.magnet_rise, "degC")
 
 
-def magnet_rows(magnets: MagnetsOutcome | None) -> Iterator[Row]:
+def magnet_rows(magnets: MagnetsOutcome | None, budget: Budget) -> Iterator[Row]:
     """What the magnets stand; none without a grade."""
     if magnets is None:
         return
+    known = budget.magnets
     yield Row("grade", magnets.inputs.grade.name, "", magnets.inputs.grade.material)
     yield row("knee", magnets.knee, "T", f"flux density along the magnetisation at {magnets.temperature:g} °C")
     worst = max(magnets.states, key=lambda state: state.lost)
     where = f"in the worst state: {worst.name}" if worst.lost else "in every state that was looked at"
-    yield row("volume beyond the knee", worst.lost, "percent", where)
+    yield give_or_take(row("volume beyond the knee", worst.lost, "percent", where), known.kept, "percent")
     if isfinite(magnets.demagnetising_current):
         allowed = f"{in_unit(magnets.inputs.lost_max, 'percent'):g} % of the volume beyond the knee"
-        yield row("demagnetising current", magnets.demagnetising_current, "A", f"peak, against the magnets, {allowed}")
+        against = f"peak, against the magnets, {allowed}"
+        yield row("demagnetising current", magnets.demagnetising_current, "A", against, known.demagnetising_current)
 
 
 def loss_rows(

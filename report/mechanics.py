@@ -9,13 +9,14 @@ import pandas as pd
 from drivetrain.output import amount, in_unit
 from figures.files import File, figure_file, picture_name, table_file
 from figures.mechanics import safety_margins
-from figures.report import Picture, Remark, Section, Table
+from figures.report import Picture, Remark, Section, Table, capped
 from gearbox.stage import GearboxOutcome
 from mechanics.checks import LoadCheck
 from mechanics.stage import MechanicsOutcome
 from units import FACTORS, MILLIMETRE, RPM, written
 
 TABLE, FIGURE = "mechanics.csv", "mechanics"
+LARGEST_FACTOR, LARGEST_MARGIN = 100.0, 1000.0  # safety factor, percent; what is more is as good
 _ACTS = "What acts and what may act, of glue the share of its strength, and the factor between them."
 
 
@@ -32,7 +33,7 @@ def section(found: MechanicsOutcome, gears: GearboxOutcome) -> Section:
         (
             _text(found),
             *(Remark(line) for line in remarks(found)),
-            Table(checks_table(found), _ACTS),
+            Table(_shown(checks_table(found)), _ACTS),
             Picture(picture_name(FIGURE), "Safety factors over those wanted; orange falls short."),
             Table(numbers_table(found), "Rotor and shaft."),
             _bearings(found, gears),
@@ -43,6 +44,13 @@ def section(found: MechanicsOutcome, gears: GearboxOutcome) -> Section:
 def checks_table(found: MechanicsOutcome) -> pd.DataFrame:
     """One check a row, in drawing units."""
     return pd.DataFrame([_row(one) for one in found.checks])
+
+
+def _shown(checks: pd.DataFrame) -> pd.DataFrame:
+    """Without the digits of what is beyond all doubt."""
+    return checks.assign(
+        factor=capped(checks.factor, LARGEST_FACTOR), margin_percent=capped(checks.margin_percent, LARGEST_MARGIN)
+    )
 
 
 def _row(one: LoadCheck) -> dict[str, object]:

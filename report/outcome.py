@@ -7,7 +7,18 @@ from math import floor
 
 import pandas as pd
 
-from drivetrain.asked import Check, ContinuousEffort, LowSpeedDamping, PeakEffortAtRest, Requirement
+from drivetrain.asked import (
+    Check,
+    ContinuousEffort,
+    ControlledDamping,
+    EquivalentMass,
+    LostMagnets,
+    LowSpeedDamping,
+    PeakEffort,
+    PeakEffortAtRest,
+    PeakPower,
+    Requirement,
+)
 from drivetrain.nearest import Move, NearestDesign
 from drivetrain.outcome import Features, Outcome
 from drivetrain.output import Output, in_unit, labelled
@@ -15,11 +26,12 @@ from drivetrain.proof import Impossibility
 from drivetrain.remedies import Remedy
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
-from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table
+from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table, capped
 from gearbox.stage import SafetyCheck
 from mechanics.checks import LoadCheck
 from report.datasheet import plus_minus
-from uncertainty.budget import Budget
+from report.mechanics import LARGEST_FACTOR, LARGEST_MARGIN
+from uncertainty.budget import Budget, Uncertain
 from uncertainty.stage import Uncertainty
 from units import FACTORS, MILLIMETRE, written
 
@@ -69,24 +81,40 @@ def section(found: Outcome, output: Output, uncertainty: Uncertainty | None) -> 
 
 def _asked_and_reached(found: Outcome, output: Output, uncertainty: Uncertainty | None) -> Table:
     """Every requirement, with the expanded uncertainty of what is reached where it is known."""
-    table, words = checks_table(found, output), f"What is asked and what is reached, {output.place}."
+    words, table = f"What is asked and what is reached, {output.place}.", checks_table(found, output)
+    asked, factors = table.reached[: len(found.checks)], table.reached[len(found.checks) :]
+    reached, margins = [*asked, *capped(factors, LARGEST_FACTOR)], capped(table.margin_percent, LARGEST_MARGIN)
+    table = table.assign(reached=reached, margin_percent=margins)
     if uncertainty is None:
         return Table(table, words)
     known = _known(uncertainty.budget)
-    relative = [known.get(type(one.requirement)) for one in found.checks]
-    shown = ["" if one is None else plus_minus(one * value) for one, value in zip(relative, table.reached)]
+    shown = [_give_or_take(one, known.get(type(one.requirement)), output) for one in found.checks]
     shown += [""] * (len(table) - len(shown))
     table.insert(table.columns.get_loc("reached") + 1, "plus_minus", shown)
     return Table(table, f"{words} Behind ± stands U of the uncertainty.", {"plus_minus": "±"})
 
 
-def _known(budget: Budget) -> dict[type[Requirement], float]:
-    """U of what is reached, relative."""
-    return {
-        PeakEffortAtRest: budget.output.peak_effort.expanded,
-        ContinuousEffort: budget.output.continuous_effort.expanded,
-        LowSpeedDamping: budget.output.low_speed_damping.expanded,
+def _give_or_take(one: Check, known: Uncertain | None, output: Output) -> str:
+    """U of what is reached; a share of the magnets is known by the rest of them."""
+    if known is None:
+        return ""
+    size = known.plus_minus if isinstance(one.requirement, LostMagnets) else known.expanded * one.reached
+    return plus_minus(in_unit(size, one.requirement.unit(output)))
+
+
+def _known(budget: Budget) -> dict[type[Requirement], Uncertain]:
+    """How well what is reached is known, where it is."""
+    known = {
+        PeakEffortAtRest: budget.output.peak_effort,
+        PeakEffort: budget.output.fast_effort,
+        PeakPower: budget.output.peak_power,
+        ContinuousEffort: budget.output.continuous_effort,
+        LowSpeedDamping: budget.output.low_speed_damping,
+        ControlledDamping: budget.output.controlled_damping,
+        EquivalentMass: budget.output.equivalent_mass,
+        LostMagnets: budget.magnets.kept,
     }
+    return {kind: one for kind, one in known.items() if one is not None}
 
 
 def remarks(found: Outcome, output: Output) -> Iterator[str]:
@@ -186,12 +214,13 @@ def _drawn(features: Features, attribute: str, unit: str) -> float:
 
 def masses_table(found: Outcome) -> pd.DataFrame:
     """Masses of all parts, and inertias of those that turn, as the rotor feels them."""
-    rows = [{"part": name, "mass_kg": mass, "inertia_kg_m2": inertia} for name, mass, inertia in found.masses.rows]
+    rows = [*found.masses.rows]
     if found.gearbox_mass:
-        rows.append({"part": "gears", "mass_kg": found.gearbox_mass, "inertia_kg_m2": found.gearbox_inertia})
-    rows.append({"part": "casing, bearings, shafts", "mass_kg": found.casing_mass, "inertia_kg_m2": 0.0})
-    inertia = found.masses.rotor_inertia + found.gearbox_inertia
-    return pd.DataFrame([*rows, {"part": "whole", "mass_kg": found.features.mass, "inertia_kg_m2": inertia}])
+        rows.append(("gears", found.gearbox_mass, found.gearbox_inertia))
+    rows.append(("casing, bearings, shafts", found.casing_mass, 0.0))
+    rows.append(("whole", found.features.mass, found.masses.rotor_inertia + found.gearbox_inertia))
+    table = pd.DataFrame(rows, columns=["part", "mass_kg", "inertia_kg_mm2"])
+    return table.assign(inertia_kg_mm2=in_unit(table.inertia_kg_mm2, "kg_mm2"))
 
 
 # ---- parts of the section -------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from functools import partial
 
 import pandas as pd
 
+from drivetrain.output import in_unit
 from electrical.winding_connection import Delta, Star
 from electrical.winding_stage import WindingOutcome
 from export.dxf import laminations, write_dxf
@@ -112,8 +113,9 @@ def _connection_row(one: Connection, closing: Star | Delta) -> dict[str, object]
 
 def costs_table(package: Package) -> pd.DataFrame:
     """One part a row, with costs where the study states prices."""
-    names = {"part": "part", "mass": "mass_kg", "inertia": "inertia_kg_m2", "cost": "cost"}
+    names = {"part": "part", "mass": "mass_kg", "inertia": "inertia_kg_mm2", "cost": "cost"}
     table = pd.DataFrame([asdict(one) for one in package.costs]).rename(columns=names)
+    table["inertia_kg_mm2"] = in_unit(table["inertia_kg_mm2"], "kg_mm2")
     if not package.currency:
         return table.drop(columns="cost")
     return table.rename(columns={"cost": f"cost {package.currency}"})

@@ -58,6 +58,7 @@ _WORDS = {
     "rotor_inertia": ("rotor inertia", "kg_mm2"),
     "needed_length": ("active length that the peak torque needs", "mm"),
     "power_at_base_speed": ("power at base speed", "W"),
+    "largest_power": ("largest power, ideal field weakening", "W"),
     "rated_speed": ("rated speed", "rpm"),
     "overload_input": ("electrical input at peak torque and rated speed", "W"),
     "rated_input": ("electrical input at the rated point", "W"),
@@ -67,6 +68,10 @@ _WORDS = {
     "efficiency": ("efficiency at the rated point", "percent"),
     "loaded_constant": ("torque constant at the overload current", "mNm_per_A"),
     "continuous_current": ("continuous line current by temperature, RMS", "A"),
+    "copper_rise": ("rise of the hottest copper at the continuous torque by temperature", "degC"),
+    "magnet_rise": ("rise of the magnets there", "degC"),
+    "demagnetising_current": ("demagnetising current, peak", "A"),
+    "kept": ("volume of the magnets before the knee, worst state", "percent"),
     "short_circuit_current": ("short-circuit current, peak", "A"),
     "braking_torque": ("largest braking torque, shorted", "Nm"),
     "braking_speed": ("speed of the largest braking torque, cold", "rpm"),
@@ -162,8 +167,12 @@ def _words(output: Output) -> dict[str, tuple[str, str]]:
     return _WORDS | {
         "transmission_ratio": ("transmission ratio, matched", output.ratio_unit),
         "peak_effort": (f"peak {output.effort} {output.place}, at rest", output.effort_unit),
+        "fast_effort": (f"peak {output.effort} {output.place}, at the speed where it is asked for", output.effort_unit),
+        "peak_power": (f"peak power {output.place}, where it is asked for", "W"),
         "continuous_effort": (f"continuous {output.effort} {output.place}, turning slowly", output.effort_unit),
         "low_speed_damping": (f"short-circuit damping {output.place}, at low speed", output.damping_unit),
+        "controlled_damping": (f"controlled damping {output.place}, where it is asked for", output.damping_unit),
+        "equivalent_mass": (f"{output.inertia} {output.place}", output.inertia_unit),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import log, sqrt
 
 import numpy as np
 from scipy.optimize import brentq
@@ -21,6 +22,7 @@ _CURRENT_FOUND = 1e-6  # of the largest current
 _CURVE = 13  # currents between the continuous one and the largest
 _DENSER = 1.7  # towards the continuous one, where the time grows fastest
 _LONGEST = 1e5  # s; a current that heats for a day without reaching a limit counts as continuous
+_LESS = 0.01  # relative, of the loss in the copper over which the temperatures are differentiated
 FAR_BEYOND = 1e3  # K over the limit, where there is no steady state
 
 
@@ -61,6 +63,17 @@ class Rating:
     torque: float
     bound_by: str
     state: State
+
+
+@dataclass(frozen=True)
+class LossSlope:
+    """What the loss in the copper does to the temperatures at rest, dT / d ln P.
+
+    copper: at the hottest place of the winding [K]; magnets: in their mean [K]
+    """
+
+    copper: float
+    magnets: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,6 +153,16 @@ def _rating(heated: Heated, current: float, bound_by: str | None) -> Rating:
     nearer = COPPER_LIMIT if copper >= state.temperature[MAGNETS] - heated.limits.magnets else MAGNET_LIMIT
     torque = heated.operation.torque_of(current, state.temperature[MAGNETS])
     return Rating(heated.operation.speed, current, torque, bound_by or nearer, state)
+
+
+def loss_slope(heated: Heated, rating: Rating) -> LossSlope:
+    """Of a machine at its rating: the loss P is that of one current as if the copper stayed cold, and what warmer
+    copper adds to it is in the temperatures. Towards less loss, where there surely is a steady state."""
+    cooler = state_of(heated.load(rating.current * sqrt(1 - _LESS)))
+    per_loss = -1 / log(1 - _LESS)
+    copper = rating.state.hottest_copper - cooler.hottest_copper
+    magnets = rating.state.temperature[MAGNETS] - cooler.temperature[MAGNETS]
+    return LossSlope(copper * per_loss, magnets * per_loss)
 
 
 def allowed_for(heated: Heated, start: Temperatures, duration: float) -> float:

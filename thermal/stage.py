@@ -19,7 +19,18 @@ from thermal.errors import NoSteadyState
 from thermal.field_loss import FieldLoss
 from thermal.load import HotCopper, LoadedMachine, Operation, TorqueHistory, copper_ripple, operation
 from thermal.machine import Casing, CooledMachine, Weights
-from thermal.rating import Heated, Overload, Rating, State, allowed_for, continuous, overload, state_of
+from thermal.rating import (
+    Heated,
+    LossSlope,
+    Overload,
+    Rating,
+    State,
+    allowed_for,
+    continuous,
+    loss_slope,
+    overload,
+    state_of,
+)
 
 SHORT = 10.0  # s, for which the overload of the thesis is meant (text to eq. 3.68)
 # What another workshop would make of the estimates, or another guess.
@@ -96,7 +107,8 @@ class HeatOutcome:
     """How warm the machine becomes.
 
     inputs: cooling and limits; ratio: of output over rotor speed [m/rad or 1]
-    slow, at_speed: ratings turning slowly and at the RMS speed; duty: state under the duty, None where it runs away
+    slow, at_speed: ratings turning slowly and at the RMS speed; slope: of the temperatures at the slow one
+    duty: state under the duty, None where it runs away
     nominal_effort: at the current density that the study calls nominal, cold [N or Nm]; nominal_density: RMS [A/m^2]
     slow_density: RMS in the copper at the slow rating [A/m^2]
     cold, warm: overload from the surroundings' temperature and from the duty; warm is empty where the duty is too warm
@@ -109,6 +121,7 @@ class HeatOutcome:
     ratio: float
     slow: Rating
     at_speed: Rating
+    slope: LossSlope
     duty: State | None
     nominal_effort: float
     nominal_density: float
@@ -158,6 +171,7 @@ def heat_stage(
         ratio=built.ratio,
         slow=rating,
         at_speed=continuous(fast),
+        slope=loss_slope(slow, rating),
         duty=state,
         nominal_effort=_nominal(assembled.machine, winding.wound.current_peak(density)) / built.ratio,
         nominal_density=density,

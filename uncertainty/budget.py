@@ -19,15 +19,18 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from drivetrain.asked import LowSpeedDamping, Requirement
+from drivetrain.asked import ControlledDamping, LowSpeedDamping, PeakEffort, PeakPower
 from drivetrain.match import Match
 from drivetrain.outcome import Outcome
 from electrical.braking_stage import BrakingOutcome
+from electrical.magnets_stage import MagnetsOutcome
 from electrical.winding_stage import WindingOutcome
 from losses.map import PowerLosses
 from losses.stage import LossMap
+from thermal.machine import MAGNETS
 from thermal.stage import HeatOutcome
 from uncertainty.match_spread import DrawnMatch, MatchSpread
+from uncertainty.over_speed import OverSpeed, Powers
 from uncertainty.tolerance_stage import ToleranceOutcome
 from uncertainty.wound_slopes import PARTS
 
@@ -56,6 +59,11 @@ class Uncertain:
         """U = 2 u, relative; the value lies within it with about 95 %."""
         return COVERAGE * self.combined
 
+    @property
+    def plus_minus(self) -> float:
+        """U [SI]."""
+        return self.value * self.expanded
+
 
 @dataclass(frozen=True)
 class MatchBudget:
@@ -78,7 +86,7 @@ class PerformanceBudget:
         nominal current density [Nm]; needed_length: active length that the peak torque asks for [m]
     base_speed, rated_speed [rad/s]; power_at_base_speed: at the peak torque, rated_power: continuous torque at the
         rated speed, overload_input: electrical at peak torque and rated speed, copper loss alone [W]
-    continuous_current: RMS, of the temperatures [A]
+    largest_power: by ideal field weakening [W], None where it was not asked for
     """
 
     peak_torque: Uncertain
@@ -91,7 +99,7 @@ class PerformanceBudget:
     rated_speed: Uncertain
     rated_power: Uncertain
     overload_input: Uncertain
-    continuous_current: Uncertain
+    largest_power: Uncertain | None
 
 
 @dataclass(frozen=True)
@@ -127,6 +135,28 @@ class LossBudget:
 
 
 @dataclass(frozen=True)
+class HeatBudget:
+    """Turning slowly, by the temperatures: continuous_current: RMS [A]; copper_rise: of the hottest place of the
+    winding, magnet_rise: of their mean, over the surroundings, of machines that give the same torque [K]
+    """
+
+    continuous_current: Uncertain
+    copper_rise: Uncertain
+    magnet_rise: Uncertain
+
+
+@dataclass(frozen=True)
+class MagnetBudget:
+    """demagnetising_current: peak [A]; kept: share of the volume before the knee in the worst state, dimensionless.
+
+    Both None without a grade, and where no current was found that meets the knee.
+    """
+
+    demagnetising_current: Uncertain | None = None
+    kept: Uncertain | None = None
+
+
+@dataclass(frozen=True)
 class BrakingBudget:
     """Shorted phases, by psi_m / L_d, psi_m^2 / L_q and R / L_q: short_circuit_current: peak [A]; braking_torque [Nm];
     braking_speed: of it, cold [rad/s]
@@ -152,13 +182,21 @@ class MassBudget:
 
 @dataclass(frozen=True)
 class OutputBudget:
-    """The actuator: peak_effort: at rest; continuous_effort: of the temperatures, turning slowly [N or Nm];
-    low_speed_damping: short-circuited [Ns/m or Nms/rad]
+    """The actuator: peak_effort: at rest; fast_effort: at the speed where the peak is asked for; continuous_effort: of
+    the temperatures, turning slowly [N or Nm]; peak_power: where it is asked for [W]
+    low_speed_damping: short-circuited; controlled_damping: where it is asked for [Ns/m or Nms/rad]
+    equivalent_mass: of rotor and gears, the gears exact [kg or kg m^2]
+
+    None where nothing is asked for, or nothing is left at that speed.
     """
 
     peak_effort: Uncertain
+    fast_effort: Uncertain | None
+    peak_power: Uncertain | None
     continuous_effort: Uncertain
     low_speed_damping: Uncertain
+    controlled_damping: Uncertain | None
+    equivalent_mass: Uncertain
 
 
 @dataclass(frozen=True)
@@ -169,6 +207,8 @@ class Budget:
     performance: PerformanceBudget
     constants: ConstantsBudget
     losses: LossBudget
+    heat: HeatBudget
+    magnets: MagnetBudget
     braking: BrakingBudget
     masses: MassBudget
     output: OutputBudget
@@ -186,20 +226,28 @@ def budget_of(
     spread: MatchSpread,
     chosen: Match,
     winding: WindingOutcome,
+    over_speed: OverSpeed,
     outcome: Outcome,
     heat: HeatOutcome,
+    magnets: MagnetsOutcome | None,
     braking: BrakingOutcome,
     losses: LossMap | None,
 ) -> Budget:
-    """All headline numbers of a design; chosen: its match by the fits as they are; losses: None without loss data."""
+    """All headline numbers of a design.
+
+    chosen: its match by the fits as they are; over_speed: the wound machine; magnets: None without a grade; losses:
+    None without loss data
+    """
     return Budget(
         match=_match(spread, chosen),
-        performance=_performance(found, winding, heat),
+        performance=_performance(found, winding, over_speed),
         constants=_constants(found, winding),
         losses=_losses(found, losses),
+        heat=_heat(found, heat),
+        magnets=_magnets(found, magnets),
         braking=_braking(found, braking),
         masses=MassBudget(**{name: of_wound(found, name) for name in PARTS}),
-        output=_output(found, outcome, heat),
+        output=_output(found, over_speed, outcome, heat),
     )
 
 
@@ -214,7 +262,7 @@ def _match(spread: MatchSpread, chosen: Match) -> MatchBudget:
     )
 
 
-def _performance(found: ToleranceOutcome, winding: WindingOutcome, heat: HeatOutcome) -> PerformanceBudget:
+def _performance(found: ToleranceOutcome, winding: WindingOutcome, over_speed: OverSpeed) -> PerformanceBudget:
     values, speed = found.values, found.rated_speed
     moves = float(speed == winding.chosen.base_speed)  # where the largest speed that is allowed is lower, it is exact
     shaft, copper = values.peak_torque * speed, 1.5 * values.resistance * winding.limits.current_peak**2
@@ -230,8 +278,12 @@ def _performance(found: ToleranceOutcome, winding: WindingOutcome, heat: HeatOut
         rated_speed=of_product(found, speed, base_speed=moves),
         rated_power=of_product(found, values.continuous_torque * speed, continuous_torque=1, base_speed=moves),
         overload_input=of_product(found, shaft + copper, **shares),
-        continuous_current=of_product(found, heat.slow.current / sqrt(2), resistance=-0.5),
+        largest_power=_largest_power(found, winding.chosen.maximum_power, over_speed),
     )
+
+
+def _largest_power(found: ToleranceOutcome, power: float | None, over_speed: OverSpeed) -> Uncertain | None:
+    return None if power is None else of_product(found, power, **over_speed.largest_power())
 
 
 def _constants(found: ToleranceOutcome, winding: WindingOutcome) -> ConstantsBudget:
@@ -270,15 +322,73 @@ def _braking(found: ToleranceOutcome, braking: BrakingOutcome) -> BrakingBudget:
     )
 
 
-def _output(found: ToleranceOutcome, outcome: Outcome, heat: HeatOutcome) -> OutputBudget:
+def _heat(found: ToleranceOutcome, heat: HeatOutcome) -> HeatBudget:
+    """The torque goes with its own loss; a rise by T goes as dT / d ln P over T with it."""
+    ambient, state = heat.inputs.cooling.ambient, heat.slow.state
+    copper, magnets = state.hottest_copper - ambient, state.temperature[MAGNETS] - ambient
+    return HeatBudget(
+        continuous_current=of_product(found, heat.slow.current / sqrt(2), resistance=-0.5),
+        copper_rise=_rise(found, copper, heat.slope.copper),
+        magnet_rise=_rise(found, magnets, heat.slope.magnets),
+    )
+
+
+def _rise(found: ToleranceOutcome, rise: float, slope: float) -> Uncertain:
+    return of_product(found, rise, copper_loss=slope / rise) if rise else Uncertain(0.0, 0.0, 0.0, 0.0)
+
+
+def _magnets(found: ToleranceOutcome, magnets: MagnetsOutcome | None) -> MagnetBudget:
+    if magnets is None or magnets.at_knee is None:
+        return MagnetBudget()
+    current = of_wound(found, "demagnetising_current")
+    return MagnetBudget(current, _kept(magnets, current))
+
+
+def _kept(magnets: MagnetsOutcome, current: Uncertain) -> Uncertain:
+    """Share before the knee, where all flux densities are off as much as those that decide about the current.
+
+    They fall by the margin without current until the knee is met, so that a current that is off by u is a knee that
+    is off by u times that margin. The share is no straight line, so u is half of what 2u does.
+    """
+    kept, margin = 1 - magnets.flux.share_below(magnets.knee), magnets.margin(magnets.states[0])
+
+    def moved(relative: float) -> float:
+        ends = (magnets.knee + way * COVERAGE * relative * margin for way in (-1, 1))
+        return max(abs(1 - magnets.flux.share_below(end) - kept) for end in ends) / COVERAGE
+
+    return Uncertain(kept, moved(current.mesh) / kept, 0.0, moved(current.tolerance) / kept)
+
+
+def _output(found: ToleranceOutcome, over_speed: OverSpeed, outcome: Outcome, heat: HeatOutcome) -> OutputBudget:
     # What the same heat in the copper allows, T ~ P^(e/2), the losses in iron and magnets as they are.
     by_heat = {"copper_loss": found.elasticity / 2}
-    damping = _reached(outcome, LowSpeedDamping)
+    rotor = outcome.masses.rotor_inertia
+    damping = next(one.reached for one in outcome.checks if isinstance(one.requirement, LowSpeedDamping))
     return OutputBudget(
         peak_effort=of_wound(found, "peak_torque", outcome.features.effort_peak),
+        fast_effort=_at_speed(found, outcome, PeakEffort, over_speed.torque),
+        peak_power=_at_speed(found, outcome, PeakPower, over_speed.torque),
         continuous_effort=of_product(found, float(heat.effort(heat.slow.torque)), **by_heat),
         low_speed_damping=of_product(found, damping, magnet_flux=2, resistance=-1),
+        controlled_damping=_at_speed(found, outcome, ControlledDamping, over_speed.braking),
+        equivalent_mass=of_product(
+            found, outcome.features.equivalent_mass, rotor_inertia=rotor / (rotor + outcome.gearbox_inertia)
+        ),
     )
+
+
+def _at_speed(
+    found: ToleranceOutcome,
+    outcome: Outcome,
+    kind: type[PeakEffort] | type[PeakPower] | type[ControlledDamping],
+    powers: Callable[[float], Powers],
+) -> Uncertain | None:
+    """What is reached of a demand at its speed; powers: of the torque at a speed of the rotor [rad/s]."""
+    for one in outcome.checks:
+        asked = one.requirement
+        if isinstance(asked, kind) and one.reached > 0:
+            return of_product(found, one.reached, **powers(asked.speed / outcome.features.transmission_ratio))
+    return None
 
 
 def of_wound(found: ToleranceOutcome, quantity: str, value: float | None = None) -> Uncertain:
@@ -320,7 +430,3 @@ def scatter_of(draws: Sequence[DrawnMatch | None], read: Callable[[DrawnMatch], 
     values = np.array([read(one) for one in draws if one is not None])
     return float(values.std(ddof=1) / values.mean())
 
-
-def _reached(outcome: Outcome, kind: type[Requirement]) -> float:
-    """What the actuator reaches of a requirement [SI]."""
-    return next(one.reached for one in outcome.checks if isinstance(one.requirement, kind))

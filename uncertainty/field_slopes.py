@@ -1,4 +1,5 @@
-"""How torque, flux linkages, inductances, iron loss and cogging change with the cross-section and its materials.
+"""How torque, flux linkages, inductances, iron loss, cogging and the current that demagnetises change with the
+cross-section and its materials.
 
 A state is a current at rotor angles over a part of the electrical period; what is read of its solutions together is
 read again of their neighbours along each deviation (``magnetostatics.sensitivity``), which costs a back-substitution a
@@ -19,6 +20,7 @@ from losses.iron import iron_loss
 from losses.loci import PartOfPeriod, finest_repetition, rotor_loci, solve_part, stator_loci
 from magnetostatics.arc import solved_over
 from magnetostatics.case import FieldCase
+from magnetostatics.demagnetisation import MagnetFlux, magnet_flux
 from magnetostatics.flux_map import flux_and_torque, flux_torque_and_inductances, map_angles, operating_point
 from magnetostatics.mesh_error import SAFETY, refined_model
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
@@ -33,6 +35,8 @@ _STEPS = 36  # of an electrical period: six in the sixth after which three equal
 _COGGING_STEPS = 12  # of a period of the cogging
 TORQUE, FLUX_D, FLUX_Q, RIPPLE, IRON_LOSS = range(5)  # places of what a loaded state gives; the last with loss data
 _OF_THE_FINER_MESH = 2  # every so manieth angle is solved on the finer mesh
+_MAGNET_ANGLES = 6  # over 60 electrical degrees; even, so that every second one is as many of either current
+_LITTLE = 0.02  # relative, of a current against the magnets
 
 Solutions = Sequence[FieldSolution]
 
@@ -151,6 +155,38 @@ class Cogging(FieldState):
 
 
 @dataclass(frozen=True)
+class AtTheKnee(FieldState):
+    """A current against the magnets that drives a share of their volume to the knee of their grade.
+
+    direct: about that current, negative; quadrature: 0 [A]; knee: along the magnetisation [T]; share: of the volume
+    """
+
+    knee: float
+    share: float
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        return ("demagnetising_current",)
+
+    def solutions(self, model: FieldModel) -> list[FieldSolution]:
+        """A little below that current, then a little above."""
+        angles = map_angles(model, _MAGNET_ANGLES).tolist()
+        currents = self.direct * (1 - _LITTLE), self.direct * (1 + _LITTLE)
+        points = [operating_point(model, angle, i_d, 0.0) for i_d in currents for angle in angles]
+        found: list[FieldSolution] = []
+        for point in points:
+            found.append(model.solve(point, start=found[-1] if found else None))
+        return found
+
+    def read(self, solutions: Solutions) -> np.ndarray:
+        """The ampere-turns at which the knee is met, linear between the two currents [A], (1,)."""
+        half = len(solutions) // 2
+        less, more = (_exceeded(some, self.share) for some in (solutions[:half], solutions[half:]))
+        past = (less - self.knee) / (less - more) * 2 * _LITTLE
+        return np.array([abs(self.direct) * (1 - _LITTLE + past)])
+
+
+@dataclass(frozen=True)
 class StateTask:
     """A state of a machine, and the deviations that its quantities are wanted over."""
 
@@ -221,6 +257,13 @@ def _solved(model: FieldModel, direct: float, quadrature: float) -> list[FieldSo
     """Under a current (i_d, i_q) over the finest part of the period; direct, quadrature: [A peak] of a coil."""
     point = operating_point(model, float(map_angles(model, 1)[0]), direct, quadrature)
     return list(solve_part(model, point, _STEPS).solutions)
+
+
+def _exceeded(solutions: Solutions, share: float) -> float:
+    """Flux density [T] along the magnetisation that all but a share of a magnet exceeds over a turn."""
+    seen = [magnet_flux(one) for one in solutions]
+    turn = np.min([one.smallest for one in seen], axis=0)
+    return MagnetFlux(turn[None], seen[0].areas).exceeded(share)
 
 
 def _means(read: Sequence[dict[str, float]]) -> dict[str, float]:

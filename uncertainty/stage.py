@@ -9,14 +9,17 @@ from drivetrain.matching import Matcher, MatchInputs, MatchOutcome
 from drivetrain.outcome import Outcome
 from drivetrain.requirements import Linkage, Requirements
 from electrical.braking_stage import BrakingOutcome
-from electrical.winding_stage import WindingOutcome
+from electrical.magnets_stage import MagnetsOutcome
+from electrical.winding_stage import WindingInputs, WindingOutcome
 from losses.stage import LossMap
 from magnetostatics.case import FamilyCase
+from magnetostatics.flux_map_stage import FluxMap
 from optimisation.fits import SectionFits
 from tasks import Workers
 from thermal.stage import HeatOutcome
 from uncertainty.budget import Budget, budget_of
 from uncertainty.match_spread import MatchSpread, match_spread
+from uncertainty.over_speed import OverSpeed
 from uncertainty.tolerance_stage import ToleranceOutcome
 
 
@@ -36,9 +39,12 @@ def uncertainty_stage(
     requirements: Requirements,
     linkage: Linkage,
     inputs: MatchInputs,
+    flux_map: FluxMap,
     winding: WindingOutcome,
+    windings: WindingInputs,
     outcome: Outcome,
     heat: HeatOutcome,
+    magnets: MagnetsOutcome | None,
     braking: BrakingOutcome,
     losses: LossMap | None,
     workers: Workers,
@@ -49,4 +55,9 @@ def uncertainty_stage(
     """
     matcher = Matcher(case, fits, requirements, linkage, inputs, DrawnParts(inputs.masses, case.packing))
     spread = match_spread(matcher, matched.chosen, found, workers)
-    return Uncertainty(spread, budget_of(found, spread, matched.chosen, winding, outcome, heat, braking, losses))
+    machine, fastest = winding.wound.on_map(flux_map.data), windings.limits.maximum_speed
+    over_speed = OverSpeed(machine, winding.limits, fastest, found.values)
+    return Uncertainty(
+        spread,
+        budget_of(found, spread, matched.chosen, winding, over_speed, outcome, heat, magnets, braking, losses),
+    )

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot, nan, sqrt
 
 import numpy as np
 
 from drivetrain.outcome import OutcomeInputs
+from electrical.magnets_stage import MagnetsOutcome, with_grade
 from electrical.winding_selection import WEAKENING
 from electrical.winding_stage import WindingInputs, WindingOutcome
+from electrical.wound_machine import WoundMachine
 from geometry.machine import Machine
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
@@ -23,6 +25,7 @@ from uncertainty.field_slopes import (
     FLUX_Q,
     IRON_LOSS,
     RIPPLE,
+    AtTheKnee,
     Cogging,
     FieldState,
     LoadedInductances,
@@ -37,6 +40,7 @@ from uncertainty.scatter import CoggingScatter, cogging_scatter
 from uncertainty.wound_slopes import (
     COGGING,
     FULL,
+    KNEE,
     NO_LOAD,
     NOMINAL,
     PARTS,
@@ -107,24 +111,33 @@ def tolerances_stage(
     windings: WindingInputs,
     gap_stress: GapStress,
     losses: LossMap | None,
+    magnets: MagnetsOutcome | None,
     parts: OutcomeInputs,
     tolerances: Tolerances,
     workers: Workers,
 ) -> ToleranceOutcome:
     """Differentiate the wound machine over every deviation, and draw machines whose magnets differ by lot.
 
-    losses: whose sheet counts, None where the study has no loss data; parts: what they are made of
+    losses: whose sheet counts, None where the study has no loss data; magnets: None where it names no grade; parts:
+    what they are made of
     Raises FieldSolutionError, and GeometryError for a tolerance that the machine cannot be built with.
     """
     operated, machine = operated_machine(flux_map, winding, windings), winding.wound.dimensions
-    states = _states(operated, losses)
-    found = workers.map("tolerances", solve_slopes, _slope_tasks(case, machine, states, tolerances.deviations))
-    looked_at = {name: StateTask(case, machine, states[name]) for name in (NO_LOAD, FULL, QUADRATURE)}
-    errors = workers.map("mesh of the tolerances", mesh_errors, looked_at)
+    states = {name: StateTask(case, machine, state) for name, state in _states(operated, losses).items()}
+    states |= _magnet_states(case, winding.wound, magnets)
+    found = workers.map("tolerances", solve_slopes, _slope_tasks(machine, states, tolerances.deviations))
+    errors = workers.map("mesh of the tolerances", mesh_errors, _looked_at(states))
     length, materials = winding.wound.active_length, parts.materials
     return ToleranceOutcome(
         tolerances=tolerances,
-        values=values_of(operated, winding, _iron_loss(found) * length, gap_stress.cogging * length, materials),
+        values=values_of(
+            operated,
+            winding,
+            _iron_loss(found) * length,
+            gap_stress.cogging * length,
+            nan if magnets is None else magnets.demagnetising_current,
+            materials,
+        ),
         sensitivities=tuple(
             Sensitivity(one, relative_slopes(one, _slopes_of(one, found, states, machine), operated, materials))
             for one in tolerances.deviations
@@ -150,17 +163,35 @@ def _states(operated: OperatedMachine, losses: LossMap | None) -> dict[str, Fiel
     }
 
 
+def _magnet_states(case: FieldCase, wound: WoundMachine, magnets: MagnetsOutcome | None) -> dict[str, StateTask]:
+    """The magnets of their grade at their worst temperature, where a current drives them to the knee."""
+    if magnets is None or magnets.at_knee is None:
+        return {}
+    direct, _ = wound.ampere_turns(-magnets.at_knee, 0.0)
+    state = AtTheKnee(direct, 0.0, magnets.knee, magnets.inputs.lost_max)
+    return {KNEE: StateTask(with_grade(case, magnets.inputs.grade, magnets.temperature), wound.dimensions, state)}
+
+
+def _looked_at(states: Mapping[str, StateTask]) -> dict[str, StateTask]:
+    """Those whose mesh is looked at, that of the magnets on the finer mesh, on which they were judged."""
+    found = {name: states[name] for name in (NO_LOAD, FULL, QUADRATURE)}
+    if KNEE in states:
+        case = states[KNEE].case
+        found[KNEE] = replace(states[KNEE], case=replace(case, density=case.detail))
+    return found
+
+
 def _slope_tasks(
-    case: FieldCase, machine: Machine, states: Mapping[str, FieldState], deviations: tuple[Deviation, ...]
+    machine: Machine, states: Mapping[str, StateTask], deviations: tuple[Deviation, ...]
 ) -> dict[str, StateTask]:
     """One for each state and each machine in the middle of tolerances: mostly the drawn one."""
     middles = dict.fromkeys(one.centre(machine) for one in deviations)
     return {
-        _task_name(name, machine, middle): StateTask(
-            case, middle, state, tuple(one for one in deviations if one.centre(machine) == middle)
+        _task_name(name, machine, middle): replace(
+            task, machine=middle, deviations=tuple(one for one in deviations if one.centre(machine) == middle)
         )
         for middle in middles
-        for name, state in states.items()
+        for name, task in states.items()
     }
 
 
@@ -169,7 +200,7 @@ def _task_name(state: str, drawn: Machine, middle: Machine) -> str:
 
 
 def _slopes_of(
-    deviation: Deviation, found: Mapping[str, StateSlopes], states: Mapping[str, FieldState], machine: Machine
+    deviation: Deviation, found: Mapping[str, StateSlopes], states: Mapping[str, StateTask], machine: Machine
 ) -> dict[str, np.ndarray]:
     """Of one deviation in every state [1 per unit of the deviation]."""
     middle = deviation.centre(machine)
@@ -190,6 +221,7 @@ def _mesh(
     flux_d, flux_q = errors[FULL][[FLUX_D, FLUX_Q]].tolist()
     loaded_flux, loaded_d, loaded_q = errors[QUADRATURE].tolist()
     torque = flux_map.torque_error
+    (at_the_knee,) = errors.get(KNEE, (nan,))
     return Quantities(
         peak_torque=torque,
         continuous_torque=torque,
@@ -205,5 +237,6 @@ def _mesh(
         loaded_flux=loaded_flux,
         loaded_inductance_d=loaded_d,
         loaded_inductance_q=loaded_q,
+        demagnetising_current=float(at_the_knee),
         **dict.fromkeys(PARTS, 0.0),
     )

@@ -29,6 +29,7 @@ from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, RIPPLE, TORQUE
 _LITTLE = 0.01  # relative, of a current over which the torque is differentiated
 NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
 QUADRATURE = "full, on the q axis"
+KNEE = "magnets at their knee"
 FieldSlopes = Mapping[str, np.ndarray]  # state -> derivatives of its quantities over themselves, of one deviation
 
 
@@ -43,6 +44,7 @@ class Quantities:
     ripple: of the peak torque, cogging: from peak to peak [Nm]
     loaded_flux: on the d axis [Wb], loaded_inductance_d, loaded_inductance_q: apparent [H], with the overload current
         on the q axis
+    demagnetising_current: against the magnets, NaN where none is known [A]
     stator_laminations, rotor_laminations, magnets, shaft, copper, mass: of the parts and all of them [kg]
     rotor_inertia: [kg m^2]
     """
@@ -61,6 +63,7 @@ class Quantities:
     loaded_flux: float
     loaded_inductance_d: float
     loaded_inductance_q: float
+    demagnetising_current: float
     stator_laminations: float
     rotor_laminations: float
     magnets: float
@@ -149,9 +152,14 @@ def operated_machine(flux_map: FluxMap, winding: WindingOutcome, windings: Windi
 
 
 def values_of(
-    operated: OperatedMachine, winding: WindingOutcome, iron_loss: float, cogging: float, materials: PartMaterials
+    operated: OperatedMachine,
+    winding: WindingOutcome,
+    iron_loss: float,
+    cogging: float,
+    demagnetising_current: float,
+    materials: PartMaterials,
 ) -> Quantities:
-    """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]."""
+    """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]; demagnetising_current [A]."""
     machine, resistance, chosen = operated.machine, operated.wound.phase_resistance, winding.chosen
     (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
     return Quantities(
@@ -169,6 +177,7 @@ def values_of(
         loaded_flux=chosen.torque_constant / (1.5 * machine.pole_pairs),
         loaded_inductance_d=chosen.inductance_d,
         loaded_inductance_q=chosen.inductance_q,
+        demagnetising_current=demagnetising_current,
         **_masses(operated.wound, materials),
     )
 
@@ -197,6 +206,7 @@ def relative_slopes(
         loaded_flux=float(loaded_flux),
         loaded_inductance_d=float(loaded_d),
         loaded_inductance_q=float(loaded_q),
+        demagnetising_current=float(field[KNEE][0]) if KNEE in field else nan,
         **_mass_slopes(deviation, operated.wound, materials),
     )
 

@@ -10,13 +10,14 @@ import pytest
 from electrical.magnets_stage import FAULT, NO_LOAD, MagnetInputs, MagnetsOutcome, MagnetState
 from figures.magnets import magnets_at_worst
 from figures.report import render_report
-from magnetostatics.demagnetisation import MagnetMap
+from magnetostatics.demagnetisation import MagnetFlux, MagnetMap
 from materials.magnet_grade import load_grade
 from pipeline.codec import decoded, encoded
 from report import magnets
 from tests.magnetostatics.reference_machine import reference_machine, section_of
 
 CORNERS = 0.015 * np.array([[[0.9], [1.0], [0.9]], [[-0.2], [0.0], [0.2]]])  # one triangle
+FLUX = MagnetFlux(np.array([[[0.2], [0.3], [0.5]]]), np.ones((3, 1)))
 SEEN = MagnetMap(CORNERS, np.array([[0.1], [0.4], [0.6]]))
 
 
@@ -28,7 +29,7 @@ def weak():
         MagnetState(NO_LOAD, 0.0, 0.0, 0.5, 0.6, 0.0, 0.0, 0.1),
         MagnetState(FAULT, -90.0, 0.0, 0.0, 0.2, 0.04, 0.01, 0.1),
     )
-    return MagnetsOutcome(inputs, 120.0, 0.278, states, 70.0, 720.0, True, SEEN, SEEN)
+    return MagnetsOutcome(inputs, 120.0, 0.278, states, 70.0, 720.0, True, FLUX, SEEN, SEEN)
 
 
 @pytest.fixture

@@ -157,12 +157,13 @@ def test_what_goes_into_the_terminals_moves_with_the_losses_alone():
     assert rated.value == 10.0 and rated.tolerance == pytest.approx(0.1 * (0.75 * 0.04 - 0.2 * 0.03))
     need = SimpleNamespace(length=0.04)
     winding = SimpleNamespace(
-        chosen=SimpleNamespace(base_speed=2.0, power_at_base_speed=18.0),
+        chosen=SimpleNamespace(base_speed=2.0, power_at_base_speed=18.0, maximum_power=None),
         limits=SimpleNamespace(current_peak=1.0),
         length=SimpleNamespace(needs=(need,)),
     )
-    heat = SimpleNamespace(slow=SimpleNamespace(current=1.0))
-    full = budget._performance(found, winding, heat).overload_input
+    performance = budget._performance(found, winding, None)
+    assert performance.largest_power is None, "not asked for"
+    full = performance.overload_input
     assert full.value == 12.0 and full.tolerance == pytest.approx(0.75 * 0.02 + 0.25 * 0.08)
 
 
