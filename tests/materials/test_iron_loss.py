@@ -9,10 +9,12 @@ from materials.iron_loss import (
     FITTED,
     GUARANTEED,
     LAWS,
+    LOOPED,
     classical_eddy,
     fit_iron_loss,
     guaranteed_loss,
     iron_loss_law,
+    loop_loss,
 )
 
 POUND = 0.45359237  # kg
@@ -43,6 +45,10 @@ POINTS = [
     ("M800-50A", 50, 1.5, 5.389, -0.024),
     ("M800-50A", 100, 1.5, 13.51, -0.004),
     ("M800-50A", 200, 1.5, 37.54, -0.001),
+    ("M530-65A", 50, 0.2, 0.1171, +0.064),
+    ("M530-65A", 50, 1.8, 6.43, +0.054),
+    ("M530-65A", 50, 1.1, 2.221, +0.048),
+    ("M530-65A", 50, 1.5, 4.228, -0.008),
     ("NO20-150Y320", 50, 0.5001, 0.2329, -0.138),
     ("NO20-150Y320", 60, 0.5001, 0.2908, -0.119),
     ("NO20-150Y320", 50, 1.6065, 2.654, -0.091),
@@ -50,7 +56,8 @@ POINTS = [
     ("NO20-150Y320", 2000, 1.0002, 136.4, +0.012),
 ]
 # Guaranteed limits at 1.5 T: EN 10106 at 50 Hz; 0.36 mm M19 at 60 Hz 1.74 W/lb (AISI). Typical sheet is below them.
-LIMITS = {"M235-35A": (50, 2.35), "M19": (60, 1.74 / POUND), "M400-50A": (50, 4.00), "M800-50A": (50, 8.00)}
+LIMITS = {"M235-35A": (50, 2.35), "M19": (60, 1.74 / POUND), "M400-50A": (50, 4.00), "M800-50A": (50, 8.00),
+          "M530-65A": (50, 5.30)}  # fmt: skip
 THIN_LIMIT = 400, 1.0, 15.0  # Hz, T, W/kg: that of the name of a thin sheet
 
 
@@ -94,6 +101,27 @@ def test_a_law_from_the_guarantee_alone_is_near_that_of_the_table(grade, frequen
     sheet = {"thickness": thickness, "resistivity": resistivity, "density": 7650.0}
     law = guaranteed_loss(grade, limit, **sheet, source="", frequency=guaranteed_at)
     assert 0.9 < law.specific_loss(frequency, peak) / LAWS[grade].specific_loss(frequency, peak) < 1.23
+
+
+# M400-50A, measured as those of ``LOOPED`` are: 395.3 J/m^3 of loop with its tips at 1.492 T.
+LOOP = {"thickness": 0.5e-3, "conductivity": 3.22e6, "density": 7700.0}
+
+
+@pytest.mark.parametrize("frequency, peak", ((50, 1.0), (50, 1.5), (400, 1.0), (400, 1.5), (1000, 1.0), (1000, 1.5)))
+def test_a_law_from_loop_and_conductivity_is_near_that_of_the_table(frequency, peak):
+    law = loop_loss("M400-50A", 395.3, 1.492, **LOOP, source="")
+    assert 1.05 < law.specific_loss(frequency, peak) / LAWS["M400-50A"].specific_loss(frequency, peak) < 1.22
+
+
+def test_the_loop_is_the_loss_of_slow_cycles():
+    law = loop_loss("M400-50A", 395.3, 1.492, **LOOP, source="")
+    assert law.specific_loss(1e-3, 1.492) / 1e-3 == pytest.approx(395.3 / 7700.0, rel=1e-4)
+
+
+@pytest.mark.parametrize("grade", LOOPED)
+def test_measured_loops_stay_below_the_guarantee_of_the_name(grade):
+    limit = float(grade[1:4]) / 100
+    assert 0.75 * limit < iron_loss_law(grade).specific_loss(50.0, 1.5) < limit
 
 
 @pytest.mark.parametrize("grade", GUARANTEED)

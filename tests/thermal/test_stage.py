@@ -83,6 +83,16 @@ def test_the_rating_is_where_a_long_time_ends(winding, found):
     assert state.lost == pytest.approx(sum(state.heat.values()))
 
 
+def test_the_slope_is_what_a_little_more_loss_does(winding, found):
+    """Against more current in the place of less; and a rise can but grow faster than its loss, as copper warms."""
+    more = state_of(heated(winding).load(found.slow.current * 1.01))
+    state, loss = found.slow.state, 2 * np.log(1.01)
+    assert found.slope.copper == pytest.approx((more.hottest_copper - state.hottest_copper) / loss, rel=0.03)
+    magnets = more.temperature[MAGNETS] - state.temperature[MAGNETS]
+    assert found.slope.magnets == pytest.approx(magnets / loss, rel=0.03)
+    assert found.slope.copper > state.hottest_copper - COOLING.ambient
+
+
 def test_speed_friction_and_warm_surroundings_cost_effort(winding, found):
     assert found.at_speed.torque < found.slow.torque
     warmer = continuous(heated(winding, replace(HEAT, cooling=replace(COOLING, ambient=60.0))))

@@ -14,6 +14,7 @@ from study.inputs_field import field_case
 from study.read import read_study
 from uncertainty.deviations import MagnetLength, MagnetRemanence, SlotOpening, StackLength, ToothWidth
 from uncertainty.field_slopes import (
+    AtTheKnee,
     Cogging,
     FieldState,
     LoadedInductances,
@@ -52,6 +53,8 @@ def solved_again(deviation, state):
         (LoadedInductances(-300.0, 1200.0), MagnetLength(HALF)),
         (Cogging(), SlotOpening(HALF)),
         (Cogging(), MagnetRemanence(0.03)),
+        (AtTheKnee(-3000.0, 0.0, 0.2, 0.01), MagnetLength(HALF)),
+        (AtTheKnee(-3000.0, 0.0, 0.2, 0.01), MagnetRemanence(0.03)),
     ),
 )
 def test_one_back_substitution_gives_what_solving_again_gives(state, deviation):
@@ -84,6 +87,15 @@ def test_the_inductances_under_load_are_those_of_the_data_sheet():
         )
         found = LoadedInductances(direct, quadrature).read([0.0, 0.0, direct, direct])
     assert found == pytest.approx([flux, l_d, l_q])
+
+
+def test_the_current_that_meets_the_knee_is_found_between_two():
+    """B falls by 0.1 mT an ampere-turn from 0.5 T without current: at 3000 A to 0.2 T, wherever that is sought."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("uncertainty.field_slopes._exceeded", lambda some, share: 0.5 + 1e-4 * some[0])
+        for direct in (-2900.0, -3200.0):
+            currents = [direct * 0.98] * 2 + [direct * 1.02] * 2
+            assert AtTheKnee(direct, 0.0, 0.2, 0.01).read(currents) == pytest.approx([3000.0])
 
 
 def test_the_ripple_is_from_peak_to_peak():

@@ -6,11 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from drivetrain.asked import ControlledDamping, PeakPower
 from drivetrain.masses import DrawnParts
 from drivetrain.match import DampingReported
 from drivetrain.matching import Matcher
 from geometry.family import Combination
 from losses.map import PowerLosses
+from magnetostatics.demagnetisation import MagnetFlux
 from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
 from optimisation.polynomial_fits import fit_polynomial
 from tests.drivetrain.fitted_machines import CASE, POLYNOMIALS
@@ -165,6 +167,48 @@ def test_what_goes_into_the_terminals_moves_with_the_losses_alone():
     assert performance.largest_power is None, "not asked for"
     full = performance.overload_input
     assert full.value == 12.0 and full.tolerance == pytest.approx(0.75 * 0.02 + 0.25 * 0.08)
+
+
+def test_temperatures_are_known_by_their_rise():
+    """120 K of rise with 150 K per unit of ln P: 4 % of loss are 6 K of copper, a fortieth of a rise of its own."""
+    found = SimpleNamespace(
+        mesh=SimpleNamespace(copper_loss=0.0, resistance=0.0), sensitivities=(moved(copper_loss=0.04, resistance=0.02),)
+    )
+    state = SimpleNamespace(hottest_copper=160.0, temperature={"magnets": 40.0})
+    heat = SimpleNamespace(
+        slow=SimpleNamespace(current=2.0, state=state),
+        slope=SimpleNamespace(copper=150.0, magnets=0.0),
+        inputs=SimpleNamespace(cooling=SimpleNamespace(ambient=40.0)),
+    )
+    known = budget._heat(found, heat)
+    assert known.copper_rise.value == 120.0 and known.copper_rise.plus_minus == pytest.approx(2 * 6.0)
+    assert known.magnet_rise.plus_minus == 0.0 and known.continuous_current.tolerance == pytest.approx(0.01)
+
+
+def test_the_volume_beyond_the_knee_moves_as_far_as_the_current():
+    """Margin 0.8 T without current: 1 % of the current are 8 mT of the knee, 2u 16 mT, and a point lies 10 mT above."""
+    values = np.array([[[0.05], [0.11], [0.5], [0.9]]])
+    magnets = SimpleNamespace(
+        flux=MagnetFlux(values, np.ones((4, 1))), knee=0.1, states=("no load",), margin=lambda state: 0.8, at_knee=70.0
+    )
+    current = Uncertain(70.0, 0.0, 0.0, 0.01)
+    known = budget._kept(magnets, current)
+    assert known.value == 0.75 and known.mesh == 0.0 and known.plus_minus == pytest.approx(0.25)
+    assert budget._kept(magnets, replace(current, tolerance=0.004)).plus_minus == 0.0
+    nothing = SimpleNamespace(at_knee=None)
+    assert budget._magnets(None, nothing).kept is None and budget._magnets(None, None).demagnetising_current is None
+
+
+def test_what_is_reached_at_a_speed_is_asked_of_the_rotor_there():
+    check = SimpleNamespace(requirement=PeakPower(4000.0, 3.0), reached=2500.0)
+    outcome = SimpleNamespace(checks=(check,), features=SimpleNamespace(transmission_ratio=2e-3))
+    found = SimpleNamespace(mesh=SimpleNamespace(resistance=0.0), sensitivities=(moved(resistance=0.02),))
+    asked = []
+    known = budget._at_speed(found, outcome, PeakPower, lambda speed: asked.append(speed) or {"resistance": -0.5})
+    assert asked == [1500.0] and known == Uncertain(2500.0, 0.0, 0.0, pytest.approx(0.01))
+    assert budget._at_speed(found, outcome, ControlledDamping, None) is None, "not asked for"
+    check.reached = 0.0
+    assert budget._at_speed(found, outcome, PeakPower, None) is None, "nothing left"
 
 
 def test_uncertainties_add_as_the_gum_says():
