@@ -24,9 +24,10 @@ from export.stage import Package
 from figures.files import picture_name
 from figures.report import Picture, Section, Table, number_text
 from geometry.machine import Machine
-from losses.stage import LossInputs
+from losses.stage import LossInputs, LossMap
 from magnetostatics.case import FieldCase
 from report.heat import binding
+from report.losses import FIGURE as EFFICIENCY
 from thermal.machine import MAGNETS
 from thermal.stage import HeatOutcome
 from uncertainty.budget import Budget, Uncertain
@@ -135,8 +136,8 @@ def data_sheet(
     return DataSheet(tuple(group for group in groups if group.rows))
 
 
-def section(sheet: DataSheet) -> Section:
-    """The machine on one page."""
+def section(sheet: DataSheet, losses: LossMap | None) -> Section:
+    """The machine on one page; losses: None without loss data."""
     return Section(
         "Data sheet",
         (
@@ -147,6 +148,7 @@ def section(sheet: DataSheet) -> Section:
                 "a positive phase current flows away from the viewer.",
             ),
             *group_tables(sheet),
+            *(() if losses is None else (Picture(picture_name(EFFICIENCY), "Loss and efficiency, motoring above and braking below."),)),
         ),
     )
 

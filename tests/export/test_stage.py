@@ -37,6 +37,7 @@ NO_PRICES = PartPrices("", None, None, None, None)
 PRICES = PartPrices("EUR", 3.0, 80.0, 12.0, 2.0)
 COGGING = 0.7  # Nm/m
 GAP_STRESS = SimpleNamespace(cogging=COGGING)
+MAP_OF_LOSSES = object()
 KNOWN = Uncertain(1.0, 0.003, 0.0, 0.004)  # u = 0.5 %
 UNCERTAINTY = SimpleNamespace(budget=budget_of_alike(KNOWN))
 
@@ -183,7 +184,8 @@ def test_headline_numbers_carry_their_expanded_uncertainty(found, winding, brake
     warm = known.quantity.isin(["hottest copper", "magnets"]) & (known.unit == "°C")
     expected = (0.01 * known.value.where(~warm, KNOWN.value)).astype(float)
     assert warm.sum() == 2 and known.plus_minus.tolist() == pytest.approx(expected.tolist()), "of the rise, in K"
-    tables = {part.caption: part.frame for part in datasheet.section(sheet_of_it).content if hasattr(part, "frame")}
+    page = datasheet.section(sheet_of_it, None).content
+    tables = {part.caption: part.frame for part in page if hasattr(part, "frame")}
     assert "plus_minus" not in tables["Dimensions and materials."]
     torques = tables["Torque, speed and supply."].set_index("quantity").plus_minus
     assert torques["peak torque"] == datasheet.plus_minus(0.01 * winding.peak_torque) and torques["bus voltage"] == ""
@@ -218,7 +220,8 @@ def test_what_was_not_computed_is_not_on_the_sheet(bare, winding, brake, outcome
     found = sheet(bare, winding, brake, outcome)
     quantities = set(found.table.quantity)
     assert "efficiency" not in quantities and "continuous torque" in quantities
-    captions = [getattr(part, "caption", "") for part in datasheet.section(found).content]
+    captions = [getattr(part, "caption", "") for part in datasheet.section(found, None).content]
+    assert len(datasheet.section(found, MAP_OF_LOSSES).content) == len(captions) + 1, "with the efficiency map"
     assert "Constants." in captions and not [caption for caption in captions if caption.startswith("Losses")]
 
 
