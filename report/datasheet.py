@@ -27,6 +27,7 @@ from geometry.machine import Machine
 from losses.stage import LossInputs, LossMap
 from magnetostatics.case import FieldCase
 from report.heat import binding
+from report.losses import CAPTION as EFFICIENCY_CAPTION
 from report.losses import FIGURE as EFFICIENCY
 from thermal.machine import MAGNETS
 from thermal.stage import HeatOutcome
@@ -148,7 +149,7 @@ def section(sheet: DataSheet, losses: LossMap | None) -> Section:
                 "a positive phase current flows away from the viewer.",
             ),
             *group_tables(sheet),
-            *(() if losses is None else (Picture(picture_name(EFFICIENCY), "Loss and efficiency, motoring above and braking below."),)),
+            *(() if losses is None else (Picture(picture_name(EFFICIENCY), EFFICIENCY_CAPTION),)),
         ),
     )
 

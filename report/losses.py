@@ -15,6 +15,7 @@ from losses.stage import BestPoint, LossMap
 from units import RPM
 
 MAP, FIGURE = "loss_map.nc", "losses"
+CAPTION = "Electrical loss and efficiency, motoring above and braking below."
 
 
 def files(found: LossMap, winding: WindingOutcome) -> Iterator[File]:
@@ -37,7 +38,7 @@ def section(found: LossMap) -> Section:
         "Losses and efficiency",
         (
             text,
-            Picture(picture_name(FIGURE), "Electrical loss and efficiency, motoring above and braking below."),
+            Picture(picture_name(FIGURE), CAPTION),
             Table(table, "Best points."),
         ),
     )
