@@ -25,6 +25,7 @@ from magnetostatics.flux_map_stage import FluxMap
 from magnetostatics.turning_magnets import TurningMagnets, magnet_maps, turning_magnets
 from materials.magnet_grade import MagnetGrade
 from tasks import Workers
+from units import MU_0
 
 # Currents against the magnets, over the overload current, between which the demagnetising one is interpolated.
 _AGAINST = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
@@ -109,6 +110,26 @@ class MagnetsOutcome:
     def at_knee(self) -> float | None:
         """The demagnetising current [A] where there is one, None where none is needed or none is reached."""
         return self.demagnetising_current if 0 < self.demagnetising_current < inf else None
+
+    @property
+    def field_at_knee(self) -> float:
+        """Field strength against the magnets at the knee [A/m]."""
+        return self._opposing(self.knee)
+
+    @property
+    def opposing_field(self) -> float:
+        """Field strength that all but the allowed share of the volume stays below in the worst state [A/m]."""
+        return self._opposing(self.worst.exceeded)
+
+    def _opposing(self, flux_density: float) -> float:
+        """(B_r - B) / (mu_0 mu_r) [A/m] at a flux density along the magnetisation [T]."""
+        magnet = self.inputs.grade.magnet_at(self.temperature)
+        return (magnet.remanence - flux_density) / (MU_0 * magnet.recoil_permeability)
+
+    def knee_off_by(self, relative: float) -> float:
+        """The knee [T], were the opposing field in the worst state larger by a share of itself, dimensionless."""
+        magnet = self.inputs.grade.magnet_at(self.temperature)
+        return self.knee + relative * (magnet.remanence - self.worst.exceeded)
 
     def margin(self, state: MagnetState) -> float:
         """Flux density [T] between the knee and what all but the allowed share of the volume exceeds."""

@@ -149,7 +149,7 @@ def loop_loss(
     """
     hysteresis = energy / (density * peak**_EXPONENT)
     eddy = _eddy(thickness, 1 / conductivity, density)
-    return _without_excess(grade, hysteresis, eddy, density, source, frequencies=(0.0, 0.0), peaks=(peak, peak))
+    return _without_excess(grade, hysteresis, eddy, density, source, (0.0, 0.0), (peak, peak))
 
 
 def guaranteed_loss(
@@ -174,8 +174,8 @@ def guaranteed_loss(
     eddy = _eddy(thickness, resistivity, density)
     at_peak = eddy * (frequency * GUARANTEED_PEAK) ** 2 * (1 + _SATURATION * GUARANTEED_PEAK**2)
     hysteresis = (loss - at_peak) / (frequency * GUARANTEED_PEAK**_EXPONENT)
-    known = {"frequencies": (frequency, frequency), "peaks": (GUARANTEED_PEAK, GUARANTEED_PEAK)}
-    return _without_excess(grade, hysteresis, eddy, density, source, **known)
+    at = (frequency, frequency), (GUARANTEED_PEAK, GUARANTEED_PEAK)
+    return _without_excess(grade, hysteresis, eddy, density, source, *at)
 
 
 def _eddy(thickness: float, resistivity: float, density: float) -> float:
@@ -184,10 +184,18 @@ def _eddy(thickness: float, resistivity: float, density: float) -> float:
 
 
 def _without_excess(
-    grade: str, hysteresis: float, eddy: float, density: float, source: str, **known: tuple[float, float]
+    grade: str,
+    hysteresis: float,
+    eddy: float,
+    density: float,
+    source: str,
+    frequencies: tuple[float, float],
+    peaks: tuple[float, float],
 ) -> IronLossLaw:
-    """Of two terms, with the usual exponent and saturation; known: range of what was measured."""
-    return IronLossLaw(grade, hysteresis, _EXPONENT, eddy, _SATURATION, 0.0, density, source, **known)
+    """Of two terms, with the usual exponent and saturation."""
+    return IronLossLaw(
+        grade, hysteresis, _EXPONENT, eddy, _SATURATION, 0.0, density, source, frequencies=frequencies, peaks=peaks
+    )
 
 
 GUARANTEED_PEAK = 1.5  # T; of the loss in the name of a grade, which is at 50 Hz (EN 10106)

@@ -147,9 +147,8 @@ class HeatBudget:
 
 @dataclass(frozen=True)
 class MagnetBudget:
-    """demagnetising_current: peak [A]; kept: share of the volume before the knee in the worst state, dimensionless.
-
-    Both None without a grade, and where no current was found that meets the knee.
+    """demagnetising_current: peak [A], None where none was found; kept: share of the volume before the knee in the
+    worst state, dimensionless. Both None without a grade.
     """
 
     demagnetising_current: Uncertain | None = None
@@ -338,25 +337,24 @@ def _rise(found: ToleranceOutcome, rise: float, slope: float) -> Uncertain:
 
 
 def _magnets(found: ToleranceOutcome, magnets: MagnetsOutcome | None) -> MagnetBudget:
-    if magnets is None or magnets.at_knee is None:
+    if magnets is None:
         return MagnetBudget()
-    current = of_wound(found, "demagnetising_current")
-    return MagnetBudget(current, _kept(magnets, current))
+    current = None if magnets.at_knee is None else of_wound(found, "demagnetising_current")
+    return MagnetBudget(current, _kept(magnets, of_wound(found, "opposing_field")))
 
 
-def _kept(magnets: MagnetsOutcome, current: Uncertain) -> Uncertain:
-    """Share before the knee, where all flux densities are off as much as those that decide about the current.
+def _kept(magnets: MagnetsOutcome, opposing: Uncertain) -> Uncertain:
+    """Share before the knee, were the field against the magnets off everywhere as much as where it decides.
 
-    They fall by the margin without current until the knee is met, so that a current that is off by u is a knee that
-    is off by u times that margin. The share is no straight line, so u is half of what 2u does.
+    The share is no straight line, so u is half of what 2u does.
     """
-    kept, margin = 1 - magnets.flux.share_below(magnets.knee), magnets.margin(magnets.states[0])
+    kept = 1 - magnets.flux.share_below(magnets.knee)
 
     def moved(relative: float) -> float:
-        ends = (magnets.knee + way * COVERAGE * relative * margin for way in (-1, 1))
+        ends = (magnets.knee_off_by(way * COVERAGE * relative) for way in (-1, 1))
         return max(abs(1 - magnets.flux.share_below(end) - kept) for end in ends) / COVERAGE
 
-    return Uncertain(kept, moved(current.mesh) / kept, 0.0, moved(current.tolerance) / kept)
+    return Uncertain(kept, moved(opposing.mesh) / kept, 0.0, moved(opposing.tolerance) / kept)
 
 
 def _output(found: ToleranceOutcome, over_speed: OverSpeed, outcome: Outcome, heat: HeatOutcome) -> OutputBudget:

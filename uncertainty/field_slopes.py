@@ -30,6 +30,7 @@ from magnetostatics.torque import arkkio_torque
 from magnetostatics.variations import SameAmpereTurns
 from materials.iron_loss import IronLossLaw
 from uncertainty.deviations import Deviation
+from units import MU_0
 
 _STEPS = 36  # of an electrical period: six in the sixth after which three equal phases see the same
 _COGGING_STEPS = 12  # of a period of the cogging
@@ -155,14 +156,39 @@ class Cogging(FieldState):
 
 
 @dataclass(frozen=True)
-class AtTheKnee(FieldState):
-    """A current against the magnets that drives a share of their volume to the knee of their grade.
+class OpposingField(FieldState):
+    """The field strength against the magnets under a current, H = (B_r - B) / (mu_0 mu_r).
 
-    direct: about that current, negative; quadrature: 0 [A]; knee: along the magnetisation [T]; share: of the volume
+    What a grade stands is said by its field strength, which does not move with its remanence.
+    share: of the magnets' volume that may see more of it
+    """
+
+    share: float
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        return ("opposing_field",)
+
+    def solutions(self, model: FieldModel) -> list[FieldSolution]:
+        """Over the part of a turn after which the next magnet sees the same."""
+        return _turned(model, [(self.direct, self.quadrature)])
+
+    def read(self, solutions: Solutions) -> np.ndarray:
+        """That all but the share stay below over a turn [A/m], (1,)."""
+        magnet = solutions[0].model.materials.magnet
+        seen = [magnet_flux(one) for one in solutions]
+        turn = MagnetFlux(np.min([one.smallest for one in seen], axis=0)[None], seen[0].areas)
+        return np.array([(magnet.remanence - turn.exceeded(self.share)) / (MU_0 * magnet.recoil_permeability)])
+
+
+@dataclass(frozen=True)
+class AtTheKnee(OpposingField):
+    """The current against the magnets that drives a share of their volume to the knee of their grade.
+
+    direct: about that current, negative; quadrature: 0 [A]; knee: field strength there [A/m]
     """
 
     knee: float
-    share: float
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -170,19 +196,13 @@ class AtTheKnee(FieldState):
 
     def solutions(self, model: FieldModel) -> list[FieldSolution]:
         """A little below that current, then a little above."""
-        angles = map_angles(model, _MAGNET_ANGLES).tolist()
-        currents = self.direct * (1 - _LITTLE), self.direct * (1 + _LITTLE)
-        points = [operating_point(model, angle, i_d, 0.0) for i_d in currents for angle in angles]
-        found: list[FieldSolution] = []
-        for point in points:
-            found.append(model.solve(point, start=found[-1] if found else None))
-        return found
+        return _turned(model, [(self.direct * (1 - _LITTLE), 0.0), (self.direct * (1 + _LITTLE), 0.0)])
 
     def read(self, solutions: Solutions) -> np.ndarray:
         """The ampere-turns at which the knee is met, linear between the two currents [A], (1,)."""
         half = len(solutions) // 2
-        less, more = (_exceeded(some, self.share) for some in (solutions[:half], solutions[half:]))
-        past = (less - self.knee) / (less - more) * 2 * _LITTLE
+        less, more = (float(super(AtTheKnee, self).read(some)[0]) for some in (solutions[:half], solutions[half:]))
+        past = (self.knee - less) / (more - less) * 2 * _LITTLE
         return np.array([abs(self.direct) * (1 - _LITTLE + past)])
 
 
@@ -259,11 +279,12 @@ def _solved(model: FieldModel, direct: float, quadrature: float) -> list[FieldSo
     return list(solve_part(model, point, _STEPS).solutions)
 
 
-def _exceeded(solutions: Solutions, share: float) -> float:
-    """Flux density [T] along the magnetisation that all but a share of a magnet exceeds over a turn."""
-    seen = [magnet_flux(one) for one in solutions]
-    turn = np.min([one.smallest for one in seen], axis=0)
-    return MagnetFlux(turn[None], seen[0].areas).exceeded(share)
+def _turned(model: FieldModel, currents: Sequence[tuple[float, float]]) -> list[FieldSolution]:
+    """Under one current (i_d, i_q) [A peak] of a coil after the other, each at all angles of the magnets."""
+    angles, found = map_angles(model, _MAGNET_ANGLES).tolist(), list[FieldSolution]()
+    for point in (operating_point(model, angle, *current) for current in currents for angle in angles):
+        found.append(model.solve(point, start=found[-1] if found else None))
+    return found
 
 
 def _means(read: Sequence[dict[str, float]]) -> dict[str, float]:

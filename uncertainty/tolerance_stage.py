@@ -31,6 +31,7 @@ from uncertainty.field_slopes import (
     LoadedInductances,
     LoadedIron,
     NoLoad,
+    OpposingField,
     StateSlopes,
     StateTask,
     mesh_errors,
@@ -43,6 +44,7 @@ from uncertainty.wound_slopes import (
     KNEE,
     NO_LOAD,
     NOMINAL,
+    OPPOSED,
     PARTS,
     QUADRATURE,
     OperatedMachine,
@@ -126,17 +128,13 @@ def tolerances_stage(
     states = {name: StateTask(case, machine, state) for name, state in _states(operated, losses).items()}
     states |= _magnet_states(case, winding.wound, magnets)
     found = workers.map("tolerances", solve_slopes, _slope_tasks(machine, states, tolerances.deviations))
-    errors = workers.map("mesh of the tolerances", mesh_errors, _looked_at(states))
+    looked_at = {name: states[name] for name in (NO_LOAD, FULL, QUADRATURE, OPPOSED, KNEE) if name in states}
+    errors = workers.map("mesh of the tolerances", mesh_errors, looked_at)
     length, materials = winding.wound.active_length, parts.materials
     return ToleranceOutcome(
         tolerances=tolerances,
         values=values_of(
-            operated,
-            winding,
-            _iron_loss(found) * length,
-            gap_stress.cogging * length,
-            nan if magnets is None else magnets.demagnetising_current,
-            materials,
+            operated, winding, _iron_loss(found) * length, gap_stress.cogging * length, magnets, materials
         ),
         sensitivities=tuple(
             Sensitivity(one, relative_slopes(one, _slopes_of(one, found, states, machine), operated, materials))
@@ -164,21 +162,22 @@ def _states(operated: OperatedMachine, losses: LossMap | None) -> dict[str, Fiel
 
 
 def _magnet_states(case: FieldCase, wound: WoundMachine, magnets: MagnetsOutcome | None) -> dict[str, StateTask]:
-    """The magnets of their grade at their worst temperature, where a current drives them to the knee."""
-    if magnets is None or magnets.at_knee is None:
+    """The magnets of their grade at their worst temperature, in their worst state and where they meet the knee, on the
+    finer mesh, on which they are judged."""
+    if magnets is None:
         return {}
-    direct, _ = wound.ampere_turns(-magnets.at_knee, 0.0)
-    state = AtTheKnee(direct, 0.0, magnets.knee, magnets.inputs.lost_max)
-    return {KNEE: StateTask(with_grade(case, magnets.inputs.grade, magnets.temperature), wound.dimensions, state)}
+    share, worst = magnets.inputs.lost_max, magnets.worst
+    states: dict[str, FieldState] = {OPPOSED: OpposingField(*_turns_of(wound, worst.i_d, worst.i_q), share)}
+    if magnets.at_knee is not None:
+        states[KNEE] = AtTheKnee(*_turns_of(wound, -magnets.at_knee, 0.0), share, magnets.field_at_knee)
+    warm = replace(with_grade(case, magnets.inputs.grade, magnets.temperature), density=case.detail)
+    return {name: StateTask(warm, wound.dimensions, state) for name, state in states.items()}
 
 
-def _looked_at(states: Mapping[str, StateTask]) -> dict[str, StateTask]:
-    """Those whose mesh is looked at, that of the magnets on the finer mesh, on which they were judged."""
-    found = {name: states[name] for name in (NO_LOAD, FULL, QUADRATURE)}
-    if KNEE in states:
-        case = states[KNEE].case
-        found[KNEE] = replace(states[KNEE], case=replace(case, density=case.detail))
-    return found
+def _turns_of(wound: WoundMachine, i_d: float, i_q: float) -> tuple[float, float]:
+    """Ampere-turns of a coil of currents [A peak]."""
+    d, q = wound.ampere_turns(i_d, i_q)
+    return float(d), float(q)
 
 
 def _slope_tasks(
@@ -221,7 +220,7 @@ def _mesh(
     flux_d, flux_q = errors[FULL][[FLUX_D, FLUX_Q]].tolist()
     loaded_flux, loaded_d, loaded_q = errors[QUADRATURE].tolist()
     torque = flux_map.torque_error
-    (at_the_knee,) = errors.get(KNEE, (nan,))
+    (at_the_knee,), (opposing,) = (errors.get(name, (nan,)) for name in (KNEE, OPPOSED))
     return Quantities(
         peak_torque=torque,
         continuous_torque=torque,
@@ -238,5 +237,6 @@ def _mesh(
         loaded_inductance_d=loaded_d,
         loaded_inductance_q=loaded_q,
         demagnetising_current=float(at_the_knee),
+        opposing_field=float(opposing),
         **dict.fromkeys(PARTS, 0.0),
     )

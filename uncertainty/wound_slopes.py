@@ -18,6 +18,7 @@ from drivetrain.masses import PartMaterials
 from drivetrain.outcome import active_masses
 from electrical.dq import DriveLimits, corner_speed, mtpa_currents
 from electrical.flux_map_machine import FluxMapMachine
+from electrical.magnets_stage import MagnetsOutcome
 from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_stage import WindingInputs, WindingOutcome, rated_speed
 from electrical.wound_machine import WoundMachine
@@ -29,7 +30,7 @@ from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, RIPPLE, TORQUE
 _LITTLE = 0.01  # relative, of a current over which the torque is differentiated
 NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
 QUADRATURE = "full, on the q axis"
-KNEE = "magnets at their knee"
+KNEE, OPPOSED = "magnets at their knee", "magnets in their worst state"
 FieldSlopes = Mapping[str, np.ndarray]  # state -> derivatives of its quantities over themselves, of one deviation
 
 
@@ -44,7 +45,8 @@ class Quantities:
     ripple: of the peak torque, cogging: from peak to peak [Nm]
     loaded_flux: on the d axis [Wb], loaded_inductance_d, loaded_inductance_q: apparent [H], with the overload current
         on the q axis
-    demagnetising_current: against the magnets, NaN where none is known [A]
+    demagnetising_current: against the magnets [A], opposing_field: against them in their worst state [A/m]; NaN where
+        none is known
     stator_laminations, rotor_laminations, magnets, shaft, copper, mass: of the parts and all of them [kg]
     rotor_inertia: [kg m^2]
     """
@@ -64,6 +66,7 @@ class Quantities:
     loaded_inductance_d: float
     loaded_inductance_q: float
     demagnetising_current: float
+    opposing_field: float
     stator_laminations: float
     rotor_laminations: float
     magnets: float
@@ -156,10 +159,10 @@ def values_of(
     winding: WindingOutcome,
     iron_loss: float,
     cogging: float,
-    demagnetising_current: float,
+    magnets: MagnetsOutcome | None,
     materials: PartMaterials,
 ) -> Quantities:
-    """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]; demagnetising_current [A]."""
+    """Of the machine as drawn; iron_loss [W]; cogging: from peak to peak [Nm]; magnets: None without a grade."""
     machine, resistance, chosen = operated.machine, operated.wound.phase_resistance, winding.chosen
     (l_dd, _), (_, l_qq) = machine.incremental_inductances(0.0, 0.0)
     return Quantities(
@@ -177,7 +180,8 @@ def values_of(
         loaded_flux=chosen.torque_constant / (1.5 * machine.pole_pairs),
         loaded_inductance_d=chosen.inductance_d,
         loaded_inductance_q=chosen.inductance_q,
-        demagnetising_current=demagnetising_current,
+        demagnetising_current=nan if magnets is None else magnets.demagnetising_current,
+        opposing_field=nan if magnets is None else magnets.opposing_field,
         **_masses(operated.wound, materials),
     )
 
@@ -207,6 +211,7 @@ def relative_slopes(
         loaded_inductance_d=float(loaded_d),
         loaded_inductance_q=float(loaded_q),
         demagnetising_current=float(field[KNEE][0]) if KNEE in field else nan,
+        opposing_field=float(field[OPPOSED][0]) if OPPOSED in field else nan,
         **_mass_slopes(deviation, operated.wound, materials),
     )
 

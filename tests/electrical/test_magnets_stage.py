@@ -31,6 +31,7 @@ from report.magnets import remarks
 from tasks import InThisProcess
 from tests.electrical.analytic_map import DEMAND, GOOD, INPUTS, MATCHED, REQUIRED, TRANSMISSION, flux_map
 from tests.magnetostatics.reference_machine import MATERIALS
+from units import MU_0
 
 COARSE = MeshDensity(gap_edges=60, gap_layers=1, across_iron=1.0)
 CASE = FieldCase(MATERIALS, 2, None, 0.3, COARSE, COARSE, 6e6, 20e6)
@@ -70,6 +71,18 @@ def test_a_strong_grade_holds_and_a_weak_one_fails(magnets):
     assert magnets[STRONG].margin(magnets[STRONG].worst) > 0 > magnets[WEAK].margin(magnets[WEAK].worst)
     assert states(magnets[FERRITE])[OVERLOAD].lost > 0.5, "ferrite at 20 A/mm2"
     assert next(remarks(magnets[FERRITE])).startswith("THE MAGNETS FAIL")
+
+
+def test_the_field_against_the_magnets_is_that_of_the_straight_line(magnets):
+    """B = B_r - mu_0 mu_r H: a knee that is off with the field by so much lies where the worst flux density did."""
+    found = magnets[STRONG]
+    magnet = found.inputs.grade.magnet_at(120.0)
+    line = magnet.remanence - MU_0 * magnet.recoil_permeability * found.opposing_field
+    assert line == pytest.approx(found.worst.exceeded) and found.opposing_field < found.field_at_knee
+    assert found.knee_off_by(found.field_at_knee / found.opposing_field - 1) - found.knee == pytest.approx(
+        found.margin(found.worst)
+    )
+    assert magnets[WEAK].opposing_field > magnets[WEAK].field_at_knee
 
 
 def test_the_requirement_says_so(magnets):

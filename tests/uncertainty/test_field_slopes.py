@@ -1,6 +1,7 @@
 """Derivatives of what several solutions make together, against the same mesh solved again."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from geometry.half_cell import MeshDensity
 from geometry.morph import Morpher
 from magnetostatics.currents import PhaseCurrents
+from magnetostatics.demagnetisation import MagnetFlux
 from magnetostatics.variations import Remanence, SameAmpereTurns
 from materials.iron_loss import iron_loss_law
 from study.inputs_field import field_case
@@ -20,10 +22,12 @@ from uncertainty.field_slopes import (
     LoadedInductances,
     LoadedIron,
     NoLoad,
+    OpposingField,
     StateTask,
     mesh_errors,
     solve_slopes,
 )
+from units import MU_0
 
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.0, gap_layers=1, across_iron=1.0)
 CASE = replace(field_case(read_study("motorcycle")), density=COARSE)
@@ -53,8 +57,9 @@ def solved_again(deviation, state):
         (LoadedInductances(-300.0, 1200.0), MagnetLength(HALF)),
         (Cogging(), SlotOpening(HALF)),
         (Cogging(), MagnetRemanence(0.03)),
-        (AtTheKnee(-3000.0, 0.0, 0.2, 0.01), MagnetLength(HALF)),
-        (AtTheKnee(-3000.0, 0.0, 0.2, 0.01), MagnetRemanence(0.03)),
+        (OpposingField(-1500.0, 100.0, 0.01), SlotOpening(HALF)),
+        (AtTheKnee(-3000.0, 0.0, 0.01, 9e5), MagnetLength(HALF)),
+        (AtTheKnee(-3000.0, 0.0, 0.01, 9e5), MagnetRemanence(0.03)),
     ),
 )
 def test_one_back_substitution_gives_what_solving_again_gives(state, deviation):
@@ -91,11 +96,20 @@ def test_the_inductances_under_load_are_those_of_the_data_sheet():
 
 def test_the_current_that_meets_the_knee_is_found_between_two():
     """B falls by 0.1 mT an ampere-turn from 0.5 T without current: at 3000 A to 0.2 T, wherever that is sought."""
+    magnet = SimpleNamespace(remanence=1.2, recoil_permeability=1.05)
+    model, knee = SimpleNamespace(materials=SimpleNamespace(magnet=magnet)), (1.2 - 0.2) / (MU_0 * 1.05)
+
+    def seen(one):
+        return MagnetFlux(np.array([[[0.5 + 1e-4 * one.current + one.lift, 0.9]]]), np.array([[0.02, 0.98]]))
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("uncertainty.field_slopes._exceeded", lambda some, share: 0.5 + 1e-4 * some[0])
+        patch.setattr("uncertainty.field_slopes.magnet_flux", seen)
         for direct in (-2900.0, -3200.0):
             currents = [direct * 0.98] * 2 + [direct * 1.02] * 2
-            assert AtTheKnee(direct, 0.0, 0.2, 0.01).read(currents) == pytest.approx([3000.0])
+            lifts = (0.0, 0.2, 0.2, 0.0)  # at one angle of two it is less
+            solutions = [SimpleNamespace(model=model, current=i, lift=b) for i, b in zip(currents, lifts)]
+            assert AtTheKnee(direct, 0.0, 0.01, knee).read(solutions) == pytest.approx([3000.0])
+            assert OpposingField(direct, 0.0, 0.03).read(solutions) < knee / 3, "what lies in less of the volume"
 
 
 def test_the_ripple_is_from_peak_to_peak():

@@ -185,18 +185,17 @@ def test_temperatures_are_known_by_their_rise():
     assert known.magnet_rise.plus_minus == 0.0 and known.continuous_current.tolerance == pytest.approx(0.01)
 
 
-def test_the_volume_beyond_the_knee_moves_as_far_as_the_current():
-    """Margin 0.8 T without current: 1 % of the current are 8 mT of the knee, 2u 16 mT, and a point lies 10 mT above."""
+def test_the_volume_beyond_the_knee_moves_with_the_field_against_it():
+    """0.8 T below the remanence at worst: 1 % of it are 8 mT of the knee, 2u 16 mT, and a point lies 10 mT above."""
     values = np.array([[[0.05], [0.11], [0.5], [0.9]]])
     magnets = SimpleNamespace(
-        flux=MagnetFlux(values, np.ones((4, 1))), knee=0.1, states=("no load",), margin=lambda state: 0.8, at_knee=70.0
+        flux=MagnetFlux(values, np.ones((4, 1))), knee=0.1, knee_off_by=lambda relative: 0.1 + 0.8 * relative
     )
-    current = Uncertain(70.0, 0.0, 0.0, 0.01)
-    known = budget._kept(magnets, current)
+    opposing = Uncertain(6e5, 0.0, 0.0, 0.01)
+    known = budget._kept(magnets, opposing)
     assert known.value == 0.75 and known.mesh == 0.0 and known.plus_minus == pytest.approx(0.25)
-    assert budget._kept(magnets, replace(current, tolerance=0.004)).plus_minus == 0.0
-    nothing = SimpleNamespace(at_knee=None)
-    assert budget._magnets(None, nothing).kept is None and budget._magnets(None, None).demagnetising_current is None
+    assert budget._kept(magnets, replace(opposing, tolerance=0.004)).plus_minus == 0.0
+    assert budget._magnets(None, None).kept is None and budget._magnets(None, None).demagnetising_current is None
 
 
 def test_what_is_reached_at_a_speed_is_asked_of_the_rotor_there():

@@ -95,7 +95,7 @@ def test_the_base_speed_falls_with_flux_and_its_error_adds_up():
 
 
 def test_values_are_those_of_the_stage():
-    values = values_of(OPERATED, WINDING, 20.0, 0.06, 70.0, MATERIALS)
+    values = values_of(OPERATED, WINDING, 20.0, 0.06, None, MATERIALS)
     assert values.peak_torque == pytest.approx(WINDING.peak_torque)
     assert values.base_speed == pytest.approx(WINDING.chosen.base_speed, rel=1e-6)
     assert values.magnet_flux * 1.5 * 5 == pytest.approx(WINDING.chosen.no_load_torque_constant, rel=1e-6)
