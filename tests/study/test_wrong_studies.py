@@ -64,7 +64,7 @@ ONE_THING_WRONG = {
     "rotor wider than the stator": ("rotor_outer_radius_mm = 15.7", "rotor_outer_radius_mm = 40", ["= 40"]),
     "infeasible slots and poles": ("\nslots = 12 ", "\nslots = 11 ", ["slots = 11", "machine.poles = 10", "9 or 12"]),
     "infeasible slots in the sweep": ("slots = [9, 12] ", "slots = [9, 10] ", ["sweep.slots = 10", "take 9 or 12"]),
-    "missing steel": ('"35PN270"', '"35PN27"', ["materials.steel", "35PN27", "35PN270, M270-35A, M270-50A"]),
+    "missing steel": ('"35PN270"', '"35PN27"', ["materials.steel", "35PN27", "35PN270, M19, M235-35A, M270-35A"]),
     "missing curve file": ('"35PN270"', '"mine.csv"', ["materials.steel", "mine.csv"]),
     "broken TOML": ("[match]", "[match", ["not valid TOML", "(at line "]),
 }
