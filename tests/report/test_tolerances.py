@@ -6,14 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from drivetrain.asked import Check, ControlledDamping, LostMagnets, PeakEffortAtRest
 from drivetrain.constraints import OverloadForce
 from drivetrain.output import Shaft, Wheel
-from figures.report import render_report
+from figures.report import capped, number_text, render_report
+from report import outcome as outcome_report
 from report import tolerances as report
 from report import uncertainty as uncertainty_report
 from tests.magnetostatics.reference_machine import reference_machine
 from tests.uncertainty.a_budget import budget_of_alike
-from uncertainty.budget import Uncertain
+from uncertainty.budget import MagnetBudget, Uncertain
 from uncertainty.deviations import MagnetArc, MagnetLength, MagnetScatter, Tolerances, ToothWidth
 from uncertainty.match_spread import DrawnMatch, MatchSpread
 from uncertainty.scatter import CoggingScatter
@@ -113,3 +115,21 @@ def test_files_and_sections(tmp_path):
     page = render_report(sections, tmp_path, title="")
     assert "wheel" not in page and "they can only be narrower" in page
     assert {path.name for path in tmp_path.glob("*.csv")} == {"tolerances.csv", "uncertainty.csv"}
+
+
+def test_what_is_reached_stands_with_its_uncertainty():
+    """Of the whole for a force; of what is left of the magnets for what is beyond the knee."""
+    kept, force = Uncertain(0.998, 0.0, 0.0, 0.001), Uncertain(2500.0, 0.0, 0.0, 0.01)
+    lost = Check(LostMagnets(0.01, 0.002), 0.002)
+    assert outcome_report._give_or_take(lost, kept, Wheel()) == "0.20"
+    assert outcome_report._give_or_take(Check(PeakEffortAtRest(2000.0), 2600.0), force, Wheel()) == "52"
+    assert outcome_report._give_or_take(lost, None, Wheel()) == ""
+    budget = budget_of_alike(force)
+    assert len(outcome_report._known(budget)) == 8
+    unknown = replace(budget, magnets=MagnetBudget(), output=replace(budget.output, controlled_damping=None))
+    assert set(outcome_report._known(budget)) - set(outcome_report._known(unknown)) == {LostMagnets, ControlledDamping}
+
+
+def test_factors_beyond_all_doubt_are_cut_off():
+    shown = [number_text(one) for one in capped([1.2, 100.0, 13678.0, np.inf, -3.0], 100.0)]
+    assert shown == ["1.200", "> 100", "> 100", "∞", "−3"]
