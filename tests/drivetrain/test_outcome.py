@@ -173,6 +173,8 @@ def test_tables_are_in_drawing_units(found):
     assert features.loc["overall transmission ratio / (mm/rad)"].stated == pytest.approx(2.2)
     assert features.loc["diameter of the envelope / mm"].ours == pytest.approx(110)
     whole = masses_table(found).set_index("part").mass_kg
+    inertia = masses_table(found).set_index("part").inertia_kg_mm2["whole"]
+    assert inertia == pytest.approx(1e6 * (found.masses.rotor_inertia + found.gearbox_inertia))
     assert whole.whole == pytest.approx(whole["active parts"] + whole.gears + whole["casing, bearings, shafts"])
     remedies = remedies_table(found, Wheel())
     assert set(remedies.requirement) == {one.requirement.name(Wheel()) for one in found.checks if not one.holds}

@@ -237,6 +237,7 @@ def test_costs_stand_where_prices_do(found, bare):
     table = package_report.costs_table(found)
     assert table["cost EUR"].iloc[-1] == pytest.approx(table["cost EUR"].iloc[:-1].sum())
     assert list(package_report.costs_table(bare)) == ["part", "mass_kg", "inertia_kg_mm2"]
+    assert table.inertia_kg_mm2.tolist() == pytest.approx([1e6 * one.inertia for one in found.costs]), "kg m2 inside"
 
 
 def test_files(found, winding, brake, outcome, tmp_path):

@@ -65,7 +65,7 @@ def test_design_map_is_complete(design_space, optima, assert_readable):
     text = words(figure)
     for part in ("torque per length / (Nm/m)", "mean |B| / T", "back-iron width / mm", "rotor outer radius / mm"):
         assert part in text
-    assert f"optimum {85**2 / 130:.1f} Nm/m" in text and "limit 1.2 T" in text
+    assert f"optimum {85**2 / 130:.1f} Nm/m" in text and "12 slots, 10 poles, Ø 85 mm, limit 1.2 T" in text
     star = [line for line in figure.axes[0].lines if line.get_marker() == "*"]
     assert star[0].get_xydata().tolist() == [[pytest.approx(2.55), pytest.approx(14.45)]]
     assert_readable(figure)

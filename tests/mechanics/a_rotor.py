@@ -19,7 +19,7 @@ from study.read import read_study
 from tests.magnetostatics.reference_machine import reference_machine
 
 MACHINE = reference_machine()
-INPUTS = mechanics_inputs(read_study("motorcycle"))
+INPUTS = replace(mechanics_inputs(read_study("motorcycle")), bearing=None)
 DUTY = RotorDuty(
     machine=MACHINE, active_length=40e-3, bearing_span=80e-3, mass=0.2, lamination_density=7650.0,
     magnet_density=7500.0, stacking=0.95, speed_max=1600.0, speed_rms=40.0, peak_torque=4.0,
