@@ -82,8 +82,8 @@ class TurningMachine:
     @cached_property
     def _spline(self) -> NdBSpline:
         """Of those coefficients over i_d and i_q of one turn, cubic."""
-        data = self.map.data.transpose("id", "iq", "angle")
-        values = np.stack([data[name].values for name in ("torque", "psi_d", "psi_q")], axis=2)
+        data = self.map.data[["torque", "psi_d", "psi_q"]].transpose("id", "iq", "angle")
+        values = np.stack([one.values for one in data.values()], axis=2)
         along_d = make_interp_spline(data["id"].values, _coefficients(values), axis=0)
         along_q = make_interp_spline(data["iq"].values, along_d.c, axis=1)
         return NdBSpline((along_d.t, along_q.t), np.swapaxes(along_q.c, 0, 1), 3)  # whose own axis comes first
