@@ -74,7 +74,7 @@ def test_the_report_reads_from_the_vehicle_to_the_vehicle(study):
     assert titles.index("Planetary gearbox") < titles.index("Winding")  # whole teeth decide about the length
     assert titles[-2:] == ["The vehicle with the designed actuator", "Energy on the road"]
     pictures = {path.stem for path in (FOLDER / "figures").glob("*.png")}
-    assert html.count("data:image/png;base64") == len(pictures)
+    assert html.count("data:image/png;base64") == len(pictures) + 1, "the efficiency map is on the data sheet too"
 
 
 def test_the_peak_torque_is_one_number(results):
