@@ -44,10 +44,30 @@ def _vehicle(row: Sequence[Axes], one: xr.Dataset) -> None:
         look: Look = {"color": colour, "linewidth": 1.0, "linestyle": "-" if kind == QUASI_IDEAL else "--"}
         row[0].plot(one.time, one.tyre_load.sel(actuator=kind), label=kind, **look)
         row[1].plot(one.time, one.felt.sel(actuator=kind) / GRAVITY, **look)
-    for name, colour, words in (("inertial", VERMILION, "equivalent mass"), ("elastic", BLACK, "spring of the mount")):
-        row[2].plot(one.time, one[name].sel(actuator=REAL), color=colour, linewidth=0.8, label=words)
+    _lent(row[2], one.sel(actuator=REAL))
     row[1].set(ylabel="felt / g")
     row[2].set(ylabel="reactive / W")
+
+
+@styled
+def lent_powers(found: EnergyOutcome) -> Figure:
+    """Power that spring of the mount and equivalent mass take and give back, one panel a command (thesis Fig. 4.39)."""
+    data = found.traces.sel(actuator=REAL)
+    figure = new_figure(3.2)
+    axes = figure.subplots(1, data.sizes["command"], sharey=True, squeeze=False)[0]
+    for axis, name in zip(axes, data.command.values, strict=True):
+        _lent(axis, data.sel(command=name))
+        axis.set(xlabel="time / s", xlim=(float(data.time[0]), float(data.time[-1])))
+        axis.set_title(str(name), loc="left")
+    axes[0].set(ylabel="reactive / W")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    show_grid(*axes)
+    return figure
+
+
+def _lent(axis: Axes, one: xr.Dataset) -> None:
+    for name, colour, words in (("inertial", VERMILION, "equivalent mass"), ("elastic", BLACK, "spring of the mount")):
+        axis.plot(one.time, one[name], color=colour, linewidth=0.8, label=words)
 
 
 @styled

@@ -9,7 +9,7 @@ import pandas as pd
 
 from figures.energy import powers_over_time, working_points
 from figures.files import File, figure_file, picture_name, table_file
-from figures.quarter_car import beside_the_thesis, comfort_setting, vehicle_over_time
+from figures.quarter_car import beside_the_thesis, comfort_setting, lent_powers, vehicle_over_time
 from figures.report import Picture, Section, Table
 from report.energy import stand_ins
 from units import GRAVITY
@@ -18,11 +18,13 @@ from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase
 from vehicle.printed_car import PRINTED_CAR, PRINTED_SPEED, printed_road
 from vehicle.printed_energy import PrintedEnergy, printed_energy
 from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.shaken import PRINTED, SHAKING
 from vehicle.spectral import mean_power_theorem
 
 TABLE = "quarter_car.csv"
 TIME, POINTS, CAR = "quarter_car_over_time", "quarter_car_points", "quarter_car_vehicle"
 COMFORT, BESIDE = "quarter_car_comfort_setting", "quarter_car_beside"
+SHAKEN, SHAKEN_POINTS, LENT = "quarter_car_shaken", "quarter_car_shaken_points", "quarter_car_lent"
 _PERCENT = 100.0
 
 
@@ -33,6 +35,9 @@ def files(found: QuarterCarRides) -> Iterator[File]:
     yield figure_file(POINTS, working_points(found.energy))
     yield figure_file(CAR, vehicle_over_time(found.energy))
     yield figure_file(COMFORT, comfort_setting(found))
+    yield figure_file(SHAKEN, powers_over_time(found.shaken))
+    yield figure_file(SHAKEN_POINTS, working_points(found.shaken))
+    yield figure_file(LENT, lent_powers(found.shaken))
     yield figure_file(BESIDE, beside_the_thesis(found.energy, printed_energy()))
 
 
@@ -52,6 +57,11 @@ def section(found: QuarterCarRides) -> Section:
             Picture(picture_name(CAR), "Tyre load, acceleration as it is felt, and what spring and mass take and give "
                     "back (Figs 4.24 to 4.50)."),
             Picture(picture_name(COMFORT), _lifted(found)),
+            Table(shaken_table(found.shaken), f"A force of {SHAKING.amplitude:g} N at {SHAKING.frequency:g} Hz on the "
+                  "body, maximum damping, printed numbers behind the bar (text to Figs 4.35 to 4.39)."),
+            Picture(picture_name(SHAKEN), "Force and power under the harmonic force (Figs 4.35 and 4.37)."),
+            Picture(picture_name(SHAKEN_POINTS), "Working points at suspension and rotor (Figs 4.36 and 4.38)."),
+            Picture(picture_name(LENT), "What spring and mass take and give back (Fig. 4.39)."),
         ),
     )  # fmt: skip
 
@@ -61,6 +71,25 @@ _KINDS = (
     (REAL, "Real actuator with its force loop: Tables 4.10 to 4.13, printed numbers behind the bar."),
     ("real, no force loop", "Without the force loop: Table 4.14, printed numbers behind the bar."),
 )
+
+
+def shaken_table(found: EnergyOutcome) -> pd.DataFrame:
+    """Under the harmonic force, one quantity a row, one friction a column: here | printed."""
+    columns = {case.command: _shaken_column(case) for case in found.cases}
+    return pd.DataFrame(columns).rename_axis("quantity").reset_index()
+
+
+def _shaken_column(case: EnergyCase) -> dict[str, str]:
+    (one,), printed = case.energies, PRINTED[case.command]
+    rows = (
+        ("active, suspension / W", one.shaft.active, printed.mechanical),
+        ("electrical power / W", one.battery.active, printed.electrical),
+        ("passive duty, suspension / %", _PERCENT * (1 - one.shaft_duty.active), _PERCENT * printed.shaft_passive),
+        ("passive duty, machine / %", _PERCENT * (1 - one.machine_duty.active), _PERCENT * printed.machine_passive),
+        ("power factor, suspension", one.shaft.factor, printed.shaft_factor),
+        ("power factor, machine shaft", one.machine.factor, printed.machine_factor),
+    )
+    return {words: _both({"here": here, "printed": stated}) for words, here, stated in rows}
 
 
 def _text() -> str:

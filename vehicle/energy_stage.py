@@ -110,7 +110,7 @@ def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | Non
     first = [[runs[command, kind][0] for command in commands_of(case)] for kind in (QUASI_IDEAL, REAL)]
     ideal, histories = (dict(zip(commands_of(case), simulate(group), strict=True)) for group in first)
     warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
-    traces = _traces({QUASI_IDEAL: ideal, REAL: histories})
+    traces = traces_of({QUASI_IDEAL: ideal, REAL: histories})
     return EnergyOutcome(own, cases, tuple(loop_points(own)), traces, tuple(warm))
 
 
@@ -154,8 +154,8 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
-def _traces(histories: dict[str, dict[str, RideHistory]]) -> xr.Dataset:
-    """Of histories by actuator and command."""
+def traces_of(histories: dict[str, dict[str, RideHistory]]) -> xr.Dataset:
+    """What figures show of histories by actuator and command; see ``EnergyOutcome``."""
     actuators, commands = list(histories), list(next(iter(histories.values())))
     time = histories[actuators[0]][commands[0]].time
     shown = (time >= min(SHOWN[0], time[-1] / 2)) & (time <= SHOWN[1])

@@ -216,4 +216,5 @@ class _Model:
     def move(self, road: np.ndarray, force: float) -> None:
         """One sample on; road: heights at its ends [m], (2, n); force: on the suspension [N]."""
         self.equations.held[0] = force
-        follow(self.equations, self.state, road, self.step, self.parts, self.states, self.seen)
+        imposed = np.column_stack([road, (0.0, 0.0)])  # nothing but the road and the actuator acts
+        follow(self.equations, self.state, imposed, self.step, self.parts, self.states, self.seen)
