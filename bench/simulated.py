@@ -172,12 +172,11 @@ def static_force(actuator: Actuator, velocity: np.ndarray, torque: np.ndarray) -
     """Force at the suspension at constant velocity and nominal ratio [N], of the broadcast shape.
 
     velocity: [m/s], torque: of the rotor [Nm], broadcast
-    F = (c v + F_c + T / tau) / eta where the output drives, times eta where the rotor drives; without dry friction's
-    breakaway: valid above some mm/s
+    c v + F_c sign(v) + T / tau behind the meshes; without dry friction's breakaway: valid above some mm/s
     """
-    loss, gears = actuator.loss, actuator.gears
+    loss = actuator.loss
     behind = loss.viscous * velocity + loss.coulomb * np.sign(velocity) + torque / actuator.ratio.nominal
-    return np.where(behind * velocity > 0, behind / gears.driven, behind * gears.driving)
+    return actuator.gears.through(behind, velocity)
 
 
 def shunt_row(lumped: LumpedActuator, actuator: Actuator, shunt: float) -> ShuntRow:

@@ -14,7 +14,7 @@ from figures.report import Picture, Section, Table
 from report.energy import stand_ins
 from units import GRAVITY
 from vehicle.energy import Scatter, scatter
-from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase
+from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase, EnergyOutcome
 from vehicle.printed_car import PRINTED_CAR, PRINTED_SPEED, printed_road
 from vehicle.printed_energy import PrintedEnergy, printed_energy
 from vehicle.quarter_car_stage import QuarterCarRides

@@ -242,7 +242,7 @@ def _require_stable_control(run: Run) -> None:
 
 
 def _followed(run: Run, e: Equations, imposed: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
-    """States (t, size) and what is seen of them (t, seen); imposed: as in ``vehicle.motion.ride`` [m, N], (t, n + 1)."""
+    """States (t, size) and what is seen (t, seen); imposed: as in ``vehicle.motion.ride`` [m, N], (t, n + 1)."""
     step = run.scenario.time_step
     states, seen, state = np.empty((len(imposed), e.size)), np.empty((len(imposed), e.seen)), np.zeros(e.size)
     if not isinstance(run.command, Controller):
