@@ -10,7 +10,6 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import sqrt
 
 import numpy as np
 

@@ -45,7 +45,7 @@ def section(found: JudgedDesigns, figure: Figure) -> Section:
             Picture(figure, "Recovered power, comfort and road holding over the mass."),
             Table(table(found.best), "Designs that no other betters in mass, comfort, road holding and recovered power "
                   "together, comfort and road holding to a hundredth. A number is the design's in "
-                  "optimise.csv, which `airgap take-over` goes on with."),
+                  "optimise.csv, which “airgap take-over” goes on with."),
         ),
     )  # fmt: skip
 

@@ -64,7 +64,7 @@ def section(found: BenchTests) -> Section:
         "On the benches of the thesis",
         (
             "What the benches of thesis chapter 5 would read of this actuator, simulated with its own description, and "
-            "read with the tools of `airgap analyse`. The thesis's numbers are measurements of its automotive "
+            "read with the tools of “airgap analyse”. The thesis's numbers are measurements of its automotive "
             "prototype. Mount, torque lag and friction are as good as what the study states of them.",
             Table(lumped_table(found), "Lumped parameters (Table B.1)."),
             Table(shunt_table(found), f"Shunted machine behind a diode bridge (Table 5.1). The power is that at "
@@ -82,7 +82,7 @@ def section(found: BenchTests) -> Section:
                   "a ratio that varies are in the loops and not in the model."),
             Picture(picture_name(FORCE_LOOPS), "Force over stroke (Figs 4.19 and 4.20)."),
             Table(loop_table(found), "In the loop with the thesis's quarter car, 1000 Ns/m asked for (section 5.5); "
-                  "`airgap hil` runs it by the clock."),
+                  "“airgap hil” runs it by the clock."),
             Picture(picture_name(HIL), "Stroke, force and acceleration as it is felt (Fig. 5.16)."),
             "Sound pressure levels (Table 5.2) are not computed: no part of this tool knows how the casing radiates.",
         ),
