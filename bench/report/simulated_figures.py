@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -16,8 +18,14 @@ from vehicle.comfort import weighted_acceleration
 _OPEN = 1e9  # ohm, and above
 
 
-def _words(shunt: float) -> str:
+def _words(shunt: xr.DataArray) -> str:
     return shunt_words(min(float(shunt), _OPEN))
+
+
+def _lines(axis: Axes, table: xr.DataArray, words: Sequence[str]) -> None:
+    """A line for each row of a table over its second axis; words: of the rows."""
+    for values, name, colour in zip(table.values, words, SERIES, strict=False):
+        axis.plot(table[table.dims[1]], values, color=colour, label=name)
 
 
 @styled
@@ -25,12 +33,10 @@ def static_shunts(found: BenchTests) -> Figure:
     """Force and conversion efficiency over velocity at every shunt (thesis Figs 5.3 and 5.4)."""
     figure = new_figure(3.6)
     force, efficiency = figure.subplots(1, 2)
-    data = found.shunted
-    for shunt, colour in zip(data.shunt.values, SERIES, strict=False):
-        one = data.sel(shunt=shunt)
-        force.plot(data.velocity, one.force, color=colour, label=_words(shunt))
-        if 0 < shunt < np.inf:
-            efficiency.plot(data.velocity, 100 * one.efficiency, color=colour)
+    data, words = found.shunted, [_words(shunt) for shunt in found.shunted.shunt]
+    loaded = (data.shunt > 0) & np.isfinite(data.shunt)
+    _lines(force, data.force, words)
+    _lines(efficiency, 100 * data.efficiency.where(loaded), words)
     force.set(xlabel="velocity / (m/s)", ylabel="force / N", xlim=(0, None), ylim=(0, None))
     efficiency.set(xlabel="velocity / (m/s)", ylabel="shunt over mechanical power / %", xlim=(0, None), ylim=(0, 100))
     figure.legend(*force.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
@@ -61,18 +67,16 @@ def quadrant_maps(found: BenchTests) -> Figure:
 @styled
 def impedance(found: BenchTests) -> Figure:
     """Size of the impedance, shunted and controlled (thesis Figs 5.9, 5.10 and B.2)."""
-    figure = new_figure(4.0)
+    figure = new_figure(4.4)
     left, right = figure.subplots(1, 2, sharey=True)
     data = found.impedance
-    for value, colour in zip(data.shunt.values, SERIES, strict=False):
-        left.loglog(data.frequency, data.shunted.sel(shunt=value), color=colour, label=_words(value))
-    for value, colour in zip(data.damping.values, SERIES, strict=False):
-        words = f"{value / FACTORS['kNs_per_m']:g} kNs/m asked for"
-        right.loglog(data.frequency, data.controlled.sel(damping=value), color=colour, label=words)
+    asked = [f"{value / FACTORS['kNs_per_m']:g} kNs/m asked for" for value in data.damping.values]
+    _lines(left, data.shunted, [_words(shunt) for shunt in data.shunt])
+    _lines(right, data.controlled, asked)
     for axis, title in ((left, "shunted"), (right, "controlled, no force loop")):
-        axis.set(xlabel="frequency / Hz")
+        axis.set(xlabel="frequency / Hz", xscale="log", yscale="log")
         axis.set_title(title, loc="left")
-        axis.legend(fontsize=8, loc="upper left", frameon=False)
+        axis.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2, frameon=False)
     left.set(ylabel="force over velocity / (Ns/m)", ylim=(50.0, 1e5))
     letter((left, right))
     show_grid(left, right)

@@ -77,6 +77,15 @@ def test_controlled_impedance_is_that_of_the_lumped_model(found):
     assert float(added) == pytest.approx(4e3, rel=0.1)
 
 
+@pytest.mark.physics
+def test_more_samples_a_period_change_no_impedance(monkeypatch):
+    """A quarter of the step that the sines are simulated with."""
+    usual = [benches._controlled(prototype(), 2e3, f) for f in (2.0, 20.0, 60.0)]
+    monkeypatch.setattr(benches, "_PER_PERIOD", 4 * benches._PER_PERIOD)
+    fine = [benches._controlled(prototype(), 2e3, f) for f in (2.0, 20.0, 60.0)]
+    assert np.abs(np.array(usual) / fine - 1).max() < 1e-4
+
+
 def test_the_loop_helps_and_what_is_kept_is_what_was_found(found):
     alone, cell = found.in_the_loop
     assert cell.numbers["force_error_rms_N"] < 0.6 * alone.numbers["force_error_rms_N"]
