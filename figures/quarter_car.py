@@ -10,11 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures.style import BLACK, BLUE, GREY, ORANGE, VERMILION, Look, letter, new_figure, show_grid, styled
-from units import GRAVITY
+from units import GRAVITY, MILLIMETRE
+from vehicle.damping import DamperCurve
 from vehicle.energy import scatter
 from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyOutcome
 from vehicle.printed_energy import PrintedEnergy
 from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.ride import Scenario
 
 _KINDS = ((QUASI_IDEAL, BLUE, -0.2), (REAL, ORANGE, 0.2))
 Number = Callable[[dict[str, float]], float]
@@ -68,6 +70,27 @@ def lent_powers(found: EnergyOutcome) -> Figure:
 def _lent(axis: Axes, one: xr.Dataset) -> None:
     for name, colour, words in (("inertial", VERMILION, "equivalent mass"), ("elastic", BLACK, "spring of the mount")):
         axis.plot(one.time, one[name], color=colour, linewidth=0.8, label=words)
+
+
+@styled
+def car_inputs(dampers: Sequence[DamperCurve], road: Scenario) -> Figure:
+    """Damper curves and the height of the road over time (thesis Figs 4.21 and 4.22)."""
+    figure = new_figure(3.2)
+    left, right = figure.subplots(1, 2)
+    for curve, colour in zip(dampers, (BLUE, ORANGE), strict=True):
+        velocity = np.linspace(-_SHOWN_VELOCITY, _SHOWN_VELOCITY, 3)
+        left.plot(velocity, np.interp(velocity, curve.velocity, curve.force), color=colour, label=curve.name)
+    time = np.arange(0.0, road.duration, road.time_step)
+    right.plot(time, road.road.heights(time, road.speed) / MILLIMETRE, color=BLUE, linewidth=1.0)
+    left.set(xlabel="velocity / (m/s)", ylabel="force / N")
+    right.set(xlabel="time / s", ylabel="height of the road / mm", xlim=(0.0, road.duration))
+    left.legend(frameon=False)
+    letter((left, right))
+    show_grid(left, right)
+    return figure
+
+
+_SHOWN_VELOCITY = 0.3  # m/s, beyond what the rides reach
 
 
 @styled

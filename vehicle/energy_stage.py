@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -112,6 +112,13 @@ def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | Non
     warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
     traces = traces_of({QUASI_IDEAL: ideal, REAL: histories})
     return EnergyOutcome(own, cases, tuple(loop_points(own)), traces, tuple(warm))
+
+
+def outcome_of(own: DesignedActuator, runs: Mapping[str, Run]) -> EnergyOutcome:
+    """Some runs with a real actuator as an outcome, each a command by the name that it is given."""
+    histories = dict(zip(runs, simulate(list(runs.values())), strict=True))
+    cases = tuple(EnergyCase(name, REAL, (ride_energy(one),)) for name, one in histories.items())
+    return EnergyOutcome(own, cases, (), traces_of({REAL: histories}), ())
 
 
 def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:

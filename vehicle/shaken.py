@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 from actuator.model import Actuator
 from vehicle.designed import DesignedActuator
-from vehicle.energy import ride_energy
-from vehicle.energy_stage import REAL, STEP, EnergyCase, EnergyOutcome, traces_of
+from vehicle.energy_stage import STEP, EnergyOutcome, outcome_of
 from vehicle.printed_car import PRINTED_CAR, PRINTED_DAMPING
-from vehicle.ride import HarmonicForce, RideHistory, Run, Scenario, simulate
+from vehicle.ride import HarmonicForce, Run, Scenario
 
 SHAKING = HarmonicForce(amplitude=500.0, frequency=1.0)  # N, Hz, text to Fig. 4.35
 DURATION = 15.0  # s, as the rides over the road; not printed
@@ -46,10 +45,8 @@ def shaken(own: DesignedActuator) -> EnergyOutcome:
     """
     scenario = Scenario("harmonic force", 0.0, DURATION, body_force=SHAKING, time_step=STEP)
     actuators = {AS_STATED: own.actuator, MORE_FRICTION: with_more_friction(own.actuator, AMPLIFIED)}
-    runs = [Run(PRINTED_CAR, PRINTED_DAMPING[0], scenario, one, own.loop) for one in actuators.values()]
-    histories: dict[str, RideHistory] = dict(zip(actuators, simulate(runs), strict=True))
-    cases = tuple(EnergyCase(name, REAL, (ride_energy(one),)) for name, one in histories.items())
-    return EnergyOutcome(own, cases, (), traces_of({REAL: histories}), ())
+    runs = {name: Run(PRINTED_CAR, PRINTED_DAMPING[0], scenario, one, own.loop) for name, one in actuators.items()}
+    return outcome_of(own, runs)
 
 
 def with_more_friction(actuator: Actuator, factor: float) -> Actuator:

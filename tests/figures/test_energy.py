@@ -10,7 +10,7 @@ import xarray as xr
 from actuator.drive import MappedLoss, TorqueLimit
 from actuator.errors import ActuatorError
 from figures.energy import force_loop, powers_over_time, where_the_power_goes, working_points
-from figures.quarter_car import beside_the_thesis, comfort_setting, lent_powers, vehicle_over_time
+from figures.quarter_car import beside_the_thesis, car_inputs, comfort_setting, lent_powers, vehicle_over_time
 from pipeline.codec import decoded, encoded
 from report import quarter_car as quarter_car_report
 from report.energy import duty_table, files, loop_table, power_table, remarks, section
@@ -19,10 +19,12 @@ from tests.actuator.thesis import FORCE_LOOP, prototype
 from tests.vehicle.thesis import CRUISE_SPEED, quarter_car, quarter_car_damping
 from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
-from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage
+from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage, outcome_of
+from vehicle.indices import rms
+from vehicle.printed_car import printed_road
 from vehicle.printed_energy import printed_energy
-from vehicle.quarter_car_stage import QuarterCarRides
-from vehicle.ride import Scenario
+from vehicle.quarter_car_stage import WITHOUT_LOOP, QuarterCarRides
+from vehicle.ride import Run, Scenario
 from vehicle.road import IsoRoad, roughness_of_class
 from vehicle.shaken import AS_STATED, MORE_FRICTION, PRINTED, shaken
 
@@ -84,7 +86,10 @@ def test_figures_are_readable(found, assert_readable):
 def rides(found):
     time = np.linspace(0.0, 15.0, 50)
     data = {name: ("time", np.sin(time)) for name in ("felt", "tyre_load", "force")}
-    return QuarterCarRides(found, xr.Dataset(data, {"time": time}), shaken(DesignedActuator(prototype(), FORCE_LOOP)))
+    own = DesignedActuator(prototype(), FORCE_LOOP)
+    road = replace(printed_road(0), duration=8.5, time_step=5e-4)
+    alone = outcome_of(own, {WITHOUT_LOOP: Run(quarter_car(), quarter_car_damping()[1], road, own.actuator)})
+    return QuarterCarRides(found, xr.Dataset(data, {"time": time}), alone, shaken(own))
 
 
 def test_every_printed_number_stands_beside_ours(rides):
@@ -124,6 +129,17 @@ def test_figures_beside_the_thesis_are_readable(rides, assert_readable):
     assert_readable(comfort_setting(rides))
     for draw in (powers_over_time, working_points, lent_powers):
         assert_readable(draw(rides.shaken))
+    assert_readable(powers_over_time(rides.energy, QUASI_IDEAL))
+    assert_readable(car_inputs(quarter_car_damping(), printed_road(0)))
+
+
+@pytest.mark.reference
+def test_without_its_loop_the_force_misses_what_is_wanted(rides):
+    """Fig. 4.52: tracking is poor; with the loop the error is a fraction of it."""
+    alone, real = rides.alone.traces.sel(actuator=REAL), rides.energy.traces.sel(actuator=REAL)
+    errors = [rms((one.force - one.wanted).values) / rms(one.wanted.values) for one in (
+        alone.sel(command=WITHOUT_LOOP), real.sel(command="minimum"))]  # fmt: skip
+    assert errors[0] > 0.3 and errors[1] < errors[0] / 3
 
 
 @pytest.mark.physics
