@@ -77,8 +77,8 @@ class GearEfficiency:
                 )
 
     def through(self, behind: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Force at the output at constant velocity [N], of the broadcast shape: F / eta where the output drives, F eta
-        where the rotor does.
+        """Force at the output while nothing accelerates [N], of the broadcast shape: F / eta where the output drives,
+        F eta where the rotor does.
 
         behind: F of friction and rotor behind the meshes [N]; velocity: of the output [m/s], which broadcast
         """

@@ -197,7 +197,12 @@ def run_loop(
             pace.done()
         if lost := not abs(signals.force) < _UNBOUNDED:
             break
-    return LoopRun(*np.array(rows).T, timing=None if pace is None else pace.timing, lost=lost)
+    columns = dict(zip(_COLUMNS, np.array(rows).T, strict=True))
+    return LoopRun(**columns, timing=None if pace is None else pace.timing, lost=lost)
+
+
+# What is written down of a sample, in this order.
+_COLUMNS = ("time", "stroke", "axis", "wanted", "force", "motor_force", "acceleration", "wheel", "angle", "torque")
 
 
 class _Model:

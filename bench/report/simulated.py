@@ -86,10 +86,10 @@ def section(found: BenchTests) -> Section:
             Picture(picture_name(FORCE_LOOPS), "Force over stroke and over time (Figs 4.19 and 4.20)."),
             Table(loop_table(found), "In the loop with the thesis's quarter car, 1000 Ns/m asked for (section 5.5); "
                   "“airgap hil” runs it by the clock."),
-            Picture(picture_name(HIL), "In the loop: heights, stroke, force, acceleration as it is felt, road holding "
+            Picture(picture_name(HIL), "In the loop: heights, stroke, force, felt acceleration, road holding "
                     "(Fig. 5.16), powers and battery current (Fig. 5.17)."),
-            Table(sound_table(), "Sound pressure levels that the thesis measured (Table 5.2). None is computed: nothing "
-                  "here knows how the casing radiates; “airgap analyse sound” reads one's own records."),
+            Table(sound_table(), "Sound pressure levels measured in the thesis (Table 5.2). None is computed: nothing "
+                  "here knows how a casing radiates; “airgap analyse sound” reads one's own records."),
         ),
     )  # fmt: skip
 

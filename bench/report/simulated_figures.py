@@ -77,9 +77,10 @@ def impedance(found: BenchTests) -> Figure:
     for axis, title in ((size, "shunted"), (phase, "shunted"), (controlled, "controlled, asked for")):
         axis.set(xlabel="frequency / Hz", xscale="log")
         axis.set_title(title, loc="left")
-    for axis, side in ((size, "left"), (controlled, "right")):
+    for axis in (size, controlled):
         axis.set(ylabel="force over velocity / (Ns/m)", yscale="log", ylim=(50.0, 1e5))
-        figure.legend(*axis.get_legend_handles_labels(), loc=f"outside lower {side}", ncols=3, frameon=False)
+    figure.legend(*size.get_legend_handles_labels(), loc="outside lower left", ncols=3, frameon=False)
+    figure.legend(*controlled.get_legend_handles_labels(), loc="outside lower right", ncols=3, frameon=False)
     phase.set(ylabel="phase / °")
     letter((size, phase, controlled))
     show_grid(size, phase, controlled)
