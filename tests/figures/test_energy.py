@@ -19,12 +19,12 @@ from tests.actuator.thesis import FORCE_LOOP, prototype
 from tests.vehicle.thesis import CRUISE_SPEED, quarter_car, quarter_car_damping
 from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
-from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage, outcome_of
+from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage
 from vehicle.indices import rms
 from vehicle.printed_car import printed_road
 from vehicle.printed_energy import printed_energy
-from vehicle.quarter_car_stage import WITHOUT_LOOP, QuarterCarRides
-from vehicle.ride import Run, Scenario
+from vehicle.quarter_car_stage import WITHOUT_LOOP, QuarterCarRides, without_loop
+from vehicle.ride import Scenario
 from vehicle.road import IsoRoad, roughness_of_class
 from vehicle.shaken import AS_STATED, MORE_FRICTION, PRINTED, shaken
 
@@ -87,9 +87,7 @@ def rides(found):
     time = np.linspace(0.0, 15.0, 50)
     data = {name: ("time", np.sin(time)) for name in ("felt", "tyre_load", "force")}
     own = DesignedActuator(prototype(), FORCE_LOOP)
-    road = replace(printed_road(0), duration=8.5, time_step=5e-4)
-    alone = outcome_of(own, {WITHOUT_LOOP: Run(quarter_car(), quarter_car_damping()[1], road, own.actuator)})
-    return QuarterCarRides(found, xr.Dataset(data, {"time": time}), alone, shaken(own))
+    return QuarterCarRides(found, xr.Dataset(data, {"time": time}), without_loop(own), shaken(own))
 
 
 def test_every_printed_number_stands_beside_ours(rides):
