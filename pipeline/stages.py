@@ -256,7 +256,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_MAGNETS if _has_grade(study) else ()),
         *(_LOSSES if _has_loss_data(study) else _NO_LOSSES),
         *(_ENERGY if driven and _has_loss_data(study) else ()),
-        *(_BY_ROAD if judges_by_road(study) else (Source(requirement_aims),)),
+        *(_BY_ROAD if _searches_on_road(study) else (Source(requirement_aims),)),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
         View(length_by_density if rates_by_density(study) else length_by_temperature),
@@ -271,6 +271,11 @@ def _has_loss_data(study: Study) -> bool:
     except LossError:
         return False
     return True
+
+
+def _searches_on_road(study: Study) -> bool:
+    """Without loss data there is no ride with losses; the search refuses to begin then, whatever it is for."""
+    return judges_by_road(study) and _has_loss_data(study)
 
 
 def _has_grade(study: Study) -> bool:
