@@ -74,13 +74,13 @@ def require_whole(values: Mapping[str, float], *fields: str) -> None:
             )
 
 
-def moved_field(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
+def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
     """The design with the toleranced field moved by z sigma; the tolerance names it with or without its unit."""
-    values = moved({name: getattr(design, name) for name in fields}, tolerance, z)
+    values = moved_number({name: getattr(design, name) for name in fields}, tolerance, z)
     return replace(design, **values)
 
 
-def moved(values: Mapping[str, float], tolerance: Tolerance, z: float) -> dict[str, float]:
+def moved_number(values: Mapping[str, float], tolerance: Tolerance, z: float) -> dict[str, float]:
     """Numbers with the toleranced one moved by z sigma; the tolerance names it with or without its unit."""
     name = tolerance.name if tolerance.name in values else split_unit(tolerance.name)[0]
     if name not in values:

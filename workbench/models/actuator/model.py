@@ -71,7 +71,7 @@ class ActuatorModel(BaseModel):
 
     def with_tolerance(self, design: BenchActuator, tolerance: Tolerance, z: float) -> BenchActuator:
         """The actuator with one drawn number moved by z standard deviations."""
-        return _actuator(device.moved(written(design.drawn), tolerance, z), design.is_shaft)
+        return _actuator(device.moved_number(written(design.drawn), tolerance, z), design.is_shaft)
 
     def respond(self, design: BenchActuator, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns of one table, see the module."""

@@ -53,7 +53,7 @@ class DamperModel(BaseModel):
 
     def with_tolerance(self, design: Damper, tolerance: Tolerance, z: float) -> Damper:
         """The damper with one constant moved by z standard deviations."""
-        return device.moved_field(design, tolerance, z, _REQUIRED + _OPTIONAL)
+        return device.moved(design, tolerance, z, _REQUIRED + _OPTIONAL)
 
     def respond(self, design: Damper, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns of one table, see the module."""

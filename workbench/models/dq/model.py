@@ -64,7 +64,7 @@ class DqModel(BaseModel):
 
     def with_tolerance(self, design: DqMachine, tolerance: Tolerance, z: float) -> DqMachine:
         """The machine with one constant moved by z standard deviations."""
-        return device.moved_field(design, tolerance, z, _REQUIRED + _OPTIONAL)
+        return device.moved(design, tolerance, z, _REQUIRED + _OPTIONAL)
 
     def respond(self, design: DqMachine, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns of one table, see the module."""
