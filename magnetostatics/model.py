@@ -20,6 +20,7 @@ from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, 
 from magnetostatics.iron import Iron, IronState
 from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
+from magnetostatics.passes import add_scattered, gathered
 from magnetostatics.topology import IRON, Topology
 from magnetostatics.unknowns import Turn, Unknowns
 from materials.magnet import Magnet
@@ -358,8 +359,9 @@ class _Problem:
 
     def residual(self, u: np.ndarray) -> np.ndarray:
         """Load minus field forces (m,) [A]."""
-        iron = self.model.topology.iron_adder @ self._iron_at(u).forces.ravel()
-        return self.load - self.system.linear_product(u) - iron
+        forces = self.system.linear_product(u)
+        add_scattered(forces, self._iron_at(u).forces, *self.model.topology.iron_unknowns)
+        return self.load - forces
 
     def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Newton step (m,)."""
@@ -376,8 +378,7 @@ class _Problem:
     def _iron_at(self, u: np.ndarray) -> IronState:
         """The iron at a field; residual and tangent of one field share it."""
         if self._iron is None or self._iron[0] is not u:
-            column, sign = self.model.topology.iron_unknowns
-            self._iron = u, self.model.iron.at(u[column] * sign)
+            self._iron = u, self.model.iron.at(gathered(u, *self.model.topology.iron_unknowns))
         return self._iron[1]
 
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from math import nan
+from math import inf, nan
+from operator import attrgetter
 
 import numpy as np
 
@@ -103,21 +104,21 @@ class DesignSolver:
 
         Each mesh is that of the machine with the most others in its reach, and these are solved from it outwards.
         """
-        left = dict(enumerate(machines))
-        found: dict[int, Design | None] = {number: None for number in left}
+        left, apart = list(range(len(machines))), _distances(machines, machines)
+        found: dict[int, Design | None] = dict.fromkeys(left)
         while left:
-            base = _most_central(list(left.values()))
+            base = left[_most_central(apart[np.ix_(left, left)])]
             with suppress(GeometryError):
-                found |= self._around(base, left)
-            left = {number: machine for number, machine in left.items() if machine != base and found[number] is None}
+                order = sorted(left, key=lambda number: float(apart[number, base]))
+                found |= self._around(machines[base], {number: machines[number] for number in order})
+            left = [number for number in left if machines[number] != machines[base] and found[number] is None]
         return list(found.values())
 
     def _around(self, base: Machine, machines: dict[int, Machine]) -> dict[int, Design]:
         """Those of the machines that the mesh of one of them can be moved onto."""
         check_machine(base)
         found, model = {}, self._meshed(base)
-        for number in sorted(machines, key=lambda k: _distance(machines[k], base)):
-            machine = machines[number]
+        for number, machine in machines.items():
             moved = model if machine == base else self._moved(machine)
             if moved is not None:
                 found[number] = self._judged(machine, moved)
@@ -182,7 +183,9 @@ class DesignSolver:
 
     def _nearest(self, machine: Machine) -> _Solved | None:
         """The most similar design on this mesh, whose fields are a start."""
-        return min(self._solved, key=lambda known: _distance(machine, known.machine), default=None)
+        if not self._solved:
+            return None
+        return self._solved[int(_distances([machine], [known.machine for known in self._solved]).argmin())]
 
     def _meshed(self, machine: Machine) -> FieldModel:
         self.mesh_anew()
@@ -191,7 +194,9 @@ class DesignSolver:
         return model
 
     def _moved(self, machine: Machine) -> FieldModel | None:
-        if self._morpher is None or not _is_near(machine, dimensions_of(self._morpher.section.machine)):
+        if self._morpher is None:
+            return None
+        if _distances([machine], [dimensions_of(self._morpher.section.machine)]).item() > 1:
             return None
         try:
             section = self._morpher.to(machine)
@@ -244,23 +249,29 @@ def _directional(function: Callable[[np.ndarray], float], here: np.ndarray, slop
     return (function(here + _TINY * slope) - function(here - _TINY * slope)) / (2 * _TINY)
 
 
-def _is_near(machine: Machine, base: Machine) -> bool:
-    return (machine.slots, machine.poles) == (base.slots, base.poles) and _distance(machine, base) <= 1
+def _distances(machines: Sequence[Machine], bases: Sequence[Machine]) -> np.ndarray:
+    """Largest relative difference of a dimension of every machine from every base, (n, m).
+
+    As a share of what a mesh may be moved, dimensionless; infinite between other numbers of slots or poles.
+    """
+    sizes, of_bases = (_numbers(some, *_FARTHEST) for some in (machines, bases))
+    kinds, of_base_kinds = (_numbers(some, "slots", "poles") for some in (machines, bases))
+    apart = np.abs(sizes[:, None] / of_bases - 1) / np.array(list(_FARTHEST.values()))
+    return np.where((kinds[:, None] == of_base_kinds).all(axis=2), apart.max(axis=2), inf)
 
 
-def _distance(machine: Machine, base: Machine) -> float:
-    """Largest relative difference of a dimension, as a share of what a mesh may be moved."""
-    return max(abs(getattr(machine, name) / getattr(base, name) - 1) / share for name, share in _FARTHEST.items())
+def _numbers(machines: Sequence[Machine], *names: str) -> np.ndarray:
+    """Named values of machines, (machines, names)."""
+    return np.array(list(map(attrgetter(*names), machines)), dtype=float).reshape(-1, len(names))
 
 
-def _most_central(machines: list[Machine]) -> Machine:
-    """The machine with the most others in the reach of its mesh; of equals the one closest to them."""
+def _most_central(apart: np.ndarray) -> int:
+    """Index of the machine with the most others in the reach of its mesh; of equals the one closest to them.
 
-    def rank(base: Machine) -> tuple[int, float]:
-        near = [_distance(machine, base) for machine in machines if _is_near(machine, base)]
-        return -len(near), sum(near)
-
-    return min(machines, key=rank)
+    apart: distances of every machine from every base, dimensionless (n, n)
+    """
+    is_near = apart <= 1
+    return int(np.lexsort((np.where(is_near, apart, 0.0).sum(axis=0), -is_near.sum(axis=0)))[0])
 
 
 @dataclass(frozen=True)
