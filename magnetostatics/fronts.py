@@ -81,7 +81,7 @@ def _indexed(
     """
     entries = _bucketed(pairs[0], int(starts[-1]))
     owner = np.repeat(np.arange(len(starts) - 1), np.diff(row_starts)) * starts[-1]
-    rows = np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner
+    rows = (np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner).astype(np.uint32)
     return {
         "row_starts": row_starts,
         "rows": rows,
@@ -273,7 +273,7 @@ def _relative_places(
     starts: np.ndarray, row_starts: np.ndarray, rows: np.ndarray, child: np.ndarray, sibling: np.ndarray
 ) -> np.ndarray:
     """``Fronts.relative``, indices (r,); the arguments as there, indices (s + 1,), (s + 1,), (r,), (s,) and (s,)."""
-    relative, place = np.zeros_like(rows), np.empty(starts[-1], np.int64)
+    relative, place = np.zeros(len(rows), np.uint32), np.empty(starts[-1], np.uint32)
     for s in range(len(child)):
         for k in range(row_starts[s], row_starts[s + 1]):
             place[rows[k]] = k - row_starts[s]
