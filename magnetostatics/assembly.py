@@ -7,12 +7,12 @@ depends on the rotor's turn. Entries are addressed by one integer key, column * 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 
 import numpy as np
 
 from magnetostatics.cholesky import SymmetricSystem
-from magnetostatics.passes import add_scattered, addresses, merged, symmetric_product
+from magnetostatics.passes import add_scattered, addresses, found_in, merged, symmetric_product
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +81,14 @@ class JoinedPattern:
     """
 
     def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
-        band_keys = reduce(lambda first, second: merged(first, second)[0], (band.keys for band in bands.values()))
+        band_keys = np.unique(np.concatenate([band.keys for band in bands.values()]))
         keys, fixed_position, _ = merged(fixed.keys, band_keys)
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
         self.columns, self.rows = np.divmod(keys, self.size)
         self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))
         self.linear_position, self.iron_position = fixed_position[fixed.linear], fixed_position[fixed.iron]
         self.iron_places = self.iron_position.astype(np.int32)[fixed.iron_entries.places]
-        self.band_positions = {edges: merged(keys, band.keys)[2] for edges, band in bands.items()}
+        self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
 
     @cached_property
     def system(self) -> SymmetricSystem:

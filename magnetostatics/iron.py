@@ -8,11 +8,12 @@ In reference coordinates, with g the slopes of A, h = M g and b2 = g . h / |D| (
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from magnetostatics.elements import Elements
+from magnetostatics.elements import Elements, TriangleOrder
 from magnetostatics.passes import flux, iron_forces, tangent_tensor
 from materials.reluctivity import Reluctivity
 
@@ -29,6 +30,12 @@ class Iron:
         parts = [slice(end - count, end) for end, count in zip(ends, counts)]
         one_law = all(law is laws[0] for law in laws)
         self._laws = [(slice(None), laws[0])] if one_law else list(zip(parts, laws, strict=True))
+
+    def of_order(self, order: TriangleOrder, dofs: np.ndarray) -> Iron:
+        """The same iron with elements of another order; dofs: indices (F, E)."""
+        other = copy(self)
+        other.elements = Elements(order.of_distinct_gradients, dofs, self.elements.shape)
+        return other
 
     def at(self, local: np.ndarray) -> IronState:
         """The iron in the field of local values [Wb/m], (F, E)."""

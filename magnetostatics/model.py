@@ -137,12 +137,20 @@ class FieldModel:
         _check_magnets(section, materials)
         self.section, self.materials, self.settings = section, materials, settings
         self.topology = topology or Topology(section, order)
-        self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
-        counts = [len(self.topology.regions[name]) for name in IRON]
-        steels = zip(IRON, (materials.stator_steel, materials.rotor_steel))
-        laws = [law_in(steel, section, name) for name, steel in steels]
-        self.iron = Iron(self.elements.take(self.topology.iron), counts, laws)
         self._joined: tuple[Turn, JoinedSystem] | None = None
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Of the whole mesh."""
+        return Elements.of(self.order, self.section.mesh.p[:, self.section.mesh.t], self.topology.dofs)
+
+    @cached_property
+    def iron(self) -> Iron:
+        """The elements of the steels and their laws."""
+        counts = [len(self.topology.regions[name]) for name in IRON]
+        steels = zip(IRON, (self.materials.stator_steel, self.materials.rotor_steel))
+        laws = [law_in(steel, self.section, name) for name, steel in steels]
+        return Iron(self.elements.take(self.topology.iron), counts, laws)
 
     @property
     def order(self) -> TriangleOrder:
@@ -250,9 +258,14 @@ class FieldModel:
     @cached_property
     def _linear_values(self) -> np.ndarray:
         """Entries of the linear part without the rotor side of the gap."""
+        return self.topology.fixed_pattern.linear_entries.sum(self.order.stiffness @ self._linear_metric)
+
+    @cached_property
+    def _linear_metric(self) -> np.ndarray:
+        """Metric times reluctivity of the elements of constant reluctivity outside the rotor side of the gap [m/H],
+        (3, k)."""
         which = self.topology.linear
-        elements = self.elements.take(which)
-        return self.topology.fixed_pattern.linear_entries.sum(elements.stiffness(self._reluctivity[which]))
+        return np.take(self.elements.metric, which, axis=1) * self._reluctivity[which]
 
     @cached_property
     def _reluctivity(self) -> np.ndarray:
@@ -327,12 +340,50 @@ class FieldModel:
     @cached_property
     def coarse_model(self) -> FieldModel:
         """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
-        settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, self.settings.tolerance))
-        return FieldModel(self.section, self.materials, settings, topology=self._coarse_topology)
+        return _CoarseModel(self, self._coarse_topology)
 
     @cached_property
     def _coarse_topology(self) -> Topology:
         return Topology(self.section, LINEAR)
+
+
+class _CoarseModel(FieldModel):
+    """The problem of a model with quadratic elements on the same triangles with linear ones: it shares all that both
+    have in common, and its loads are theirs on fewer functions."""
+
+    def __init__(self, fine: FieldModel, topology: Topology) -> None:
+        settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, fine.settings.tolerance))
+        super().__init__(fine.section, fine.materials, settings, topology=topology)
+        self._fine = fine
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Of the whole mesh."""
+        return Elements(self.order, self.topology.dofs, self._fine.elements.shape)
+
+    @cached_property
+    def iron(self) -> Iron:
+        """The elements of the steels and their laws."""
+        return self._fine.iron.of_order(self.order, self.topology.dofs[:, self.topology.iron])
+
+    @property
+    def _linear_metric(self) -> np.ndarray:
+        return self._fine._linear_metric
+
+    @cached_property
+    def magnet_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (magnets, n) [A]."""
+        return lower_order(self.topology.facets, self._fine.magnet_loads)
+
+    @cached_property
+    def phase_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (3, n), dimensionless."""
+        return lower_order(self.topology.facets, self._fine.phase_loads)
+
+    @cached_property
+    def coil_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (coils, n), dimensionless."""
+        return lower_order(self.topology.facets, self._fine.coil_loads)
 
 
 class _Problem:

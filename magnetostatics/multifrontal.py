@@ -17,7 +17,8 @@ def factorise(fronts: Fronts, values: np.ndarray, factor: np.ndarray, workspace:
     """Fill the factor; false where the matrix is not positive definite.
 
     values: of the entries in the order of the given pattern [any unit], (k,)
-    factor: the panels, [its square root], on the diagonals one over it, (l,); workspace: for the update matrices [any unit], (w,)
+    factor: the panels, [its square root], on the diagonals one over it, (l,)
+    workspace: for the update matrices [any unit], (w,)
     """
     for s in range(len(fronts.parent)):
         pivots = fronts.columns[s + 1] - fronts.columns[s]
@@ -57,17 +58,17 @@ def _add_child(
     places = fronts.relative[
         fronts.row_starts[child] + fronts.columns[child + 1] - fronts.columns[child] : fronts.row_starts[child + 1]
     ]
-    size, below, j = len(places), height - pivots, 0
+    size, below = len(places), height - pivots
     source = workspace[fronts.updates[child] : fronts.updates[child] + size * size]
-    while j < size and places[j] < pivots:
-        column = panel[places[j] * height : (places[j] + 1) * height]
-        for i in range(j, size):
-            column[places[i]] += source[j * size + i]
-        j += 1
-    for j in range(j, size):
-        start = update + (places[j] - pivots) * below - pivots
-        for i in range(j, size):
-            workspace[np.uint64(start + places[i])] += source[j * size + i]
+    for j in range(size):
+        if places[j] < pivots:
+            column = panel[places[j] * height : (places[j] + 1) * height]
+            for i in range(j, size):
+                column[places[i]] += source[j * size + i]
+        else:
+            start = update + (places[j] - pivots) * below - pivots
+            for i in range(j, size):
+                workspace[np.uint64(start + places[i])] += source[j * size + i]
 
 
 @vectorised

@@ -80,6 +80,22 @@ def add_scattered(total: np.ndarray, local: np.ndarray, places: np.ndarray, sign
 
 
 @vectorised
+def lowered(facets: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Loads on the linear functions [A], (m, nodes), from those on the quadratic ones [A], (m, n).
+
+    facets: indices of the ends of the edges, (2, k)
+    """
+    nodes = loads.shape[1] - facets.shape[1]
+    found = loads[:, :nodes].copy()
+    for m in range(len(loads)):
+        for edge in range(facets.shape[1]):
+            half = loads[m, nodes + edge] / 2
+            found[m, facets[0, edge]] += half
+            found[m, facets[1, edge]] += half
+    return found
+
+
+@vectorised
 def iron_forces(weighted: np.ndarray, h1: np.ndarray, h2: np.ndarray, nu: np.ndarray) -> np.ndarray:
     """Local vectors integral nu grad A . grad v [A], (F, E).
 
@@ -183,3 +199,18 @@ def merged(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarra
             j += 1
         found += 1
     return keys[:found].copy(), of_first, of_second
+
+
+@compiled
+def found_in(keys: np.ndarray, column_starts: np.ndarray, some: np.ndarray) -> np.ndarray:
+    """Indices (k,) of some keys among all; keys: sorted, dimensionless, column times n plus row, (m,).
+
+    column_starts: where the keys of every column begin, indices (n + 1,); some: of the keys, dimensionless, (k,)
+    """
+    places = np.empty(len(some), np.int64)
+    for k in range(len(some)):
+        place = column_starts[some[k] // (len(column_starts) - 1)]
+        while keys[place] != some[k]:
+            place += 1
+        places[k] = place
+    return places
