@@ -81,8 +81,8 @@ class JoinedPattern:
     """
 
     def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
-        band_keys = np.unique(np.concatenate([band.keys for band in bands.values()]))
-        keys, fixed_position, _ = merged(fixed.keys, band_keys)
+        band_keys = np.sort(np.concatenate([band.keys for band in bands.values()]))
+        keys, fixed_position, _ = merged(fixed.keys, band_keys[np.diff(band_keys, prepend=-1) > 0])
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
         self.columns, self.rows = np.divmod(keys, self.size)
         self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))

@@ -176,6 +176,15 @@ class FieldModel:
         other._coarse_topology = self._coarse_topology
         return other
 
+    @property
+    def finest(self) -> FieldModel:
+        """The model with quadratic elements that one with linear ones belongs to; any other one is its own."""
+        return self
+
+    def of_order(self, order: TriangleOrder) -> FieldModel:
+        """The same problem with elements of the same or the lower order."""
+        return self if order is self.order else self.coarse_model
+
     # ---- sources ----------------------------------------------------------------------------------------------
 
     @cached_property
@@ -355,6 +364,15 @@ class _CoarseModel(FieldModel):
         settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, fine.settings.tolerance))
         super().__init__(fine.section, fine.materials, settings, topology=topology)
         self._fine = fine
+
+    @property
+    def finest(self) -> FieldModel:
+        """The model that this one belongs to."""
+        return self._fine
+
+    def like(self, section: CrossSection | None = None, materials: MachineMaterials | None = None) -> FieldModel:
+        """As of the fine model, with linear elements."""
+        return self._fine.like(section, materials).coarse_model
 
     @cached_property
     def elements(self) -> Elements:

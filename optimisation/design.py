@@ -93,6 +93,7 @@ class DesignSolver:
         self.judge = judge
         self._morpher: Morpher | None = None
         self._solved: list[_Solved] = []  # designs on the mesh of the morpher
+        self._probes: ProbeReader | None = None  # of the last of them
 
     def design(self, machine: Machine) -> Design:
         """The judged machine. Raises as ``Judge.judge``."""
@@ -132,7 +133,8 @@ class DesignSolver:
             states.append(model.solve(point, start=start))
         further = self.judge.torque.further(states, near.further if near else ())
         self._solved.append(_Solved(machine, states, further))
-        return self._summary(self._solved[-1], probe_reader(model))
+        self._probes = probe_reader(model, self._probes)
+        return self._summary(self._solved[-1], self._probes)
 
     def _summary(self, solved: _Solved, probes: ProbeReader) -> Design:
         seen = np.array([_flux_densities(state, probes) for state in solved.states])
@@ -157,14 +159,14 @@ class DesignSolver:
         machine_of: changes [any units], (k,) -> machine, zero for the last design
         steps: small size of each change [as the change], (k,)
         """
-        if self._morpher is None:
+        if self._morpher is None or self._probes is None:
             raise ValueError("no design has been judged yet, so there is none to take derivatives of")
         variations: dict[str, Variation] = {
             str(number): Dimension(self._morpher, partial(_one_change, machine_of, number, len(steps)), step)
             for number, step in enumerate(steps)
         }
-        solved, reader, torque = self._solved[-1], probe_reader(self._solved[-1].states[0].model), self.judge.torque
-        read = partial(_state_results, torque, reader)
+        solved, torque = self._solved[-1], self.judge.torque
+        read = partial(_state_results, torque, self._probes)
         states = _values_and_slopes(solved.states, variations, read)
         further = _values_and_slopes(solved.further, variations, lambda solution: np.array([torque.read(solution)]))
         return _torque_slope(torque, states, further), self._limited_slope(states)
@@ -179,7 +181,7 @@ class DesignSolver:
 
     def mesh_anew(self) -> None:
         """Forget the mesh: the next design gets its own."""
-        self._morpher, self._solved = None, []
+        self._morpher, self._solved, self._probes = None, [], None
 
     def _nearest(self, machine: Machine) -> _Solved | None:
         """The most similar design on this mesh, whose fields are a start."""
