@@ -27,7 +27,7 @@ from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 from units import MU_0
 
-_COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
+_COARSE = NewtonSettings(always_step=False)  # of the linear elements that quadratic ones start from
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,9 @@ class FieldModel:
         topology: Topology | None = None,
     ) -> None:
         _check_magnets(section, materials)
-        self.section, self.materials, self.settings = section, materials, settings
+        self.section, self.materials = section, materials
         self.topology = topology or Topology(section, order)
+        self.settings = settings if self.order is QUADRATIC else replace(settings, chords_within=0.0)
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @cached_property
