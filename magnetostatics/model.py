@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -116,6 +116,16 @@ class FieldSolution:
     newton: NewtonRecord
     cpu_seconds: float
     coarse: FieldSolution | None = None
+
+
+def blended(solutions: Sequence[FieldSolution], weights: np.ndarray) -> FieldSolution:
+    """A start between or beyond solutions on the same triangles.
+
+    weights: of their potentials, dimensionless (k,)
+    """
+    a = weights @ np.stack([solution.a for solution in solutions])
+    below = [solution.coarse for solution in solutions if solution.coarse is not None]
+    return replace(solutions[0], a=a, coarse=blended(below, weights) if below else None)
 
 
 class FieldModel:

@@ -16,13 +16,14 @@ from geometry.errors import GeometryError
 from geometry.machine import Machine, dimensions_of
 from geometry.morph import Morpher
 from magnetostatics.case import FamilyCase
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, blended
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import aligned_teeth
 from magnetostatics.probes import ProbeReader, probe_reader
 from magnetostatics.sensitivity import Variation, sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from magnetostatics.variations import Dimension
+from optimisation.starts import weights_at_origin
 from optimisation.states import SaturationReading
 from optimisation.torque import MeanTorque, TorqueObjective, TorqueOfReading, is_null_state
 
@@ -70,6 +71,12 @@ class _Solved:
     states: list[FieldSolution]
     further: list[FieldSolution]
 
+    @classmethod
+    def blended(cls, some: Sequence[_Solved], weights: np.ndarray) -> _Solved:
+        """The sum of fields times their weights, dimensionless (k,)."""
+        parts = [zip(*fields) for fields in ([one.states for one in some], [one.further for one in some])]
+        return cls(some[0].machine, *([blended(state, weights) for state in part] for part in parts))
+
     @property
     def iterations(self) -> int:
         """Newton iterations with the elements of the model."""
@@ -82,6 +89,7 @@ class _Solved:
 _FARTHEST = {"back_iron_width": 0.4, "rotor_outer_radius": 0.1, "stator_outer_radius": 0.1}
 
 
+_SOURCES = 8  # most similar designs whose fields a start is made of
 _TINY = 1e-9  # step along the slopes of the flux densities, per unit of a change
 
 
@@ -126,12 +134,12 @@ class DesignSolver:
         return found
 
     def _judged(self, machine: Machine, model: FieldModel) -> Design:
-        near = self._nearest(machine)
+        starts = self._starts(machine)
         states: list[FieldSolution] = []
         for number, point in enumerate(self.judge.states(machine)):
-            start = near.states[number] if near else (states[-1] if states else None)
+            start = starts.states[number] if starts else (states[-1] if states else None)
             states.append(model.solve(point, start=start))
-        further = self.judge.torque.further(states, near.further if near else ())
+        further = self.judge.torque.further(states, starts.further if starts else ())
         self._solved.append(_Solved(machine, states, further))
         self._probes = probe_reader(model, self._probes)
         return self._summary(self._solved[-1], self._probes)
@@ -183,11 +191,15 @@ class DesignSolver:
         """Forget the mesh: the next design gets its own."""
         self._morpher, self._solved, self._probes = None, [], None
 
-    def _nearest(self, machine: Machine) -> _Solved | None:
-        """The most similar design on this mesh, whose fields are a start."""
+    def _starts(self, machine: Machine) -> _Solved | None:
+        """Fields to start from, by those of the most similar designs on this mesh."""
         if not self._solved:
             return None
-        return self._solved[int(_distances([machine], [known.machine for known in self._solved]).argmin())]
+        places = _places([known.machine for known in self._solved], machine)
+        nearest = np.argsort(np.abs(places).max(axis=1), kind="stable")[:_SOURCES]
+        weights = weights_at_origin(places[nearest])
+        used = np.flatnonzero(weights)
+        return _Solved.blended([self._solved[number] for number in nearest[used]], weights[used])
 
     def _meshed(self, machine: Machine) -> FieldModel:
         self.mesh_anew()
@@ -260,6 +272,15 @@ def _distances(machines: Sequence[Machine], bases: Sequence[Machine]) -> np.ndar
     kinds, of_base_kinds = (_numbers(some, "slots", "poles") for some in (machines, bases))
     apart = np.abs(sizes[:, None] / of_bases - 1) / np.array(list(_FARTHEST.values()))
     return np.where((kinds[:, None] == of_base_kinds).all(axis=2), apart.max(axis=2), inf)
+
+
+def _places(machines: Sequence[Machine], origin: Machine) -> np.ndarray:
+    """Relative differences of the dimensions of machines from those of another one, dimensionless (n, 3).
+
+    As shares of what a mesh may be moved.
+    """
+    differences = _numbers(machines, *_FARTHEST) / _numbers([origin], *_FARTHEST) - 1
+    return differences / np.array(list(_FARTHEST.values()))
 
 
 def _numbers(machines: Sequence[Machine], *names: str) -> np.ndarray:
