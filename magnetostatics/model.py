@@ -201,14 +201,27 @@ class FieldModel:
     @cached_property
     def magnet_loads(self) -> np.ndarray:
         """integral nu (B_rx dv/dy - B_ry dv/dx) of every magnet in the sector (magnets, n) [A]."""
-        loads = [self._magnet_load(m) for m in range(self.section.magnets)]
-        return np.array(loads).reshape(len(loads), self.size)
+        numbers = range(self.section.magnets)
+        if not numbers:
+            return np.empty((0, self.size))
+        regions = [self.topology.regions[f"magnet_{m}"] for m in numbers]
+        sizes, elements = [len(region) for region in regions], self.elements.take(np.concatenate(regions))
+        points = np.split(elements.points, np.cumsum(sizes)[:-1], axis=2)
+        x, y = np.concatenate([self._strength(m, points[m]) for m in numbers], axis=2)
+        return self._scattered(elements.dofs, elements.forces(-y, x), np.repeat(numbers, sizes), len(numbers))
 
-    def _magnet_load(self, number: int) -> np.ndarray:
-        elements, magnet = self.magnet_elements(number), self.materials.magnet_at(number)
-        strength = magnet.remanence / (MU_0 * magnet.recoil_permeability)
-        x, y = self.magnetisation(number)
-        return elements.scatter(elements.forces(-strength * y, strength * x), self.size)
+    def _strength(self, number: int, points: np.ndarray) -> np.ndarray:
+        """nu B_r of a magnet at some points [m], (2, ...), x and y [A/m] in one (2, ...)."""
+        magnet = self.materials.magnet_at(number)
+        return magnet.remanence / (MU_0 * magnet.recoil_permeability) * np.stack(self._direction(number, points))
+
+    def _scattered(self, dofs: np.ndarray, local: np.ndarray, rows: np.ndarray, count: int) -> np.ndarray:
+        """Local vectors (F, E) added up to ``count`` vectors (count, n), all [any unit].
+
+        dofs: indices (F, E); rows: index of the vector that every element counts in (E,)
+        """
+        place = rows * self.size + dofs
+        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
 
     def magnet_elements(self, number: int) -> Elements:
         """The elements of a magnet."""
@@ -221,8 +234,10 @@ class FieldModel:
     def magnetisation(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the unit vector of the magnetisation at the quadrature points of a magnet, dimensionless, each
         (Q, E); magnets of odd number point inwards."""
-        angle = self.section.magnetisation_angle(number, self.magnet_elements(number).points)
-        angle = angle + self.materials.magnet_at(number).axis_error
+        return self._direction(number, self.magnet_elements(number).points)
+
+    def _direction(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        angle = self.section.magnetisation_angle(number, points) + self.materials.magnet_at(number).axis_error
         polarity = self.section.polarity(number)
         return polarity * np.cos(angle), polarity * np.sin(angle)
 
@@ -259,12 +274,15 @@ class FieldModel:
         elements = self.elements.take(np.concatenate(regions))
         area = np.bincount(side, weights=elements.weights.sum(0))
         local = elements.integrals() * ((factors / area)[side] / self.section.half_slots_per_coil_side)
-        place = np.asarray(rows)[side] * self.size + elements.dofs
-        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
+        return self._scattered(elements.dofs, local, np.asarray(rows)[side], count)
 
     def load(self, point: OperatingState) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
-        return self.magnet_loads.sum(0) + point.current_load(self)
+        return self._all_magnets_load + point.current_load(self)
+
+    @cached_property
+    def _all_magnets_load(self) -> np.ndarray:
+        return self.magnet_loads.sum(0)
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
