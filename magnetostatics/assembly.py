@@ -86,8 +86,8 @@ class JoinedPattern:
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
         self.columns, self.rows = np.divmod(keys, self.size)
         self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))
-        self.linear_position, self.iron_position = fixed_position[fixed.linear], fixed_position[fixed.iron]
-        self.iron_places = self.iron_position.astype(np.int32)[fixed.iron_entries.places]
+        self.linear_position = fixed_position[fixed.linear]
+        self.iron_places = fixed_position.astype(np.int32)[fixed.iron][fixed.iron_entries.places]
         self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
 
     @cached_property
