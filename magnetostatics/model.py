@@ -147,7 +147,7 @@ class FieldModel:
         _check_magnets(section, materials)
         self.section, self.materials = section, materials
         self.topology = topology or Topology(section, order)
-        self.settings = settings if self.order is QUADRATIC else replace(settings, chords_within=0.0)
+        self.settings = settings if self.order is QUADRATIC else replace(settings, chords_within=0.0)  # not worth it
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @cached_property
