@@ -21,6 +21,12 @@ Result = TypeVar("Result")
 Arguments = ParamSpec("Arguments")
 
 
+def use_one_thread() -> None:
+    """BLAS of this process and of those that it starts on one thread; heeded where no library has loaded BLAS yet."""
+    for variable in ONE_THREAD:
+        os.environ[variable] = "1"
+
+
 class LostWorker(Exception):
     """The worker that ran a task is gone."""
 
@@ -95,8 +101,7 @@ class Processes(Pool):
 
     def _started(self) -> Executor:
         if self._executor is None:
-            for variable in ONE_THREAD:
-                os.environ[variable] = "1"
+            use_one_thread()
             # Forking this process itself is not safe once libraries have started threads.
             context = multiprocessing.get_context("spawn" if sys.platform == "win32" else "forkserver")
             if hasattr(context, "set_forkserver_preload"):

@@ -7,6 +7,7 @@ import sys
 from dataclasses import dataclass
 from importlib import import_module
 
+from processes import use_one_thread
 from study.errors import exit_on_wrong_study
 
 
@@ -62,6 +63,7 @@ def main(arguments: list[str] | None = None) -> None:
 
     Exit codes: 0 done, 1 a stage could not go on or the field did not converge, 2 wrong input, 130 Ctrl-C.
     """
+    use_one_thread()
     given = sys.argv[1:] if arguments is None else arguments
     options = _parser(given).parse_args(given)
     with exit_on_wrong_study():

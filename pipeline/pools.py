@@ -6,7 +6,6 @@ its workers keep what they have imported from one stage to the next.
 
 from __future__ import annotations
 
-import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping
@@ -19,7 +18,7 @@ from typing import Any
 from tqdm import tqdm
 
 from pipeline.checkpoint import Checkpoint
-from processes import ONE_THREAD, LostWorker, Pool, Result, Task, default_workers
+from processes import LostWorker, Pool, Result, Task, default_workers, use_one_thread
 
 MOST_LOST_WORKERS = 3  # a task that ended its worker this often is given up
 PATIENCE = 30.0  # s without a result, after which it is asked whether anybody still works
@@ -102,8 +101,7 @@ class DaskCluster(Pool):
 
 
 def _local_cluster(distributed: ModuleType, size: int, scratch: str) -> Any:
-    for variable in ONE_THREAD:
-        os.environ[variable] = "1"
+    use_one_thread()
     return distributed.LocalCluster(
         n_workers=size,
         threads_per_worker=1,

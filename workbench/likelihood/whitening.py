@@ -10,6 +10,8 @@ from workbench.data.repeats import follows, scans_of
 from workbench.data.stack import Channel, Stack
 from workbench.likelihood.noise import ChannelNoise, Noise, scan_shapes
 
+LEAST_ERROR = 1e-3  # of a law, in standard deviations of a row, below which it is none
+
 
 @dataclass(frozen=True, eq=False)
 class LawError:
@@ -30,10 +32,16 @@ class LawError:
 
 
 def law_error(rows: slice, wrong: np.ndarray) -> LawError:
-    """Of whitened shapes with standard normal weights (n_c, q)."""
-    directions, size, _ = np.linalg.svd(wrong, full_matrices=False)
-    keep = size > 1e-3
-    return LawError(rows, directions[:, keep], size[keep])
+    """Of whitened shapes with standard normal weights (n_c, q).
+
+    Left singular vectors by the smaller one of both products of the shapes, in less than half the time of all three
+    factors; what rounding does to the smallest of them is below what ``apply`` makes of it, size^2 / 2.
+    """
+    by_rows = wrong.shape[0] <= wrong.shape[1]
+    squares, turned = np.linalg.eigh(wrong @ wrong.T if by_rows else wrong.T @ wrong)
+    keep = squares > LEAST_ERROR**2
+    size = np.sqrt(squares[keep])
+    return LawError(rows, turned[:, keep] if by_rows else wrong @ turned[:, keep] / size, size)
 
 
 @dataclass(frozen=True, eq=False)
