@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -24,9 +25,9 @@ class NewtonSettings:
     most_iterations: more than this and the solve is given up
     smallest_step: shortest fraction of a step that backtracking may take
     always_step: take one step even from a start that is good enough
-    chords_within: times the tolerance; from a residual below this, chord steps take the place of Newton steps as long
-        as they are worth it, with quadratic elements. They stop just below the tolerance, where a Newton step would
-        have gone far beyond: torque is then within 0.002 % of the converged one, without them within 0.0001 %
+    chords_within: in tolerances, dimensionless; from a residual below this, chord steps take the place of Newton steps
+        as long as they are worth it, with quadratic elements. They stop just below the tolerance, where a Newton step
+        would have gone far beyond: torque is then within 0.003 % of the converged one, without them within 0.0004 %
     """
 
     tolerance: float = 2e-4
@@ -94,11 +95,11 @@ def _chords(
 
     wanted: residual to come below [A]; within: times it from which on they are tried
     """
-    before, size = np.inf, np.linalg.norm(r)
+    before, size = inf, float(np.linalg.norm(r))
     while wanted < size < min(within * wanted, _WORTH * before):
         before = size
         u, r = _closer(u, r, residual, again)
-        size = np.linalg.norm(r)
+        size = float(np.linalg.norm(r))
     return u, r
 
 

@@ -70,9 +70,9 @@ def gathered(values: np.ndarray, places: np.ndarray, signs: np.ndarray) -> np.nd
 
 @vectorised
 def add_scattered(total: np.ndarray, local: np.ndarray, places: np.ndarray, signs: np.ndarray) -> None:
-    """Add local values (F, E) to those of all unknowns (n,), all [any unit], in place.
+    """Add local values to those of all unknowns, in place.
 
-    places: indices (F, E); signs: dimensionless, (F, E)
+    total: [any unit], (n,); local: [the same], (F, E); places: indices (F, E); signs: dimensionless, (F, E)
     """
     for f in range(len(places)):
         for e in range(places.shape[1]):
@@ -83,7 +83,7 @@ def add_scattered(total: np.ndarray, local: np.ndarray, places: np.ndarray, sign
 def lowered(facets: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Loads on the linear functions [A], (m, nodes), from those on the quadratic ones [A], (m, n).
 
-    facets: indices of the ends of the edges, (2, k)
+    facets: indices of the ends of the edges, (2, k); loads: [A], (m, n)
     """
     nodes = loads.shape[1] - facets.shape[1]
     found = loads[:, :nodes].copy()
@@ -138,8 +138,9 @@ def addresses(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Keys (k,), sorted and distinct, and of every local entry the index of its key and its sign, (K, E) each.
 
-    Arguments as of ``magnetostatics.assembly.Entries.of``; all but signs indices. A fixed unknown has sign 0, no key
-    of its own, and index 0.
+    A fixed unknown has sign 0, no key of its own, and index 0. Keys are column times size plus row, dimensionless.
+    pairs: local (row, column) indices, (K,) each; dofs: indices, (F, E); size: number of unknowns
+    column: index of the unknown of every degree of freedom, (n,); dof_sign: its sign, dimensionless, (n,)
     """
     count, elements = len(pairs[0]), dofs.shape[1]
     lower, upper = np.empty(count * elements, np.int64), np.empty(count * elements, np.int64)
@@ -182,7 +183,10 @@ def _sorted_by(keys: np.ndarray, entries: np.ndarray, size: int) -> np.ndarray:
 
 @compiled
 def merged(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sorted distinct keys of two sorted lists of distinct keys (k,), and the indices in them of either list."""
+    """Sorted distinct keys (k,) of two sorted lists of distinct keys, and the indices in them of either list.
+
+    first, second: dimensionless, (m,) and (l,)
+    """
     keys = np.empty(len(first) + len(second), np.int64)
     of_first, of_second = np.empty(len(first), np.int64), np.empty(len(second), np.int64)
     i, j, found = 0, 0, 0

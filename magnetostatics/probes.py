@@ -21,7 +21,8 @@ class ProbeReader:
 
     dofs: indices (F, n); gradient_x, gradient_y: of the functions [1/m], (F, n)
     weights: share of a point in the mean of its probe (n,); number: index of the probe (n,); names: of the probes
-    elements: indices of those that hold the points (n,); near: of those that may, on a mesh like this one (n, m)
+    elements: indices of those that hold the points (n,)
+    near: indices of those that may, on a mesh like this one, (n, m)
     """
 
     dofs: np.ndarray
