@@ -27,7 +27,7 @@ from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 from units import MU_0
 
-_COARSE = NewtonSettings(always_step=False)  # of the linear elements that quadratic ones start from
+_COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
 
 
 @dataclass(frozen=True)
@@ -386,8 +386,10 @@ class FieldModel:
 
 
 class _CoarseModel(FieldModel):
-    """The problem of a model with quadratic elements on the same triangles with linear ones: it shares all that both
-    have in common, and its loads are theirs on fewer functions."""
+    """The problem of a model with quadratic elements on the same triangles with linear ones.
+
+    Triangles, steels and what is linear are those of the fine model; its loads are the fine ones on fewer functions.
+    """
 
     def __init__(self, fine: FieldModel, topology: Topology) -> None:
         settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, fine.settings.tolerance))

@@ -149,7 +149,9 @@ class Dimension:
         return self._changed(model.finest, change).of_order(model.order), point
 
     def _changed(self, model: FieldModel, change: float) -> FieldModel:
-        """Moved once for all states of a model; a gradient asks for several."""
+        """Moved once for all states of a model; a gradient asks for several. Those of other models are forgotten."""
+        if any(kept is not model for kept, _ in self._models):
+            self._models.clear()
         if (model, change) not in self._models:
             self._models[model, change] = model.like(self.morpher.to(self.machine(change)))
         return self._models[model, change]
