@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -189,7 +190,7 @@ class FieldModel:
 
     @property
     def finest(self) -> FieldModel:
-        """The model with quadratic elements that one with linear ones belongs to; any other one is its own."""
+        """The problem with quadratic elements where this one belongs to such a one, else this one itself."""
         return self
 
     def of_order(self, order: TriangleOrder) -> FieldModel:
@@ -378,7 +379,7 @@ class FieldModel:
     @cached_property
     def coarse_model(self) -> FieldModel:
         """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
-        return _CoarseModel(self, self._coarse_topology)
+        return _CoarseModel(copy(self), self._coarse_topology)  # of a copy: a cycle would hold its memory for long
 
     @cached_property
     def _coarse_topology(self) -> Topology:
@@ -398,7 +399,7 @@ class _CoarseModel(FieldModel):
 
     @property
     def finest(self) -> FieldModel:
-        """The model that this one belongs to."""
+        """The problem with quadratic elements."""
         return self._fine
 
     def like(self, section: CrossSection | None = None, materials: MachineMaterials | None = None) -> FieldModel:

@@ -149,15 +149,15 @@ class Dimension:
         return self._changed(model.finest, change).of_order(model.order), point
 
     def _changed(self, model: FieldModel, change: float) -> FieldModel:
-        """Moved once for all states of a model; a gradient asks for several. Those of other models are forgotten."""
-        if any(kept is not model for kept, _ in self._models):
-            self._models.clear()
-        if (model, change) not in self._models:
-            self._models[model, change] = model.like(self.morpher.to(self.machine(change)))
-        return self._models[model, change]
+        """Moved once for all states of a model; a gradient asks for several. The last one is kept."""
+        kept = self._models.get(change)
+        if kept is None or kept[0].section is not model.section or kept[0].materials is not model.materials:
+            kept = self._models[change] = model, model.like(self.morpher.to(self.machine(change)))
+        return kept[1]
 
     @cached_property
-    def _models(self) -> dict[tuple[FieldModel, float], FieldModel]:
+    def _models(self) -> dict[float, tuple[FieldModel, FieldModel]]:
+        """By the change: the model that was changed, and what became of it."""
         return {}
 
 
