@@ -76,6 +76,14 @@ class GearEfficiency:
                     f"gears: the efficiency when {name} must lie above 0 and not above 1, found {value:g}; correct it"
                 )
 
+    def through(self, behind: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Force at the output while nothing accelerates [N], of the broadcast shape: F / eta where the output drives,
+        F eta where the rotor does.
+
+        behind: F of friction and rotor behind the meshes [N]; velocity: of the output [m/s], which broadcast
+        """
+        return np.where(behind * velocity > 0, behind / self.driven, behind * self.driving)
+
 
 LOSSLESS = GearEfficiency()
 

@@ -17,6 +17,7 @@ from actuator.errors import ActuatorError
 from actuator.imposed import imposed_motion
 from actuator.model import Actuator
 from actuator.parts import CompliantMount
+from actuator.terminals import Terminals
 from bench.force_loops import (
     CONTACT,
     LOSS,
@@ -37,6 +38,7 @@ from bench.impedance import sine_impedance
 from bench.record import Record
 from electrical.shunted_machine import Bridge, Circuit, ShortedAtTerminals
 from electrical.synchronous_machine import SynchronousMachine
+from vehicle.comfort import weighted_acceleration
 from vehicle.designed import BenchMachine, DesignedActuator
 from vehicle.hardware_case import LOAD_CELL, NO_LOOP, LoopTest, WantedLoop, loop_numbers, low_levels
 from vehicle.hardware_loop import LoopRun, SimulatedDevice
@@ -59,10 +61,11 @@ SAMPLING = 4000.0  # Hz, text to eq. 4.28
 _RAMP = 0.15  # s in which a loop's amplitude grows
 _LOOP_PERIODS = 8
 HIL_DAMPING, HIL_DURATION = 1000.0, 4.0  # Ns/m (section 5.5), s
-_VELOCITIES = np.linspace(0.02, 1.0, 50)  # m/s, of the maps
+_VELOCITIES = np.linspace(0.01, 1.0, 100)  # m/s, of the maps
 _SETTLED = 4  # periods of a sine that are cut off
 _PERIODS = 8
 _PER_PERIOD = 400  # samples
+_THINNED = 8  # of the samples of the chirp that a figure shows
 
 
 @dataclass(frozen=True)
@@ -99,11 +102,13 @@ class BenchTests:
     shunts: Table 5.1; shunted: force [N] and efficiency over (shunt, velocity): shunt [ohm], velocity [m/s]
     quadrants: over (torque, velocity): force [N], electrical [W] and efficiency of the controlled machine, in rebound
     impedance: |Z| [Ns/m]: of the shunted machine over (shunt, frequency) (B.4 with the pole of a synchronous machine),
-    of the controlled one over (damping, frequency)
+    with its phase [rad], of the controlled one over (damping, frequency)
+    chirp: that of ``active`` over time [s]: frequency [Hz], current [A], force [N], angle of the rotor [rad], each (t,)
     active: force over current [N/A] and angle over force [rad/N] over frequency [Hz], with coherence
     identification: of the eight parameters from the loops; true: what the actuator states of them [SI], by name
     matches: the loops beside the identified model; in_the_loop: tests of section 5.5; loops_in_time: of these over
-    (test, time): force, wanted [N], stroke, axis [m], acceleration [m/s^2]
+    (test, time): force, wanted [N], stroke, axis, body, wheel [m], acceleration, felt [m/s^2], holding: missing tyre
+    load, torque [Nm], angle [rad], mechanical, electrical: powers [W], current: to the battery [A]; road [m], (time,)
     """
 
     lumped: LumpedActuator
@@ -111,6 +116,7 @@ class BenchTests:
     shunted: xr.Dataset
     quadrants: xr.Dataset
     impedance: xr.Dataset
+    chirp: xr.Dataset
     active: xr.Dataset
     identification: Identification
     true: dict[str, float]
@@ -125,18 +131,20 @@ def bench_stage(own: DesignedActuator, bench: BenchMachine) -> BenchTests:
     lumped = lumped_actuator(actuator, machine)
     found, matches = identified(actuator, float(machine.torque_constant))
     tests = hardware_tests(actuator)
+    chirp = active_chirp(actuator, float(machine.torque_constant))
     return BenchTests(
         lumped=lumped,
         shunts=tuple(shunt_row(lumped, actuator, shunt) for shunt in SHUNTS),
         shunted=shunt_curves(lumped, actuator),
         quadrants=four_quadrants(actuator),
         impedance=impedances(lumped, actuator),
-        active=active_response(actuator, float(machine.torque_constant)),
+        chirp=chirp.isel(time=slice(None, None, _THINNED)),
+        active=active_response(chirp),
         identification=found,
         true=stated_parameters(actuator, float(machine.torque_constant)),
         matches=matches,
         in_the_loop=tuple(LoopRow(name, loop_numbers(_loop_test(), run), run.lost) for name, run in tests.items()),
-        loops_in_time=_in_time(tests),
+        loops_in_time=_in_time(tests, actuator, bench.terminals),
     )
 
 
@@ -172,12 +180,11 @@ def static_force(actuator: Actuator, velocity: np.ndarray, torque: np.ndarray) -
     """Force at the suspension at constant velocity and nominal ratio [N], of the broadcast shape.
 
     velocity: [m/s], torque: of the rotor [Nm], broadcast
-    F = (c v + F_c + T / tau) / eta where the output drives, times eta where the rotor drives; without dry friction's
-    breakaway: valid above some mm/s
+    c v + F_c sign(v) + T / tau behind the meshes; without dry friction's breakaway: valid above some mm/s
     """
-    loss, gears = actuator.loss, actuator.gears
+    loss = actuator.loss
     behind = loss.viscous * velocity + loss.coulomb * np.sign(velocity) + torque / actuator.ratio.nominal
-    return np.where(behind * velocity > 0, behind / gears.driven, behind * gears.driving)
+    return actuator.gears.through(behind, velocity)
 
 
 def shunt_row(lumped: LumpedActuator, actuator: Actuator, shunt: float) -> ShuntRow:
@@ -257,11 +264,12 @@ def four_quadrants(actuator: Actuator) -> xr.Dataset:
 def impedances(lumped: LumpedActuator, actuator: Actuator) -> xr.Dataset:
     """Magnitudes over frequency: by the lumped model over every shunt, by simulation with every damping asked for."""
     top = 2 * pi * FREQUENCIES * IMPEDANCE_STROKE
-    shunted = [np.abs(lumped.impedance(FREQUENCIES, min(one, 1e6), top)) for one in SHUNTS]
+    shunted = np.array([lumped.impedance(FREQUENCIES, min(one, 1e6), top) for one in SHUNTS])
     controlled = [[abs(_controlled(actuator, damping, f)) for f in FREQUENCIES] for damping in DAMPINGS]
     return xr.Dataset(
         {
-            "shunted": (("shunt", "frequency"), np.array(shunted)),
+            "shunted": (("shunt", "frequency"), np.abs(shunted)),
+            "phase": (("shunt", "frequency"), np.angle(shunted)),
             "controlled": (("damping", "frequency"), np.array(controlled)),
         },
         {"shunt": list(SHUNTS), "damping": list(DAMPINGS), "frequency": FREQUENCIES},
@@ -279,22 +287,29 @@ def _controlled(actuator: Actuator, damping: float, frequency: float) -> complex
     return sine_impedance(Record("simulated", float(time[1]), channels)).impedance
 
 
-def active_response(actuator: Actuator, torque_constant: float) -> xr.Dataset:
-    """Force and angle with the output held and a chirp of current on a bias (Figs 5.12 and 5.13).
+def active_chirp(actuator: Actuator, torque_constant: float) -> xr.Dataset:
+    """Force and angle over time with the output held and a chirp of current on a bias (Fig. 5.12).
 
-    torque_constant: K_t [Nm/A], turns the current into torque. Force over current [N/A], angle over force [rad/N].
+    torque_constant: K_t [Nm/A], turns the current into torque; see ``BenchTests``
     """
     begin, end, duration = CHIRP
     time = np.arange(0.0, duration, 1 / SAMPLING)
     grown = np.log(end / begin) / duration
-    phase = 2 * pi * begin * np.expm1(grown * time) / grown
-    current = BIAS + SWING * np.sin(phase)
+    frequency = begin * np.exp(grown * time)
+    current = BIAS + SWING * np.sin(2 * np.pi * (frequency - begin) / grown)
     still = np.zeros_like(time)
     run = imposed_motion(actuator, time, still, still, -torque_constant * current)
     angle = run.mass_stroke / actuator.ratio.nominal
-    record = Record("simulated", float(time[1]), {"current": current, "force": run.force, "angle": angle})
-    over_current = frequency_response(record, current, run.force, SEGMENT).between(begin, end)
-    over_force = frequency_response(record, run.force, angle, SEGMENT).between(begin, end)
+    data = {"frequency": frequency, "current": current, "force": run.force, "angle": angle}
+    return xr.Dataset({name: ("time", one) for name, one in data.items()}, {"time": time})
+
+
+def active_response(chirp: xr.Dataset) -> xr.Dataset:
+    """Force over current [N/A] and angle over force [rad/N], with coherence (Fig. 5.13); chirp: of ``active_chirp``."""
+    current, force, angle = (chirp[name].values for name in ("current", "force", "angle"))
+    record = Record("simulated", 1 / SAMPLING, {"current": current, "force": force, "angle": angle})
+    over_current = frequency_response(record, current, force, SEGMENT).between(*CHIRP[:2])
+    over_force = frequency_response(record, force, angle, SEGMENT).between(*CHIRP[:2])
     data = {"force": np.abs(over_current.h1), "coherence": over_current.coherence, "angle": np.abs(over_force.h1)}
     return xr.Dataset({name: ("frequency", one) for name, one in data.items()}, {"frequency": over_current.frequency})
 
@@ -363,11 +378,27 @@ def hardware_tests(actuator: Actuator) -> dict[str, LoopRun]:
     return {name: test.run(device[name], levels[name](), paced=False) for name in (NO_LOOP, LOAD_CELL)}
 
 
-def _in_time(tests: dict[str, LoopRun]) -> xr.Dataset:
+def _in_time(tests: dict[str, LoopRun], actuator: Actuator, terminals: Terminals) -> xr.Dataset:
     shortest = min(run.time.size for run in tests.values())
-    names = ("force", "wanted", "stroke", "axis", "acceleration")
-    data = {
-        name: (("test", "time"), np.array([getattr(run, name)[:shortest] for run in tests.values()])) for name in names
+    road, time = _loop_test().road[:shortest, 0], next(iter(tests.values())).time[:shortest]
+    seen = [_seen(run, road, actuator, terminals, shortest) for run in tests.values()]
+    data = {name: (("test", "time"), np.array([one[name] for one in seen])) for name in seen[0]}
+    return xr.Dataset({**data, "road": ("time", road)}, {"test": list(tests), "time": time})
+
+
+def _seen(
+    run: LoopRun, road: np.ndarray, actuator: Actuator, terminals: Terminals, samples: int
+) -> dict[str, np.ndarray]:
+    """What figures show of a test in the loop, each (t,); road [m], (t,)."""
+    names = ("force", "wanted", "stroke", "axis", "wheel", "acceleration", "angle", "torque")
+    one = {name: getattr(run, name)[:samples] for name in names}
+    speed, step = np.gradient(one["angle"], run.time[:samples]), float(run.time[1] - run.time[0])
+    electrical = one["torque"] * speed - actuator.drive.loss.at(one["torque"], speed)
+    return one | {
+        "body": one["stroke"] + one["wheel"],
+        "holding": PRINTED_CAR.tyre_stiffness * (one["wheel"] - road) / PRINTED_CAR.actuated.static_load,
+        "felt": weighted_acceleration(one["acceleration"], step),
+        "mechanical": one["force"] * np.gradient(one["axis"], run.time[:samples]),
+        "electrical": electrical,
+        "current": electrical / terminals.bus_voltage,
     }
-    time = next(iter(tests.values())).time[:shortest]
-    return xr.Dataset(data, {"test": list(tests), "time": time})

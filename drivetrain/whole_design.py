@@ -36,6 +36,7 @@ from geometry.family import Combination
 from losses.iron import FrequencyTerms
 
 OBJECTIVES = ("mass", "equivalent mass", "damping", "loss")
+AIMS = 4  # costs of a front
 _SIGNS = np.array([1.0, 1.0, -1.0, 1.0])  # all are made small but the damping
 _NO_COST = (CostScales(1.0, 1.0, 1.0), CostWeights(0.5, 0.0))
 _FEASIBLE = 1e-6  # relative; a limit exceeded by less is kept
@@ -100,6 +101,27 @@ class RatedDesign:
     values: Values
 
 
+class Aims:
+    """What a front is searched for; the concrete aims give costs and say themselves in words."""
+
+    words: str
+
+    def costs(self, problem: WholeProblem, rated: RatedDesign) -> tuple[float, ...]:
+        """Of one design, (AIMS,), all to be made small, in units of their own."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class RequirementAims(Aims):
+    """The OBJECTIVES: mass, equivalent mass, damping and loss."""
+
+    words = "what the requirements ask for: mass, inertia, damping and loss"
+
+    def costs(self, problem: WholeProblem, rated: RatedDesign) -> tuple[float, ...]:
+        """[kg, kg, Ns/m, W], on a shaft [kg, kg m^2, Nms/rad, W], (4,), the damping negative."""
+        return tuple((_SIGNS * rated.values.objectives).tolist())
+
+
 @dataclass(frozen=True)
 class WholeProblem:
     """What a design is judged by.
@@ -111,7 +133,9 @@ class WholeProblem:
     constraints_of: as in ``match_over_radius``, without that on the planets, which depends on the linkage
     gearbox: at any linkage ratio, which the design replaces; masses: what a motor weighs
     damping_of: section -> its ``RegenerativeDamping``; loss_of: (section, design) -> loss on the road [W]
+    machine_of: design -> its ``RoadMachine`` by the fits
     targets: largest mass and equivalent mass [kg]; a design must also have the damping that is asked for
+    aims: of the front
     """
 
     section_at: Callable[[Combination, float], SizedSection]
@@ -124,7 +148,9 @@ class WholeProblem:
     masses: MassModel
     damping_of: Callable[[SizedSection], RegenerativeDamping]
     loss_of: Callable[[SizedSection, WholeDesign], float]
+    machine_of: Callable[[WholeDesign], RoadMachine]
     targets: tuple[float, float]
+    aims: Aims = RequirementAims()
 
     @cached_property
     def ratios(self) -> tuple[float, float]:
@@ -166,6 +192,16 @@ class WholeProblem:
                 _share(self.linkage_ratios, design.linkage_ratio),
             ]
         )
+
+    def rated(self, design: WholeDesign) -> RatedDesign:
+        """A design with its values by the fits."""
+        return RatedDesign(design, self.values(design))
+
+    def costs(self, rated: Sequence[RatedDesign]) -> np.ndarray:
+        """What the front makes small, (designs, AIMS), in the units of the aims; infinite for what cannot be built."""
+        built = [np.isfinite(one.values.objectives).all() for one in rated]
+        none = (inf,) * AIMS
+        return np.array([self.aims.costs(self, one) if can else none for one, can in zip(rated, built, strict=True)])
 
     def values(self, design: WholeDesign, section: SizedSection | None = None) -> Values:
         """Objectives [kg, kg, Ns/m, W] and constraints.
@@ -257,13 +293,13 @@ class _Population(Problem):
     """``WholeProblem`` as pymoo calls it."""
 
     def __init__(self, problem: WholeProblem) -> None:
-        super().__init__(n_var=5, n_obj=4, n_ieq_constr=6, xl=0.0, xu=1.0)
+        super().__init__(n_var=5, n_obj=AIMS, n_ieq_constr=6, xl=0.0, xu=1.0)
         self.problem = problem
 
     def _evaluate(self, x: np.ndarray, out: dict[str, np.ndarray], *arguments: object, **named: object) -> None:
-        found = [self.problem.values(self.problem.design(one)) for one in x]
-        out["F"] = np.array([one.objectives for one in found]) * _SIGNS
-        out["G"] = np.array([one.constraints for one in found])
+        found = [self.problem.rated(self.problem.design(one)) for one in x]
+        out["F"] = self.problem.costs(found)
+        out["G"] = np.array([one.values.constraints for one in found])
 
 
 def front(
@@ -274,15 +310,9 @@ def front(
     first[0] = np.clip(problem.unit(start), 0, 1)
     algorithm = NSGA2(pop_size=population, sampling=first)
     result = minimize(_Population(problem), algorithm, ("n_gen", generations), seed=seed, verbose=False)
-    designs = [problem.design(one) for one in result.pop.get("X")]
-    rated = [RatedDesign(one, problem.values(one)) for one in designs]
+    rated = [problem.rated(problem.design(one)) for one in result.pop.get("X")]
     feasible = [one for one in rated if one.values.feasible]
-    return tuple(feasible[k] for k in non_dominated(_costs(feasible))) if feasible else ()
-
-
-def _costs(rated: Sequence[RatedDesign]) -> np.ndarray:
-    """Objectives (designs, 4), all to be made small."""
-    return np.array([one.values.objectives for one in rated]) * _SIGNS
+    return tuple(feasible[k] for k in non_dominated(problem.costs(feasible))) if feasible else ()
 
 
 def improved(problem: WholeProblem, start: WholeDesign, objective: int, allowed: tuple[float, ...]) -> RatedDesign:
@@ -295,7 +325,7 @@ def improved(problem: WholeProblem, start: WholeDesign, objective: int, allowed:
     """
     bounds = np.array(allowed)
     searches = [_evolved(problem, start, one, objective, bounds) for one in problem.combinations]
-    rated = [RatedDesign(design, problem.values(design)) for design in (start, *searches)]
+    rated = [problem.rated(design) for design in (start, *searches)]
     keeping = [one for one in rated if _excess(one.values, objective, bounds) <= _FEASIBLE]
     return min(keeping or rated[:1], key=lambda one: _SIGNS[objective] * one.values.objectives[objective])
 
@@ -328,9 +358,11 @@ def _evolved(
     return problem.design(np.concatenate([[0], found.x]), combination)
 
 
-def spread(rated: Sequence[RatedDesign], count: int) -> tuple[RatedDesign, ...]:
-    """So many of the designs that lie far from each other in the objectives, the best of each first."""
-    costs = _costs(rated)
+def spread(rated: Sequence[RatedDesign], costs: np.ndarray, count: int) -> tuple[RatedDesign, ...]:
+    """So many of the designs that lie far from each other in their costs, the best of each first.
+
+    costs: as ``WholeProblem.costs`` gives them, (designs, AIMS)
+    """
     scaled = (costs - costs.min(axis=0)) / np.maximum(np.ptp(costs, axis=0), 1e-12)
     chosen = list(dict.fromkeys(int(k) for k in scaled.argmin(axis=0)))
     while len(chosen) < min(count, len(rated)):

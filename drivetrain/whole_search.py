@@ -20,6 +20,7 @@ from drivetrain.output import Output
 from drivetrain.requirements import Linkage, Requirements
 from drivetrain.whole_design import (
     OBJECTIVES,
+    Aims,
     RatedDesign,
     RoadDemand,
     RoadMachine,
@@ -205,36 +206,31 @@ def optimise_stage(
     requirements: Requirements,
     match_inputs: MatchInputs,
     inputs: WholeSearchInputs,
+    aims: Aims,
     output: Output,
     workers: Workers,
 ) -> WholeSearch:
     """Search over all stages at once, and solve what is shown by the field.
 
     match, linkage: the design found stage by stage; linkages: the front it was chosen from, None where it is stated
-    output: in whose words a refusal is said
+    aims: of the front of this search; output: in whose words a refusal is said
     Raises MatchError where no design meets the targets, MaterialError where the steel has no loss data, FitRefused.
     """
     drawn = DrawnParts(match_inputs.masses, case.packing)
     matcher = Matcher(case, fits, requirements, linkage, match_inputs, drawn)
     law = iron_loss_law(inputs.loss_grade)
-    problem = _problem(matcher, linkages, _idle_sections(matcher, law, inputs.idle_radii, workers))
+    problem = _problem(matcher, linkages, _idle_sections(matcher, law, inputs.idle_radii, workers), aims)
     staged = _staged(problem, match, linkage)
     found = _front(problem, staged, inputs, output)
     bettered = tuple(
         Bettered(one, improved(problem, staged.design, one.objective, one.allowed))
         for one in questions(staged.values.objectives, requirements.maximum_damping)
     )
-    shown = _shown(staged, bettered, spread(found, inputs.solved))
+    shown = _shown(staged, bettered, spread(found, problem.costs(found), inputs.solved))
     solved, choices = _solved(problem, case, law, shown, workers), _choices(problem)
     every = (*(one.model for one in solved), *found)
-    machines = tuple(_machine(problem, matcher, one.design) for one in every)
+    machines = tuple(problem.machine_of(one.design) for one in every)
     return WholeSearch(staged, bettered, found, solved, requirements.force_rms, choices, machines)
-
-
-def _machine(problem: WholeProblem, matcher: Matcher, design: WholeDesign) -> RoadMachine:
-    section = problem.section_at(design.combination, design.stator_outer_radius)
-    assert isinstance(section, RoadSection)  # all sections of this search carry their idle loss
-    return road_machine(section, design, matcher.loading)
 
 
 def questions(before: tuple[float, ...], damping: float) -> tuple[Question, ...]:
@@ -285,7 +281,7 @@ def _idle_sections(matcher: Matcher, law: IronLossLaw, count: int, workers: Work
     return _IdleSections(matcher, parabolas)
 
 
-def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleSections) -> WholeProblem:
+def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleSections, aims: Aims) -> WholeProblem:
     inputs, required = matcher.inputs, matcher.requirements
     demand = RoadDemand(required.force_rms, required.velocity_rms, matcher.loading)
     longest = inputs.limits.active_length
@@ -300,7 +296,11 @@ def _problem(matcher: Matcher, linkages: LinkageFront | None, section_at: _IdleS
         masses=matcher.masses,
         damping_of=lambda section: damping_constraint(section, required, matcher.loading),
         loss_of=partial(_road_loss, demand),
+        machine_of=lambda one: road_machine(
+            section_at(one.combination, one.stator_outer_radius), one, matcher.loading
+        ),
         targets=(inputs.scales.mass, inputs.scales.equivalent_mass),
+        aims=aims,
     )
 
 
@@ -332,7 +332,7 @@ def _staged(problem: WholeProblem, match: MatchOutcome, linkage: Linkage) -> Rat
         found.transmission_ratio,
         linkage.ratio_nominal,
     )
-    return RatedDesign(design, problem.values(design))
+    return problem.rated(design)
 
 
 def _front(

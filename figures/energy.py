@@ -33,9 +33,9 @@ _PARTS = (("battery.active", "to the battery", BLUE), ("machine_loss", "lost in 
 
 
 @styled
-def powers_over_time(found: EnergyOutcome) -> Figure:
-    """Force, wanted and given, and power of the first road with the real actuator, one row a command."""
-    data = found.traces.sel(actuator=REAL)
+def powers_over_time(found: EnergyOutcome, actuator: str = REAL) -> Figure:
+    """Force, wanted and given, and power of the first road with an actuator, one row a command; actuator: its name."""
+    data = found.traces.sel(actuator=actuator)
     figure = new_figure(0.6 + 1.7 * data.sizes["command"])
     axes = figure.subplots(data.sizes["command"], 2, sharex=True, squeeze=False)
     for row, name in zip(axes, data.command.values, strict=True):
@@ -62,11 +62,12 @@ def _legends(figure: Figure, axes: Iterable[Axes]) -> None:
 
 
 @styled
-def working_points(found: EnergyOutcome) -> Figure:
-    """Force over velocity at the suspension and torque over speed at the rotor, with the torque limit."""
+def working_points(found: EnergyOutcome, actuator: str = REAL) -> Figure:
+    """Force over velocity at the suspension and torque over speed at the rotor, with the torque limit; actuator: its
+    name."""
     figure = new_figure(4.6)
     left, right = figure.subplots(1, 2)
-    data, limit = found.traces.sel(actuator=REAL), found.own.actuator.drive.limit
+    data, limit = found.traces.sel(actuator=actuator), found.own.actuator.drive.limit
     for number, name in enumerate(data.command.values):
         one, look = data.sel(command=name), {"color": SERIES[number], "linestyle": "", "marker": ".", "markersize": 1.5}
         left.plot(one.velocity, one.force, label=name, **look)

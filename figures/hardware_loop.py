@@ -14,6 +14,7 @@ from vehicle.hardware_loop import LoopRun
 
 SHOWN = (1.0, 1.6)  # s; of a shorter run its second half
 MILLISECOND = FACTORS["ms"]
+_CLOCK = 1e-5  # ms; less is the reading of the clock itself
 
 
 @styled
@@ -52,6 +53,6 @@ def _clock(axis: Axes, runs: list[LoopRun]) -> None:
         ordered = np.sort(np.concatenate(values)) / MILLISECOND
         axis.plot(ordered, 1 - np.arange(ordered.size) / ordered.size, color=color, label=name)
     axis.axvline(timings[0].step / MILLISECOND, color=BLACK, linestyle="--", label="sample time")
-    axis.set(xscale="log", yscale="log", xlabel="time / ms", ylabel="share of steps above")
+    axis.set(xscale="log", yscale="log", xlabel="time / ms", ylabel="share of steps above", xlim=(_CLOCK, None))
     axis.set_title("All steps of all runs against the clock", loc="left")
     axis.legend(loc="upper left", bbox_to_anchor=(1, 1), frameon=False)

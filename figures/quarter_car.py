@@ -10,11 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures.style import BLACK, BLUE, GREY, ORANGE, VERMILION, Look, letter, new_figure, show_grid, styled
-from units import GRAVITY
+from units import GRAVITY, MILLIMETRE
+from vehicle.damping import DamperCurve
 from vehicle.energy import scatter
 from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyOutcome
 from vehicle.printed_energy import PrintedEnergy
 from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.ride import Scenario
 
 _KINDS = ((QUASI_IDEAL, BLUE, -0.2), (REAL, ORANGE, 0.2))
 Number = Callable[[dict[str, float]], float]
@@ -44,10 +46,51 @@ def _vehicle(row: Sequence[Axes], one: xr.Dataset) -> None:
         look: Look = {"color": colour, "linewidth": 1.0, "linestyle": "-" if kind == QUASI_IDEAL else "--"}
         row[0].plot(one.time, one.tyre_load.sel(actuator=kind), label=kind, **look)
         row[1].plot(one.time, one.felt.sel(actuator=kind) / GRAVITY, **look)
-    for name, colour, words in (("inertial", VERMILION, "equivalent mass"), ("elastic", BLACK, "spring of the mount")):
-        row[2].plot(one.time, one[name].sel(actuator=REAL), color=colour, linewidth=0.8, label=words)
+    _lent(row[2], one.sel(actuator=REAL))
     row[1].set(ylabel="felt / g")
     row[2].set(ylabel="reactive / W")
+
+
+@styled
+def lent_powers(found: EnergyOutcome) -> Figure:
+    """Power that spring of the mount and equivalent mass take and give back, one panel a command (thesis Fig. 4.39)."""
+    data = found.traces.sel(actuator=REAL)
+    figure = new_figure(3.2)
+    axes = figure.subplots(1, data.sizes["command"], sharey=True, squeeze=False)[0]
+    for axis, name in zip(axes, data.command.values, strict=True):
+        _lent(axis, data.sel(command=name))
+        axis.set(xlabel="time / s", xlim=(float(data.time[0]), float(data.time[-1])))
+        axis.set_title(str(name), loc="left")
+    axes[0].set(ylabel="reactive / W")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    show_grid(*axes)
+    return figure
+
+
+def _lent(axis: Axes, one: xr.Dataset) -> None:
+    for name, colour, words in (("inertial", VERMILION, "equivalent mass"), ("elastic", BLACK, "spring of the mount")):
+        axis.plot(one.time, one[name], color=colour, linewidth=0.8, label=words)
+
+
+@styled
+def car_inputs(dampers: Sequence[DamperCurve], road: Scenario) -> Figure:
+    """Damper curves and the height of the road over time (thesis Figs 4.21 and 4.22)."""
+    figure = new_figure(3.2)
+    left, right = figure.subplots(1, 2)
+    for curve, colour in zip(dampers, (BLUE, ORANGE), strict=True):
+        velocity = np.linspace(-_SHOWN_VELOCITY, _SHOWN_VELOCITY, 3)
+        left.plot(velocity, np.interp(velocity, curve.velocity, curve.force), color=colour, label=curve.name)
+    time = np.arange(0.0, road.duration, road.time_step)
+    right.plot(time, road.road.heights(time, road.speed) / MILLIMETRE, color=BLUE, linewidth=1.0)
+    left.set(xlabel="velocity / (m/s)", ylabel="force / N")
+    right.set(xlabel="time / s", ylabel="height of the road / mm", xlim=(0.0, road.duration))
+    left.legend(frameon=False)
+    letter((left, right))
+    show_grid(left, right)
+    return figure
+
+
+_SHOWN_VELOCITY = 0.3  # m/s, beyond what the rides reach
 
 
 @styled

@@ -10,7 +10,6 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import sqrt
 
 import numpy as np
 
@@ -28,6 +27,9 @@ from study.inputs_electrical import winding_resistivity
 from study.magnet_choice import design_magnet
 from study.schema import Study
 from units import DEGREE, MILLIMETRE, RPM
+from vehicle.designed import driven_parts
+from workbench.data.column_units import factor, split_unit
+from workbench.models.actuator.design import OnBench, written
 
 REFERENCE = 20.0  # degC, at which resistances are given
 REPEATS = 2
@@ -283,28 +285,44 @@ def _machine_device(designed: Designed) -> tuple[Entry, ...]:
 
 
 def _actuator_device(designed: Designed) -> tuple[Entry, ...]:
-    p = designed.machine.constant_parameters(designed.continuous_current)
-    features = designed.outcome.features
-    driven, driving = (1.0, 1.0) if designed.gears is None else designed.gears.train.efficiency
-    ratio = "linkage_ratio" if designed.is_shaft else "linkage_ratio_mm_per_rad"
-    mass = "equivalent_mass_kg_m2" if designed.is_shaft else "equivalent_mass_kg"
-    friction = friction_at(designed.study)
-    return (
-        Entry("model", '"actuator"'),
-        Entry("output", '"shaft"' if designed.is_shaft else '"wheel"'),
-        Entry("pole_pairs", str(p.pole_pairs)),
-        _number("psi_m_mVs", float(p.psi_m) / 1e-3, "flux map without current"),
-        _number("inductance_uH", sqrt(float(p.inductance_d) * float(p.inductance_q)) / 1e-6, "flux map"),
-        _number("phase_resistance_mohm", designed.resistance / 1e-3),
-        _number("reference_T_degC", REFERENCE, "at which the resistance holds"),
-        _number("saturation", _saturation(designed), "1/A^2, K = K_0/(1 + s 3/2 i^2) at the peak current of the map"),
-        _number("gear_ratio", features.gear_ratio, "teeth as they are"),
-        _number(ratio, features.linkage_ratio / (1.0 if designed.is_shaft else MILLIMETRE), "nominal position"),
-        _number("efficiency_driven", driven, "meshes alone"),
-        _number("efficiency_driving", driving, "meshes alone"),
-        _number(mass, features.equivalent_mass, "rotor and gears at the output"),
-        *(_number(key, value, "study") for key, value in zip(_friction_headings(designed), vars(friction).values())),
-    )
+    output = Entry("output", '"shaft"' if designed.is_shaft else '"wheel"')
+    headings = _SHAFT_HEADINGS if designed.is_shaft else _WHEEL_HEADINGS
+    numbers = [_device_number(name, value, headings) for name, value in written(on_bench(designed)).items()]
+    return (Entry("model", '"actuator"'), output, *numbers)
+
+
+def on_bench(designed: Designed) -> OnBench:
+    """What is designed as it lies on the bench, by the description that simulation and exported unit take."""
+    machine = designed.machine.constant_parameters(designed.continuous_current)
+    actuator = driven_parts(designed.outcome, designed.gears)
+    return OnBench(actuator, machine.with_resistance(designed.resistance), REFERENCE, _saturation(designed))
+
+
+_HEADINGS = {"psi_m": "psi_m_mVs", "inductance": "inductance_uH", "phase_resistance": "phase_resistance_mohm",
+             "reference_T": "reference_T_degC"}  # fmt: skip
+_WHEEL_HEADINGS = _HEADINGS | {
+    "transmission_ratio": "transmission_ratio_mm_per_rad", "equivalent_mass": "equivalent_mass_kg",
+    "viscous_friction": "viscous_friction_Ns_per_m", "coulomb_friction": "coulomb_friction_N",
+}  # fmt: skip
+_SHAFT_HEADINGS = _HEADINGS | {
+    "equivalent_mass": "equivalent_mass_kg_m2", "viscous_friction": "viscous_friction_Nms_per_rad",
+    "coulomb_friction": "coulomb_friction_Nm",
+}  # fmt: skip
+_WHY = {
+    "psi_m": "flux map without current", "inductance": "flux map", "reference_T": "at which the resistance holds",
+    "saturation": "1/A^2, K = K_0/(1 + s 3/2 i^2) at the peak current of the map",
+    "transmission_ratio": "output over rotor, teeth as they are, nominal position",
+    "equivalent_mass": "rotor and gears at the output", "efficiency_driven": "meshes alone",
+    "efficiency_driving": "meshes alone", "viscous_friction": "study", "coulomb_friction": "study",
+}  # fmt: skip
+
+
+def _device_number(name: str, value: float, headings: Mapping[str, str]) -> Entry:
+    """A number of ``written`` [SI] in the unit of its heading."""
+    heading = headings.get(name, name)
+    unit = split_unit(heading)[1]
+    same = not unit or unit == "degC"
+    return _number(heading, value if same else value / factor(unit, heading), _WHY.get(name, ""))
 
 
 def _saturation(designed: Designed) -> float:
@@ -312,12 +330,6 @@ def _saturation(designed: Designed) -> float:
     machine, current = designed.machine, designed.winding.limits.current_peak
     straight = 1.5 * machine.pole_pairs * float(machine.flux_linkage(0.0, 0.0)[0]) * current
     return max(0.0, straight / float(machine.torque(0.0, current)) - 1.0) / (1.5 * current**2)
-
-
-def _friction_headings(designed: Designed) -> tuple[str, str]:
-    if designed.is_shaft:
-        return "viscous_friction_Nms_per_rad", "coulomb_friction_Nm"
-    return "viscous_friction_Ns_per_m", "coulomb_friction_N"
 
 
 def _friction_keys(designed: Designed) -> tuple[str, ...]:

@@ -90,7 +90,7 @@ from report import (
     winding,
 )
 from report import learned as learned_report
-from study.chain import drives, rates_by_density, searches_linkage
+from study.chain import drives, judges_by_road, rates_by_density, searches_linkage
 from study.inputs_actuator import actuator_inputs
 from study.inputs_drive import output
 from study.inputs_electrical import copper_heat, flux_map_grid, loss_inputs
@@ -106,7 +106,7 @@ from study.inputs_learned import (
     winding_inputs_as_learned,
 )
 from study.inputs_linkage import installation_space, linkage_search, stated_linkage
-from study.inputs_match import match_inputs, stated_demands, whole_search_inputs
+from study.inputs_match import match_inputs, requirement_aims, stated_demands, whole_search_inputs
 from study.inputs_mechanics import mechanics_inputs
 from study.inputs_package import part_prices
 from study.inputs_tolerances import tolerances as stated_tolerances
@@ -127,6 +127,7 @@ from vehicle.judged_designs import judged_stage
 from vehicle.quarter_car_stage import quarter_car_stage
 from vehicle.ride_again import ride_again_stage
 from vehicle.ride_heat import thermal_machine
+from vehicle.road_aims import road_aims, road_response_stage
 from vehicle.strategies import strategies_stage
 
 REFUSALS = (
@@ -165,6 +166,10 @@ _ENERGY: tuple[Node, ...] = (
     View(bench_machine),
     Stage("bench", bench_stage, "what benches would read", simulated.files, on_request=True),
     Stage("chapters", chapters_stage, "beside chapters 4 and 5", chapters_page.files, on_request=True),
+)
+_BY_ROAD: tuple[Node, ...] = (
+    Stage("road_response", road_response_stage, "what the road makes of an equivalent mass", on_request=True),
+    View(road_aims),
 )
 _STATED: tuple[Node, ...] = (Source(stated_requirements), View(stated_loads), View(stated_duty))
 _SEARCHED: tuple[Node, ...] = (
@@ -251,6 +256,7 @@ def _nodes(study: Study, learned: Learned) -> tuple[Node, ...]:
         *(_MAGNETS if _has_grade(study) else ()),
         *(_LOSSES if _has_loss_data(study) else _NO_LOSSES),
         *(_ENERGY if driven and _has_loss_data(study) else ()),
+        *(_BY_ROAD if _searches_on_road(study) else (Source(requirement_aims),)),
         Stage("package", package_stage, "what parts are ordered by", package.files),
         View(datasheet.data_sheet),
         View(length_by_density if rates_by_density(study) else length_by_temperature),
@@ -265,6 +271,11 @@ def _has_loss_data(study: Study) -> bool:
     except LossError:
         return False
     return True
+
+
+def _searches_on_road(study: Study) -> bool:
+    """Without loss data there is no ride with losses; the search refuses to begin then, whatever it is for."""
+    return judges_by_road(study) and _has_loss_data(study)
 
 
 def _has_grade(study: Study) -> bool:

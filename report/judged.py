@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -43,11 +44,20 @@ def section(found: JudgedDesigns, figure: Figure) -> Section:
             *(Remark(line) for line in remarks(found)),
             Table(rows, "The designs that win by one index."),
             Picture(figure, "Recovered power, comfort and road holding over the mass."),
-            Table(table(found.best), "Designs that no other betters in mass, comfort, road holding and recovered power "
-                  "together, comfort and road holding to a hundredth. A number is the design's in "
-                  "optimise.csv, which `airgap take-over` goes on with."),
+            Table(table(_some(found.best)), "Designs that no other betters in mass, comfort, road holding and "
+                  "recovered power together, comfort and road holding to a hundredth; of many every so many, all in "
+                  "judged.csv. A number is the design's in optimise.csv, which “airgap take-over” goes on with."),
         ),
     )  # fmt: skip
+
+
+def _some(designs: Sequence[JudgedDesign]) -> Sequence[JudgedDesign]:
+    """Of many designs so many that a table is read, over the whole range."""
+    places = np.unique(np.linspace(0, len(designs) - 1, _ROWS).round().astype(int))
+    return [designs[k] for k in places]
+
+
+_ROWS = 16
 
 
 def remarks(found: JudgedDesigns) -> Iterator[str]:

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from drivetrain.output import Output, in_unit, labelled
-from drivetrain.whole_design import RatedDesign
+from drivetrain.whole_design import Aims, RatedDesign
 from drivetrain.whole_search import Bettered, SolvedDesign, WholeSearch, objective_words
 from figures.files import File, figure_file, table_file, text_file
 from figures.report import Picture, Remark, Section, Table, render_report
@@ -18,16 +18,16 @@ from units import MILLIMETRE, written
 TABLE, PAGE, FIGURE = "optimise.csv", "optimise.html", "whole_designs"
 
 
-def files(found: WholeSearch, output: Output) -> Iterator[File]:
+def files(found: WholeSearch, aims: Aims, output: Output) -> Iterator[File]:
     """Designs solved by the field, the figure of the front, and the page that shows both."""
     table, figure = solved_table(found, output), front_figure(found, output)
     yield table_file(TABLE, table)
     yield figure_file(FIGURE, figure)
     title, subtitle = "All stages optimised together", "Against the design found stage by stage"
-    yield text_file(PAGE, render_report(sections(found, figure, output), title=title, subtitle=subtitle))
+    yield text_file(PAGE, render_report(sections(found, figure, aims, output), title=title, subtitle=subtitle))
 
 
-def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Section, ...]:
+def sections(found: WholeSearch, figure: Figure, aims: Aims, output: Output) -> tuple[Section, ...]:
     """What the stages leave on the table, and the front; figure: as ``front_figure`` draws it."""
     inertia, damping = written(output.inertia_unit), written(output.damping_unit)
     caption = f"Mass in kg, {output.inertia} in {inertia}, damping in {damping}, loss in W; by the model."
@@ -37,7 +37,8 @@ def sections(found: WholeSearch, figure: Figure, output: Output) -> tuple[Sectio
         Section(
             "The front",
             (
-                f"{len(found.front)} designs, {len(found.solved)} solved by the field. {_fit_error(found)} "
+                f"Searched for {aims.words}. {len(found.front)} designs, {len(found.solved)} solved by the field. "
+                f"{_fit_error(found)} "
                 f"{idle_share(found, output)}",
                 Picture(figure, "Every pair of objectives."),
                 Table(solved_table(found, output), solved),

@@ -9,30 +9,42 @@ import pandas as pd
 
 from figures.energy import powers_over_time, working_points
 from figures.files import File, figure_file, picture_name, table_file
-from figures.quarter_car import beside_the_thesis, comfort_setting, vehicle_over_time
+from figures.quarter_car import beside_the_thesis, car_inputs, comfort_setting, lent_powers, vehicle_over_time
 from figures.report import Picture, Section, Table
 from report.energy import stand_ins
 from units import GRAVITY
 from vehicle.energy import Scatter, scatter
-from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase
-from vehicle.printed_car import PRINTED_CAR, PRINTED_SPEED, printed_road
+from vehicle.energy_stage import QUASI_IDEAL, REAL, EnergyCase, EnergyOutcome
+from vehicle.printed_car import PRINTED_CAR, PRINTED_DAMPING, PRINTED_SPEED, printed_road
 from vehicle.printed_energy import PrintedEnergy, printed_energy
-from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.quarter_car_stage import SEEDS, QuarterCarRides
+from vehicle.shaken import PRINTED, SHAKING
 from vehicle.spectral import mean_power_theorem
 
 TABLE = "quarter_car.csv"
-TIME, POINTS, CAR = "quarter_car_over_time", "quarter_car_points", "quarter_car_vehicle"
+INPUTS, TIME, POINTS, CAR = "quarter_car_inputs", "quarter_car_over_time", "quarter_car_points", "quarter_car_vehicle"
+QUASI_TIME, QUASI_POINTS = "quarter_car_quasi_over_time", "quarter_car_quasi_points"
+ALONE, ALONE_POINTS = "quarter_car_without_loop", "quarter_car_without_loop_points"
 COMFORT, BESIDE = "quarter_car_comfort_setting", "quarter_car_beside"
+SHAKEN, SHAKEN_POINTS, LENT = "quarter_car_shaken", "quarter_car_shaken_points", "quarter_car_lent"
 _PERCENT = 100.0
 
 
 def files(found: QuarterCarRides) -> Iterator[File]:
     """Every row of the tables beside the printed one, and the figures."""
     yield table_file(TABLE, every_table(found))
+    yield figure_file(INPUTS, car_inputs(PRINTED_DAMPING, printed_road(SEEDS[0])))
+    yield figure_file(QUASI_TIME, powers_over_time(found.energy, QUASI_IDEAL))
+    yield figure_file(QUASI_POINTS, working_points(found.energy, QUASI_IDEAL))
     yield figure_file(TIME, powers_over_time(found.energy))
     yield figure_file(POINTS, working_points(found.energy))
+    yield figure_file(ALONE, powers_over_time(found.alone))
+    yield figure_file(ALONE_POINTS, working_points(found.alone))
     yield figure_file(CAR, vehicle_over_time(found.energy))
     yield figure_file(COMFORT, comfort_setting(found))
+    yield figure_file(SHAKEN, powers_over_time(found.shaken))
+    yield figure_file(SHAKEN_POINTS, working_points(found.shaken))
+    yield figure_file(LENT, lent_powers(found.shaken))
     yield figure_file(BESIDE, beside_the_thesis(found.energy, printed_energy()))
 
 
@@ -44,14 +56,26 @@ def section(found: QuarterCarRides) -> Section:
         (
             _text(),
             *stand_ins(found.energy),
+            Picture(picture_name(INPUTS), "Dampings (a), straight lines in the place of Fig. 4.21; first road (b) "
+                    "(Fig. 4.22)."),
             *tables,
             Picture(picture_name(BESIDE), "Means over six roads; marks: the thesis's prototype, one road "
                     "(Figs 4.54, 4.55)."),
-            Picture(picture_name(TIME), "Force and power with the real actuator (Figs 4.40 to 4.49)."),
-            Picture(picture_name(POINTS), "Working points at suspension and rotor (Figs 4.42 to 4.51)."),
+            Picture(picture_name(QUASI_TIME), "Force and power with the quasi-ideal actuator (Figs 4.23, 4.26, 4.29, "
+                    "4.32)."),
+            Picture(picture_name(QUASI_POINTS), "Its working points at suspension and rotor (Figs 4.25, 4.31, 4.34)."),
+            Picture(picture_name(TIME), "Force and power with the real actuator (Figs 4.40, 4.43, 4.46, 4.49)."),
+            Picture(picture_name(POINTS), "Its working points at suspension and rotor (Figs 4.42, 4.45, 4.48, 4.51)."),
+            Picture(picture_name(ALONE), "Minimum damping without the force loop (Fig. 4.52)."),
+            Picture(picture_name(ALONE_POINTS), "Working points without the force loop (Fig. 4.53)."),
             Picture(picture_name(CAR), "Tyre load, acceleration as it is felt, and what spring and mass take and give "
-                    "back (Figs 4.24 to 4.50)."),
+                    "back (Figs 4.24, 4.27, 4.30, 4.33, 4.40d, 4.41, 4.44, 4.47, 4.50)."),
             Picture(picture_name(COMFORT), _lifted(found)),
+            Table(shaken_table(found.shaken), f"A force of {SHAKING.amplitude:g} N at {SHAKING.frequency:g} Hz on the "
+                  "body, maximum damping, printed numbers behind the bar (text to Figs 4.35 to 4.39)."),
+            Picture(picture_name(SHAKEN), "Force and power under the harmonic force (Figs 4.35 and 4.37)."),
+            Picture(picture_name(SHAKEN_POINTS), "Working points at suspension and rotor (Figs 4.36 and 4.38)."),
+            Picture(picture_name(LENT), "What spring and mass take and give back (Fig. 4.39)."),
         ),
     )  # fmt: skip
 
@@ -61,6 +85,25 @@ _KINDS = (
     (REAL, "Real actuator with its force loop: Tables 4.10 to 4.13, printed numbers behind the bar."),
     ("real, no force loop", "Without the force loop: Table 4.14, printed numbers behind the bar."),
 )
+
+
+def shaken_table(found: EnergyOutcome) -> pd.DataFrame:
+    """Under the harmonic force, one quantity a row, one friction a column: here | printed."""
+    columns = {case.command: _shaken_column(case) for case in found.cases}
+    return pd.DataFrame(columns).rename_axis("quantity").reset_index()
+
+
+def _shaken_column(case: EnergyCase) -> dict[str, str]:
+    (one,), printed = case.energies, PRINTED[case.command]
+    rows = (
+        ("active, suspension / W", one.shaft.active, printed.mechanical),
+        ("electrical power / W", one.battery.active, printed.electrical),
+        ("passive duty, suspension / %", _PERCENT * (1 - one.shaft_duty.active), _PERCENT * printed.shaft_passive),
+        ("passive duty, machine / %", _PERCENT * (1 - one.machine_duty.active), _PERCENT * printed.machine_passive),
+        ("power factor, suspension", one.shaft.factor, printed.shaft_factor),
+        ("power factor, machine shaft", one.machine.factor, printed.machine_factor),
+    )
+    return {words: _both({"here": here, "printed": stated}) for words, here, stated in rows}
 
 
 def _text() -> str:

@@ -31,6 +31,8 @@ def check_chain(study: Study, origin: str) -> None:
     origin: where the values come from, for the sentence
     """
     said = _output_problem(study) or _gearbox_problem(study)
+    if said is None and judges_by_road(study) and not drives(study):
+        said = 'optimise.judged_by = "road" needs a vehicle that is driven; set chain.requirements = "vehicle"'
     if study.drive is None and said is None:
         said = _vehicle_problem(study) if drives(study) else _stated_problem(study)
         said = said or (_linkage_problem(study) if searches_linkage(study) else None)
@@ -108,3 +110,8 @@ def _linkage_problem(study: Study) -> str | None:
 def rates_by_density(study: Study) -> bool:
     """Whether the length for the continuous torque is that of the nominal current density, and not of temperatures."""
     return study.thermal.continuous_length == "density"
+
+
+def judges_by_road(study: Study) -> bool:
+    """Whether the search over all stages is for comfort, road holding and recovered power."""
+    return study.optimise.judged_by == "road"

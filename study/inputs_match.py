@@ -15,6 +15,7 @@ from drivetrain.matching import (
 )
 from drivetrain.planetary import NITRIDED_STEEL, PLANETS, GearLaws, PrintedDynamicFactor
 from drivetrain.requirements import Linkage, Requirements
+from drivetrain.whole_design import Aims, RequirementAims
 from drivetrain.whole_search import WholeSearchInputs
 from study.chain import drives, searches_linkage
 from study.inputs_drive import largest_equivalent_mass
@@ -94,6 +95,11 @@ def stated_demands(study: Study) -> StatedDemands | None:
 def whole_search_inputs(study: Study) -> WholeSearchInputs:
     """What the search over everything needs beside the match."""
     return WholeSearchInputs(loss_grade=study.materials.loss_grade)
+
+
+def requirement_aims(study: Study) -> Aims:
+    """The aims of a search that asks for what the requirements ask for."""
+    return RequirementAims()
 
 
 def _by_hand(section: MatchSection) -> ChosenByHand:

@@ -733,6 +733,12 @@ class ActuatorSection(Section):
     loop_filter_rad_per_s: Annotated[float | None, Quantity("filter of the derivative", 0, 1e6)] = None
 
 
+class OptimiseSection(Section):
+    """What the search over all stages is for."""
+
+    judged_by: Literal["requirements", "road"] | None = None  # road: comfort, road holding and recovered power
+
+
 class Study(Section):
     """A whole study file."""
 
@@ -766,6 +772,7 @@ class Study(Section):
     actuator: ActuatorSection = ActuatorSection()
     prices: PricesSection | None = None
     mechanics: MechanicsSection = MechanicsSection()
+    optimise: OptimiseSection = OptimiseSection()
     tolerances: TolerancesSection = TolerancesSection()
     printed_actuator: PrintedActuatorSection | None = None
 

@@ -31,7 +31,7 @@ ALLOWED = {
     "vehicle": {"magnetostatics", "electrical", "losses", "thermal", "drivetrain", "gearbox", "control", "actuator"},
     "study": _DESIGN,
     "effects": {"materials", "geometry"},
-    "workbench": {"effects", *_FIELD, "losses", "study", "figures"},
+    "workbench": {"effects", *_FIELD, "electrical", "losses", "actuator", "study", "figures"},
     "bench": {"electrical", "actuator", "vehicle", "workbench", "figures"},
     "figures": _DESIGN - {"optimisation", "materials"},
     "export": {"magnetostatics", "geometry", "electrical", "losses", "drivetrain", "actuator"},

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
 
 from actuator.drive import MappedLoss, MappedMotor, TorqueLimit
 from actuator.model import Actuator
-from actuator.parts import CompliantMount, GearEfficiency, MechanicalLoss, Ratio, fixed_ratio
+from actuator.parts import LOSSLESS, CompliantMount, GearEfficiency, MechanicalLoss, Ratio, fixed_ratio
 from actuator.terminals import Terminals
 from control.force_loop import ForceLoop
 from drivetrain.linkage_stage import LinkageFront
@@ -69,16 +69,25 @@ def designed_actuator(
 
     front: None for a linkage of which two ratios are all that is known; then the nominal one holds everywhere
     """
-    limits = outcome.limits
-    actuator = Actuator(
+    driven = driven_parts(outcome, gears)
+    actuator = replace(
+        driven,
         drive=MappedMotor(torque_limit(winding, flux_map, losses), loss_law(losses), inputs.torque_lag),
-        ratio=fixed_ratio(gears.transmission_ratio) if front is None else ratio_over_stroke(front, gears),
-        equivalent_mass=limits.equivalent_mass,
+        ratio=driven.ratio if front is None else ratio_over_stroke(front, gears),
         mount=inputs.mount,
-        loss=MechanicalLoss(limits.viscous_friction, limits.coulomb_friction),
-        gears=GearEfficiency(*gears.train.efficiency),
     )
     return DesignedActuator(actuator, inputs.loop)
+
+
+def driven_parts(outcome: Outcome, gears: GearboxOutcome | None) -> Actuator:
+    """Ratio, equivalent mass, friction and meshes of a design without drive and mount; gears: None for a direct one."""
+    limits = outcome.limits
+    return Actuator(
+        ratio=fixed_ratio(outcome.features.transmission_ratio),
+        equivalent_mass=limits.equivalent_mass,
+        loss=MechanicalLoss(limits.viscous_friction, limits.coulomb_friction),
+        gears=LOSSLESS if gears is None else GearEfficiency(*gears.train.efficiency),
+    )
 
 
 def designed_terminals(winding: WindingOutcome, flux_map: FluxMap) -> Terminals:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,8 +110,15 @@ def energy_stage(case: RideCase, own: DesignedActuator, machine: Assembled | Non
     first = [[runs[command, kind][0] for command in commands_of(case)] for kind in (QUASI_IDEAL, REAL)]
     ideal, histories = (dict(zip(commands_of(case), simulate(group), strict=True)) for group in first)
     warm = () if machine is None else (ride_temperature(name, one, machine) for name, one in histories.items())
-    traces = _traces({QUASI_IDEAL: ideal, REAL: histories})
+    traces = traces_of({QUASI_IDEAL: ideal, REAL: histories})
     return EnergyOutcome(own, cases, tuple(loop_points(own)), traces, tuple(warm))
+
+
+def outcome_of(own: DesignedActuator, runs: Mapping[str, Run]) -> EnergyOutcome:
+    """Some runs with a real actuator as an outcome, each a command by the name that it is given."""
+    histories = dict(zip(runs, simulate(list(runs.values())), strict=True))
+    cases = tuple(EnergyCase(name, REAL, (ride_energy(one),)) for name, one in histories.items())
+    return EnergyOutcome(own, cases, (), traces_of({REAL: histories}), ())
 
 
 def commands_of(case: RideCase) -> dict[str, DamperCurve | Feedback]:
@@ -154,8 +161,8 @@ def loop_points(own: DesignedActuator) -> Iterator[LoopPoint]:
         yield LoopPoint(force, stiffness, bandwidth(through.closed), margins(through).phase, designed)
 
 
-def _traces(histories: dict[str, dict[str, RideHistory]]) -> xr.Dataset:
-    """Of histories by actuator and command."""
+def traces_of(histories: dict[str, dict[str, RideHistory]]) -> xr.Dataset:
+    """What figures show of histories by actuator and command; see ``EnergyOutcome``."""
     actuators, commands = list(histories), list(next(iter(histories.values())))
     time = histories[actuators[0]][commands[0]].time
     shown = (time >= min(SHOWN[0], time[-1] / 2)) & (time <= SHOWN[1])

@@ -150,6 +150,7 @@ class LoopRun:
 
     time [s], (t,); stroke: of the model [m], (t,); axis: stroke of the bench [m], (t,); wanted and force: on the
     suspension [N], (t,); motor_force: asked [N], (t,); acceleration: of the body [m/s^2], (t,)
+    wheel: height of the model's wheel [m], (t,); angle [rad], (t,), and torque [Nm], (t,): of the rotor as measured
     timing: of the paced loop, None for one as fast as it goes; lost: whether the force left all bounds, where it ended
     """
 
@@ -160,6 +161,9 @@ class LoopRun:
     force: np.ndarray
     motor_force: np.ndarray
     acceleration: np.ndarray
+    wheel: np.ndarray
+    angle: np.ndarray
+    torque: np.ndarray
     timing: Timing | None
     lost: bool
 
@@ -185,7 +189,7 @@ def run_loop(
         wanted = platform.law(told)
         asked = platform.low_level.motor_force(wanted, signals)
         rows.append((k * platform.sample_time, told.stroke, axis.stroke, wanted, signals.force, asked,
-                     told.body_acceleration))  # fmt: skip
+                     told.body_acceleration, told.wheel_height, signals.angle, signals.torque))  # fmt: skip
         velocity = axis.follow(told.stroke, platform.sample_time)
         model.move(road[k : k + 2], signals.force)
         signals = device.respond(velocity, asked)
@@ -193,9 +197,12 @@ def run_loop(
             pace.done()
         if lost := not abs(signals.force) < _UNBOUNDED:
             break
-    time, stroke, moved, wanted_forces, force, motor, acceleration = np.array(rows).T
-    timing = None if pace is None else pace.timing
-    return LoopRun(time, stroke, moved, wanted_forces, force, motor, acceleration, timing, lost)
+    columns = dict(zip(_COLUMNS, np.array(rows).T, strict=True))
+    return LoopRun(**columns, timing=None if pace is None else pace.timing, lost=lost)
+
+
+# What is written down of a sample, in this order.
+_COLUMNS = ("time", "stroke", "axis", "wanted", "force", "motor_force", "acceleration", "wheel", "angle", "torque")
 
 
 class _Model:
@@ -216,4 +223,5 @@ class _Model:
     def move(self, road: np.ndarray, force: float) -> None:
         """One sample on; road: heights at its ends [m], (2, n); force: on the suspension [N]."""
         self.equations.held[0] = force
-        follow(self.equations, self.state, road, self.step, self.parts, self.states, self.seen)
+        imposed = np.column_stack([road, (0.0, 0.0)])  # nothing but the road and the actuator acts
+        follow(self.equations, self.state, imposed, self.step, self.parts, self.states, self.seen)

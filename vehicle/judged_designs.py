@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import log, pi
+from math import pi
 
 import numpy as np
 
@@ -28,8 +28,8 @@ from vehicle.energy import RideEnergy, ride_energy
 from vehicle.errors import VehicleError
 from vehicle.models import Vehicle
 from vehicle.ride import Run, Scenario, simulate
+from vehicle.road_aims import road_costs
 
-_TELLS = 1e-2  # relative: a road of 30 s tells no smaller difference of comfort or road holding
 _STEP = 5e-4  # s, of the history: means of powers are taken over its samples
 _MASS, _EQUIVALENT_MASS = 0, 1  # among the objectives of a design
 
@@ -76,10 +76,9 @@ class JudgedDesign:
     recovered_command: str
 
     @property
-    def costs(self) -> tuple[float, float, float, float]:
-        """Mass [kg], logarithms of comfort and road holding to a hundredth, power not recovered [W]; less is better."""
-        felt, holding = (round(log(one) / _TELLS) * _TELLS for one in (self.comfort, self.road_holding))
-        return self.rated.values.objectives[_MASS], felt, holding, -self.recovered
+    def costs(self) -> tuple[float, ...]:
+        """As ``road_costs`` [kg, 1, 1, W], (4,); less is better."""
+        return road_costs(self.rated.values.objectives[_MASS], self.comfort, self.road_holding, self.recovered)
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,9 @@ CONTROL = np.dtype([("source", np.int64), ("closed", np.bool_), *((name, np.floa
 # Behind the coordinates and their rates a state holds these, from ``own`` on: those of the actuator, the integrated and
 # the filtered error of the force loop, then works since the start.
 INTEGRAL, FILTERED = TORQUE + 1, TORQUE + 2
-WORKS = ("road", "propulsion", "passive", "shaft", "mount", "gears", "friction", "motor")
+WORKS = ("road", "propulsion", "lift", "passive", "shaft", "mount", "gears", "friction", "motor")
 WORK = 5
+PROPULSION, LIFT, PASSIVE, SHAFT = (WORKS.index(name) for name in ("propulsion", "lift", "passive", "shaft"))
 OWN = WORK + len(WORKS)
 _NUDGE = 1e-9  # m, m/s, Nm, Ns, N: small against a play
 # What is seen of a moment; then, for all axles, tyre forces, strokes, their rates and the forces of the end stops.
@@ -88,45 +89,84 @@ def stop_force(axle: Record, stroke: float) -> float:
 
 @compiled
 def ride(
-    e: Equations, state: np.ndarray, road: np.ndarray, climb: np.ndarray, change: np.ndarray, seen: np.ndarray
+    e: Equations, state: np.ndarray, imposed: np.ndarray, climb: np.ndarray, change: np.ndarray, seen: np.ndarray
 ) -> None:
     """What springs, stops, tyres and the passive dampers do with a state, before the actuator acts.
 
-    m_s z_s'' = -sum F_i,          F_i = k_s,i dz_i + F_stop,i + F_d,i
+    m_s z_s'' = P - sum F_i,       F_i = k_s,i dz_i + F_stop,i + F_d,i
     J_s theta'' = -cos(theta) sum x_i F_i + (z_s + h_COG) F_prop
     m_u,i z_u,i'' = F_i - min(k_u,i (z_u,i - z_r,i), W_i)
 
     Thesis eqs 3.8-3.16, 4.3-4.5 with the forces counted from static equilibrium: printed 3.8 balances the weights with
     F_e = k dz; with null stroke at static equilibrium, as the text has it, F_e = k dz - m_s,i g and the weights cancel.
-    x_i: position ahead of the centre of gravity; W_i: static load.
+    x_i: position ahead of the centre of gravity; W_i: static load; P: a force on the body at the centre of gravity.
 
-    state, change: [SI], (size,); road: heights [m], (n,); climb: their rates [m/s], (n,); seen: [SI], (seen,)
+    state, change: [SI], (size,); imposed: heights of the road [m] and then P [N], (n + 1,); climb: rates of the heights
+    [m/s], (n,) at least; seen: [SI], (seen,)
     """
-    count, body = e.axles.size, e.body
-    rate, work = 2 + count, 2 * (2 + count) + WORK
-    cosine = np.cos(state[1])
+    rest(e, state, change)
+    for i in range(e.axles.size):
+        suspend(e, i, state, imposed[i], climb[i], change, seen)
+    drive_body(e, state, imposed[e.axles.size], change)
+
+
+@compiled
+def rest(e: Equations, state: np.ndarray, change: np.ndarray) -> None:
+    """Rates of a vehicle on which nothing acts: heights and pitch move on, works stay; state, change: [SI], (size,)."""
+    rate = 2 + e.axles.size
     for i in range(rate):
         change[i], change[rate + i] = state[rate + i], 0.0
     for i in range(len(WORKS)):
-        change[work + i] = 0.0
-    for i in range(count):
-        axle = e.axles[i]
-        stroke = state[0] + axle.position * np.sin(state[1]) - state[2 + i]
-        moving = state[rate] + axle.position * cosine * state[rate + 1] - state[rate + 2 + i]
-        tyre = min(axle.tyre * (state[2 + i] - road[i]), axle.load)
-        stop = stop_force(axle, stroke)
-        damper = line(moving, e.dampers[i]) if i < count - 1 else 0.0
-        pull = axle.spring * stroke + stop + damper
-        change[rate] -= pull / body.mass
-        change[rate + 1] -= cosine * axle.position * pull / body.pitch_inertia
-        change[rate + 2 + i] = (pull - tyre) / axle.unsprung_mass
-        change[work] -= tyre * climb[i]
-        change[work + 2] += damper * moving
-        for k, value in enumerate((tyre, stroke, moving, stop)):
-            seen[len(SEEN) + k * count + i] = value
+        change[2 * rate + WORK + i] = 0.0
+
+
+@compiled
+def suspend(
+    e: Equations, i: int, state: np.ndarray, height: float, climb: float, change: np.ndarray, seen: np.ndarray
+) -> None:
+    """What tyre, spring, stop and passive damper of axle ``i`` do with a state.
+
+    height: of the road [m]; climb: its rate [m/s]; state, change: [SI], (size,); seen: [SI], (seen,)
+    """
+    count, axle, work = e.axles.size, e.axles[i], 2 * (2 + e.axles.size) + WORK
+    stroke, moving = stretch(e, i, state)
+    tyre = min(axle.tyre * (state[2 + i] - height), axle.load)
+    stop = stop_force(axle, stroke)
+    damper = line(moving, e.dampers[i]) if i < count - 1 else 0.0
+    pull_down(e, i, axle.spring * stroke + stop + damper, state, change)
+    change[4 + count + i] -= tyre / axle.unsprung_mass
+    change[work] -= tyre * climb
+    change[work + PASSIVE] += damper * moving
+    for k, value in enumerate((tyre, stroke, moving, stop)):
+        seen[len(SEEN) + k * count + i] = value
+
+
+@compiled
+def stretch(e: Equations, i: int, state: np.ndarray) -> tuple[float, float]:
+    """Stroke of axle ``i`` [m] and its rate [m/s]; state: [SI], (size,)."""
+    rate, position = 2 + e.axles.size, e.axles[i].position
+    stroke = state[0] + position * np.sin(state[1]) - state[2 + i]
+    return stroke, state[rate] + position * np.cos(state[1]) * state[rate + 1] - state[rate + 2 + i]
+
+
+@compiled
+def pull_down(e: Equations, i: int, force: float, state: np.ndarray, change: np.ndarray) -> None:
+    """Let a force [N] pull the body down and the wheel of axle ``i`` up; state, change: [SI], (size,)."""
+    body, axle, rate = e.body, e.axles[i], 2 + e.axles.size
+    change[rate] -= force / body.mass
+    change[rate + 1] -= np.cos(state[1]) * axle.position * force / body.pitch_inertia
+    change[rate + 2 + i] += force / axle.unsprung_mass
+
+
+@compiled
+def drive_body(e: Equations, state: np.ndarray, force: float, change: np.ndarray) -> None:
+    """Let the propulsion turn the body and a force [N] lift it; state, change: [SI], (size,)."""
+    body, rate = e.body, 2 + e.axles.size
+    work = 2 * rate + WORK
     turning = (state[0] + body.cog_height) * body.propulsion
     change[rate + 1] += turning / body.pitch_inertia
-    change[work + 1] = turning * state[rate + 1]
+    change[rate] += force / body.mass
+    change[work + PROPULSION], change[work + LIFT] = turning * state[rate + 1], force * state[rate]
 
 
 @compiled
@@ -205,7 +245,7 @@ def show(
     """
     inside = found.inside
     for k, power in enumerate((force * moving, inside.mount, inside.gears, inside.friction, inside.motor)):
-        change[WORK + 3 + k] = power
+        change[WORK + SHAFT + k] = power
     motor_force, speed = found.torque / inner.ratio, inner.velocity / inner.ratio
     for k, value in enumerate((acceleration, force, wanted, motor_force, speed, found.torque)):
         seen[k] = value
@@ -226,17 +266,17 @@ def push(e: Equations, force: float, mass: float, state: np.ndarray, change: np.
         turning = cosine * change[rate + 1] - np.sin(state[1]) * state[rate + 1] ** 2
         free = change[rate] + axle.position * turning - change[rate + 1 + count] - force * mobility
         force += mass * free / (1 + mass * mobility)
-    change[rate] -= force / body.mass
-    change[rate + 1] -= lever * force / body.pitch_inertia
-    change[rate + 1 + count] += force / axle.unsprung_mass
+    pull_down(e, count - 1, force, state, change)
     return force
 
 
 @compiled
-def advance(e: Equations, state: np.ndarray, road: np.ndarray, rise: np.ndarray, step: float, work: np.ndarray) -> None:
+def advance(
+    e: Equations, state: np.ndarray, imposed: np.ndarray, rise: np.ndarray, step: float, work: np.ndarray
+) -> None:
     """One step [s] of the classical Runge-Kutta rule, in place.
 
-    state: [SI], (size,); road: heights at its start [m], (n,); rise: over the step [m], (n,)
+    state: [SI], (size,); imposed: at its start, as in ``ride`` [m, N], (n + 1,); rise: over the step [m, N], (n + 1,)
     work: room for slopes and a trial state [SI], (8, size) at least
     """
     size = state.size
@@ -246,7 +286,7 @@ def advance(e: Equations, state: np.ndarray, road: np.ndarray, rise: np.ndarray,
     for stage in range(4):
         ahead = (stage + 1) // 2 / 2
         for i in range(rise.size):
-            under[i] = road[i] + ahead * rise[i]
+            under[i] = imposed[i] + ahead * rise[i]
         for i in range(size):
             trial[i] = state[i] + (ahead * step * work[stage - 1, i] if stage > 0 else 0.0)
         ride(e, trial, under, climb, work[stage], seen)
@@ -257,25 +297,25 @@ def advance(e: Equations, state: np.ndarray, road: np.ndarray, rise: np.ndarray,
 
 @compiled
 def follow(
-    e: Equations, state: np.ndarray, road: np.ndarray, step: float, parts: int, states: np.ndarray, seen: np.ndarray
+    e: Equations, state: np.ndarray, imposed: np.ndarray, step: float, parts: int, states: np.ndarray, seen: np.ndarray
 ) -> None:
     """Go on from a state over a road, straight between the samples, and keep every state and what is seen of it.
 
-    state: at the first sample, moved on to the last [SI], (size,); road: heights [m], (t, n)
+    state: at the first sample, moved on to the last [SI], (size,); imposed: as in ``ride`` [m, N], (t, n + 1)
     step: between samples [s], divided by ``parts``; states: [SI], (t, size); seen: [SI], (t, seen)
     """
-    count = road.shape[1]
+    count = imposed.shape[1]
     work = np.zeros((8, max(state.size, seen.shape[1])))
     here, rise, still = np.empty(count), np.zeros(count), np.zeros(count)
-    for k in range(road.shape[0]):
+    for k in range(imposed.shape[0]):
         if k > 0:
             for i in range(count):
-                rise[i] = (road[k, i] - road[k - 1, i]) / parts
+                rise[i] = (imposed[k, i] - imposed[k - 1, i]) / parts
             for part in range(parts):
                 for i in range(count):
-                    here[i] = road[k - 1, i] + part * rise[i]
+                    here[i] = imposed[k - 1, i] + part * rise[i]
                 advance(e, state, here, rise, step / parts, work)
-        ride(e, state, road[k], still, work[0], seen[k])
+        ride(e, state, imposed[k], still, work[0], seen[k])
         act(e, state, work[0], seen[k])
         for i in range(state.size):
             states[k, i] = state[i]
@@ -290,7 +330,7 @@ def jacobian(e: Equations, state: np.ndarray) -> np.ndarray:
     size, count = state.size - len(WORKS), e.axles.size
     found, trial = np.empty((size, size)), state.copy()
     rates, seen = np.empty((2, state.size)), np.empty(len(SEEN) + 4 * count)
-    flat = np.zeros(count)
+    flat = np.zeros(count + 1)
     for k in range(size):
         for side in range(2):
             trial[k] = state[k] + _NUDGE * (1 - 2 * side)

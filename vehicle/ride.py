@@ -20,7 +20,7 @@ from vehicle.damping import DamperCurve
 from vehicle.equations import equations, largest_step, require_stable_law, stored_energy
 from vehicle.errors import VehicleError, require_not_negative, require_positive
 from vehicle.models import Vehicle
-from vehicle.motion import SEEN, WORK, WORKS, Equations, follow
+from vehicle.motion import SEEN, SHAFT, WORK, WORKS, Equations, follow
 from vehicle.road import FlatRoad, Road
 
 Kept = TypeVar("Kept")
@@ -28,12 +28,39 @@ BALANCE_TOLERANCE = 5e-3  # of the energy that went through the vehicle
 
 
 @dataclass(frozen=True)
+class BodyForce:
+    """A vertical force on the body at its centre of gravity; this one is none."""
+
+    def at(self, time: np.ndarray) -> np.ndarray:
+        """[N], (t,), positive upwards; time: [s], (t,)."""
+        return np.zeros_like(time)
+
+
+@dataclass(frozen=True)
+class HarmonicForce(BodyForce):
+    """F sin(2 pi f t) (text to thesis Fig. 4.35); amplitude: F [N]; frequency: f [Hz]."""
+
+    amplitude: float
+    frequency: float
+
+    def __post_init__(self) -> None:
+        require_positive("harmonic force on the body", amplitude=self.amplitude, frequency=self.frequency)
+
+    def at(self, time: np.ndarray) -> np.ndarray:
+        """[N], (t,), positive upwards; time: [s], (t,)."""
+        return self.amplitude * np.sin(2 * np.pi * self.frequency * time)
+
+
+NO_FORCE = BodyForce()
+
+
+@dataclass(frozen=True)
 class Scenario:
-    """What the vehicle does: a road at a speed, or an acceleration.
+    """What the vehicle does: a road at a speed, an acceleration, or a force that shakes its body.
 
     name: the same for random roads that differ by their seed alone
     speed [m/s], duration [s], road; longitudinal: acceleration a_x that the propulsion force gives [m/s^2] (3.25);
-    time_step [s] of the history; the integration divides it where the motion is stiffer.
+    body_force: on the body; time_step [s] of the history; the integration divides it where the motion is stiffer.
     """
 
     name: str
@@ -41,6 +68,7 @@ class Scenario:
     duration: float
     road: Road = FlatRoad()
     longitudinal: float = 0.0
+    body_force: BodyForce = NO_FORCE
     time_step: float = 1e-3
 
     def __post_init__(self) -> None:
@@ -84,12 +112,14 @@ class EnergyBalance:
     """Where the energy of a run came from and went to [J].
 
     road: work of the road on the tyres above the static load [J]; propulsion: of its force on the pitch [J]
+    lift: work of a force on the body [J]
     passive: taken by the dampers of the other axles [J]; actuator: by machine, friction, gears and mount [J]
     stored: left in masses, springs and tyres at the end, of the actuator too [J]
     """
 
     road: float
     propulsion: float
+    lift: float
     passive: float
     actuator: float
     stored: float
@@ -97,7 +127,7 @@ class EnergyBalance:
     @property
     def residual(self) -> float:
         """What the numbers leave unexplained [J]."""
-        return self.road + self.propulsion - self.passive - self.actuator - self.stored
+        return self.road + self.propulsion + self.lift - self.passive - self.actuator - self.stored
 
     @property
     def error(self) -> float:
@@ -194,7 +224,7 @@ def ride_of_run(run: Run) -> RideHistory:
     _require_stable_control(run)
     e = equations(run.vehicle, run.actuator, run.command, run.loop, run.vehicle.total_mass * scenario.longitudinal)
     parts = ceil(scenario.time_step / largest_step(run.vehicle, run.actuator, run.command, e))
-    states, seen = _followed(run, e, np.ascontiguousarray(road.T), parts)
+    states, seen = _followed(run, e, np.column_stack([*road, scenario.body_force.at(time)]), parts)
     if not np.isfinite(states[-1]).all():
         step = scenario.time_step / parts
         raise VehicleError(
@@ -211,19 +241,19 @@ def _require_stable_control(run: Run) -> None:
         require_stable_law(run.vehicle, run.command)
 
 
-def _followed(run: Run, e: Equations, road: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
-    """States (t, size) and what is seen of them (t, seen)."""
+def _followed(run: Run, e: Equations, imposed: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """States (t, size) and what is seen (t, seen); imposed: as in ``vehicle.motion.ride`` [m, N], (t, n + 1)."""
     step = run.scenario.time_step
-    states, seen, state = np.empty((len(road), e.size)), np.empty((len(road), e.seen)), np.zeros(e.size)
+    states, seen, state = np.empty((len(imposed), e.size)), np.empty((len(imposed), e.seen)), np.zeros(e.size)
     if not isinstance(run.command, Controller):
-        follow(e, state, road, step, parts, states, seen)
+        follow(e, state, imposed, step, parts, states, seen)
         return states, seen
     every = _samples_between(run.command, step)
-    follow(e, state, road[:1], step, parts, states[:1], seen[:1])
-    for k in range(0, len(road) - 1, every):
+    follow(e, state, imposed[:1], step, parts, states[:1], seen[:1])
+    for k in range(0, len(imposed) - 1, every):
         here = slice(k, k + every + 1)
         e.held[0] = run.command.law(felt(k * step, states[k], seen[k], len(run.vehicle.axles)))
-        follow(e, state, road[here], step, parts, states[here], seen[here])
+        follow(e, state, imposed[here], step, parts, states[here], seen[here])
     return states, seen
 
 
@@ -278,7 +308,7 @@ def _history(run: Run, time: np.ndarray, road: np.ndarray, states: np.ndarray, s
         actuator_force=machine,
         suspension_force=force,
         stop_force=stop[-1],
-        inside=InsideActuator(wanted, torque, speed, x, v, *own[WORK + 3 :]),
+        inside=InsideActuator(wanted, torque, speed, x, v, *own[WORK + SHAFT :]),
         energy=_balance(run, road, states),
     )
     _require_balance(history)
@@ -290,6 +320,7 @@ def _balance(run: Run, road: np.ndarray, states: np.ndarray) -> EnergyBalance:
     return EnergyBalance(
         road=works["road"],
         propulsion=works["propulsion"],
+        lift=works["lift"],
         passive=works["passive"],
         actuator=works["mount"] + works["gears"] + works["friction"] + works["motor"],
         stored=stored_energy(run.vehicle, run.actuator, states[-1], road[:, -1])

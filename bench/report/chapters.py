@@ -16,12 +16,12 @@ PLACES = (
     ("Fig. 4.10, Table 4.5", "“Energy on the road” in report.html: the force loop, its margins, the loop for 60 Hz"),
     ("Figs 4.13, 4.15-4.18, Tables 4.1, 4.4", "“Control laws over their settings”"),
     ("Figs 4.19, 4.20, Tables 4.2, 4.3", "“On the benches of the thesis”, identified parameters"),
-    ("Figs 4.21, 4.22", "“Requirements from the vehicle” in report.html: damper curves and the road of the study"),
-    ("Figs 4.23-4.34, 4.40-4.55, Tables 4.6-4.14", "“In the thesis's quarter car”; on the own vehicle in report.html"),
-    ("Figs 4.35-4.39", "not shown: a harmonic force on the body is no scenario of this tool"),
+    ("Figs 4.21-4.55, Tables 4.6-4.14", "“In the thesis's quarter car”; of the own vehicle in report.html"),
     ("Figs 5.1, 5.2, 5.11, 5.14, 5.15", "photographs and drawings of the benches"),
-    ("Figs 5.3-5.10, 5.12, 5.13, B.1, B.2, Tables 5.1, B.1", "“On the benches of the thesis”"),
-    ("Table 5.2", "not computed: nothing here knows how the casing radiates; “airgap analyse sound” reads records"),
+    ("Fig. 5.3", "the open circuit in Fig. 5.4; gears and bearings apart are no parts of the model"),
+    ("Figs 5.5, 5.7", "records over time of tests at constant speed; their steady values stand in Figs 5.6 and 5.8"),
+    ("Figs 5.4, 5.6, 5.8-5.10, 5.12, 5.13, B.1, B.2, Tables 5.1, B.1", "“On the benches of the thesis”"),
+    ("Table 5.2", "printed in “On the benches of the thesis”; not computed, nothing here knows how a casing radiates"),
     ("Figs 5.16, 5.17", "“On the benches of the thesis”, in the loop; “airgap hil” by the clock"),
 )  # fmt: skip
 

@@ -226,24 +226,31 @@ def levels(found: Sequence[SoundLevels]) -> Figure:
 
 @styled
 def loops(matches: Sequence[LoopMatch]) -> Figure:
-    """Measured and identified force over the stroke, and what is left."""
+    """Measured and identified force over the stroke and, below, over time."""
     shown = matches[:_MOST_LOOPS]
     columns = min(len(shown), 3)
     rows = -(-len(shown) // columns)
-    figure = new_figure(0.6 + 3.0 * rows)
-    grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axes, match in zip(grid, shown):
-        stroke = match.loop.stroke[match.loop.compared] / MILLIMETRE
-        axes.plot(stroke, match.loop.measured, color=SKY, linewidth=4.0, label="measured")
-        axes.plot(stroke, match.answer, color=BLACK, linewidth=0.9, label="identified model")
-        axes.set(xlabel="stroke / mm", ylabel="force / N")
-        axes.set_title(match.loop.name, loc="left")
-    for axes in grid[len(shown) :]:
+    figure = new_figure(0.6 + 5.0 * rows)
+    grid = figure.subplots(2 * rows, columns, squeeze=False)
+    over_stroke, over_time = grid[::2].ravel(), grid[1::2].ravel()
+    for loop, time, match in zip(over_stroke, over_time, shown):
+        _match(loop, match.loop.stroke[match.loop.compared] / MILLIMETRE, match)
+        _match(time, match.loop.time[match.loop.compared], match)
+        loop.set(xlabel="stroke / mm", ylabel="force / N")
+        begin, end = match.loop.time[match.loop.compared][[0, -1]]
+        time.set(xlabel="time / s", ylabel="force / N", xlim=(end - (end - begin) / 4, end))
+        loop.set_title(match.loop.name, loc="left")
+    for axes in (*over_stroke[len(shown) :], *over_time[len(shown) :]):
         axes.set_visible(False)
-    letter(grid[: len(shown)])
-    show_grid(*grid[: len(shown)])
-    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    letter(over_stroke[: len(shown)])
+    show_grid(*grid.flat)
+    figure.legend(*over_stroke[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
+
+
+def _match(axes: Axes, over: np.ndarray, match: LoopMatch) -> None:
+    axes.plot(over, match.loop.measured, color=SKY, linewidth=4.0, label="measured")
+    axes.plot(over, match.answer, color=BLACK, linewidth=0.9, label="identified model")
 
 
 @styled

@@ -77,6 +77,15 @@ def test_controlled_impedance_is_that_of_the_lumped_model(found):
     assert float(added) == pytest.approx(4e3, rel=0.1)
 
 
+@pytest.mark.physics
+def test_more_samples_a_period_change_no_impedance(monkeypatch):
+    """A quarter of the step that the sines are simulated with."""
+    usual = [benches._controlled(prototype(), 2e3, f) for f in (2.0, 20.0, 60.0)]
+    monkeypatch.setattr(benches, "_PER_PERIOD", 4 * benches._PER_PERIOD)
+    fine = [benches._controlled(prototype(), 2e3, f) for f in (2.0, 20.0, 60.0)]
+    assert np.abs(np.array(usual) / fine - 1).max() < 1e-4
+
+
 def test_the_loop_helps_and_what_is_kept_is_what_was_found(found):
     alone, cell = found.in_the_loop
     assert cell.numbers["force_error_rms_N"] < 0.6 * alone.numbers["force_error_rms_N"]
@@ -85,10 +94,21 @@ def test_the_loop_helps_and_what_is_kept_is_what_was_found(found):
     assert again.shunts[1:-1] == found.shunts[1:-1] and again.active.equals(found.active)
 
 
+@pytest.mark.physics
+def test_powers_in_the_loop_are_those_of_a_damper(found):
+    """The mean power from the suspension is that of force and velocity; losses lie between it and the battery."""
+    one = found.loops_in_time.sel(test="load cell")
+    damped = float((one.wanted**2).mean()) / benches.HIL_DAMPING
+    assert float(one.mechanical.mean()) == pytest.approx(damped, rel=0.2)
+    assert float(one.electrical.mean()) < float(one.mechanical.mean())
+    assert one.body.values == pytest.approx(one.stroke.values + one.wheel.values)
+    assert np.allclose(one.current * 48.0, one.electrical)
+
+
 def test_what_people_read(found):
     assert report.section(found).title == "On the benches of the thesis"
     assert len(report.parameter_table(found)) == 8 and len(report.shunt_table(found)) == 5
-    assert sum(one.name.endswith(".png") for one in report.files(found)) == 6
+    assert sum(one.name.endswith(".png") for one in report.files(found)) == 7
 
 
 def test_a_rigid_mount_is_refused():

@@ -15,7 +15,7 @@ from control.design import loop_for
 from control.errors import ControlError
 from control.force_loop import ForceLoop
 from control.transfer import TransferFunction, bandwidth, margins
-from tests.actuator.thesis import FORCE_LOOP, NOMINAL_GAINS, prototype
+from tests.actuator.thesis import FORCE_LOOP, NOMINAL_GAINS, RATIO, prototype
 
 pytestmark = pytest.mark.physics
 FREQUENCY = np.array([0.1, 3.0, 60.0, 900.0])
@@ -100,6 +100,8 @@ def test_tangent_is_that_of_the_force():
     assert tangent_plant(prototype(), 300.0).at(20.0) == pytest.approx(
         blocked_force(prototype(), stiffness, damping).at(20.0)
     )
+    preload = mount.tangent(mount.deformation(12.0 * 42.7e-3 / RATIO))[0]  # 12 A of bias, text to Fig. 5.12
+    assert np.sqrt(preload / prototype().equivalent_mass) / (2 * np.pi) == pytest.approx(51.8, abs=0.2)
     with pytest.raises(ActuatorError, match="needs a compliant mount"):
         tangent_plant(Actuator(), 100.0)
 

@@ -57,6 +57,7 @@ def problem(thesis):
         masses=thesis.model.masses,
         damping_of=lambda section: damping_constraint(section, thesis.requirements, thesis.loading),
         loss_of=lambda section, design: (design.transmission_ratio / design.active_length) ** 2,
+        machine_of=lambda design: None,
         targets=(4.0, 15.0),
     )  # fmt: skip
 
@@ -140,7 +141,7 @@ def test_the_front_is_feasible_and_non_dominated(problem, staged):
     assert len(found) > 5 and all(one.values.feasible for one in found)
     for one in costs:
         assert not ((costs <= one).all(axis=1) & (costs < one).any(axis=1)).any()
-    assert len(spread(found, 4)) == 4
+    assert len(spread(found, problem.costs(found), 4)) == 4
     assert len(OBJECTIVES) == costs.shape[1]
 
 
@@ -149,7 +150,8 @@ def test_spread_starts_with_the_best_of_each_objective():
         RatedDesign(WholeDesign(TWELVE, k, 0.0, 0.0, 0.0), Values(objectives, (0.0,)))
         for k, objectives in enumerate([(1, 9, 1, 9), (9, 1, 1, 9), (9, 9, 9, 9), (9, 9, 1, 1), (5, 5, 5, 5)])
     ]
-    assert [one.design.stator_outer_radius for one in spread(designs, 5)] == [0, 1, 2, 3, 4]
+    costs = np.array([one.values.objectives for one in designs]) * (1, 1, -1, 1)
+    assert [one.design.stator_outer_radius for one in spread(designs, costs, 5)] == [0, 1, 2, 3, 4]
 
 
 # ---- loss on the road -----------------------------------------------------------------------------------------------

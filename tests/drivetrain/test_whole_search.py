@@ -10,6 +10,7 @@ import pytest
 from drivetrain.match import MatchError
 from drivetrain.matching import match_stage
 from drivetrain.output import Shaft, Wheel
+from drivetrain.whole_design import RequirementAims
 from drivetrain.whole_search import (
     FieldTask,
     WholeSearchInputs,
@@ -62,7 +63,8 @@ def test_each_objective_is_asked_for_with_the_others_kept():
 # ---- the stage ------------------------------------------------------------------------------------------------------
 
 
-def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=ONLY_TWELVE, output=Wheel()):
+def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_inputs=ONLY_TWELVE, output=Wheel(),
+           aims=RequirementAims()):  # fmt: skip
     coarse = replace(CASE, density=MeshDensity(gap_edges=60, longest_gap_edge=3.0, gap_layers=1, across_iron=1.0))
     with pytest.MonkeyPatch.context() as patch, no_field():
         patch.setattr("drivetrain.whole_design._GENERATIONS", 3)
@@ -77,6 +79,7 @@ def search(requirements=REQUIRED, linkages=Linkages(), inputs=SMALL, match_input
             requirements,
             match_inputs,
             inputs,
+            aims,
             output,
             InThisProcess(),
         )
@@ -116,7 +119,7 @@ def test_the_report_tells_of_it(found):
     table, gains = report.solved_table(found, Wheel()), report.gains(found, Wheel())
     assert len(table) == len(found.solved) and (gains.stator_diameter_mm >= 70).all()
     assert table.damping_kNs_per_m[0] == pytest.approx(found.solved[0].field.values.objectives[2] / 1e3)
-    names = {file.name for file in report.files(found, Wheel())}
+    names = {file.name for file in report.files(found, RequirementAims(), Wheel())}
     assert names == {"optimise.csv", "optimise.html", "figures/whole_designs.png"}
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from actuator.drive import MappedLoss, TorqueLimit
 from actuator.errors import ActuatorError
 from figures.energy import force_loop, powers_over_time, where_the_power_goes, working_points
-from figures.quarter_car import beside_the_thesis, comfort_setting, vehicle_over_time
+from figures.quarter_car import beside_the_thesis, car_inputs, comfort_setting, lent_powers, vehicle_over_time
 from pipeline.codec import decoded, encoded
 from report import quarter_car as quarter_car_report
 from report.energy import duty_table, files, loop_table, power_table, remarks, section
@@ -20,10 +20,13 @@ from tests.vehicle.thesis import CRUISE_SPEED, quarter_car, quarter_car_damping
 from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
 from vehicle.energy_stage import OPEN, QUASI_IDEAL, REAL, energy_stage
+from vehicle.indices import rms
+from vehicle.printed_car import printed_road
 from vehicle.printed_energy import printed_energy
-from vehicle.quarter_car_stage import QuarterCarRides
+from vehicle.quarter_car_stage import WITHOUT_LOOP, QuarterCarRides, without_loop
 from vehicle.ride import Scenario
 from vehicle.road import IsoRoad, roughness_of_class
+from vehicle.shaken import AS_STATED, MORE_FRICTION, PRINTED, shaken
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +86,8 @@ def test_figures_are_readable(found, assert_readable):
 def rides(found):
     time = np.linspace(0.0, 15.0, 50)
     data = {name: ("time", np.sin(time)) for name in ("felt", "tyre_load", "force")}
-    return QuarterCarRides(found, xr.Dataset(data, {"time": time}))
+    own = DesignedActuator(prototype(), FORCE_LOOP)
+    return QuarterCarRides(found, xr.Dataset(data, {"time": time}), without_loop(own), shaken(own))
 
 
 def test_every_printed_number_stands_beside_ours(rides):
@@ -94,13 +98,46 @@ def test_every_printed_number_stands_beside_ours(rides):
     assert real.loc["electrical power / W", "LQR handling"].endswith("| 9.8")
     quasi = quarter_car_report.beside(rides, QUASI_IDEAL).set_index("quantity")
     assert "|" not in quasi.loc["power factor, machine shaft", "maximum"]
-    assert "lifts from" in quarter_car_report.section(rides).content[-1].caption
+    captions = [getattr(part, "caption", "") for part in quarter_car_report.section(rides).content]
+    assert any("lifts from" in one for one in captions)
+    table = quarter_car_report.shaken_table(rides.shaken).set_index("quantity")
+    assert table.loc["electrical power / W", MORE_FRICTION].endswith("| -9")
+
+
+@pytest.mark.reference
+def test_a_harmonic_force_on_the_body_as_in_the_text_to_figures_4_35_to_4_39(rides):
+    """The amplified friction must be overcome by the machine: its power changes its sign, that of the suspension not.
+
+    The damper curve of Fig. 4.21 bends, the straight line here does not, so that the amplified case moves less.
+    """
+    stated, more = ({case.command: case.energies[0] for case in rides.shaken.cases}[k] for k in PRINTED)
+    for one, printed in zip((stated, more), PRINTED.values(), strict=True):
+        assert one.shaft.active == pytest.approx(printed.mechanical, abs=0.5)
+        assert 1 - one.shaft_duty.active == pytest.approx(printed.shaft_passive, abs=0.01)
+        assert abs(one.closure) < 0.01
+    assert stated.battery.active == pytest.approx(PRINTED[AS_STATED].electrical, abs=0.5)
+    assert 1 - stated.machine_duty.active == pytest.approx(PRINTED[AS_STATED].machine_passive, abs=0.03)
+    assert (stated.shaft.factor, stated.machine.factor) == pytest.approx((1.0, 0.96), abs=0.05)
+    assert more.battery.active < -4.0 and more.machine_duty.active > 0.75
 
 
 def test_figures_beside_the_thesis_are_readable(rides, assert_readable):
     for draw in (vehicle_over_time, lambda one: beside_the_thesis(one, printed_energy())):
         assert_readable(draw(rides.energy))
     assert_readable(comfort_setting(rides))
+    for draw in (powers_over_time, working_points, lent_powers):
+        assert_readable(draw(rides.shaken))
+    assert_readable(powers_over_time(rides.energy, QUASI_IDEAL))
+    assert_readable(car_inputs(quarter_car_damping(), printed_road(0)))
+
+
+@pytest.mark.reference
+def test_without_its_loop_the_force_misses_what_is_wanted(rides):
+    """Fig. 4.52: tracking is poor; with the loop the error is a fraction of it."""
+    alone, real = rides.alone.traces.sel(actuator=REAL), rides.energy.traces.sel(actuator=REAL)
+    errors = [rms((one.force - one.wanted).values) / rms(one.wanted.values) for one in (
+        alone.sel(command=WITHOUT_LOOP), real.sel(command="minimum"))]  # fmt: skip
+    assert errors[0] > 0.3 and errors[1] < errors[0] / 3
 
 
 @pytest.mark.physics

@@ -19,7 +19,7 @@ from drivetrain.learned import (
 )
 from drivetrain.second_design import ALL_TOGETHER, AS_DESIGNED
 from pipeline.campaign_command import designed, write_campaign
-from pipeline.campaign_draft import BENCHES
+from pipeline.campaign_draft import BENCHES, on_bench
 from pipeline.codec import digest
 from pipeline.graph import product
 from pipeline.results import Results
@@ -29,6 +29,7 @@ from pipeline.stages import graph_of, graph_of_second_design
 from study.errors import StudyError
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
+from workbench.models.actuator.design import written
 from workbench.models.bases import nominal_model
 
 SEAL, WEAKER, LEAKING = 0.05, 0.9, 0.02
@@ -136,7 +137,7 @@ def test_a_draft_says_that_nothing_was_measured(folder):
         read_campaign(folder)
 
 
-def test_the_model_of_a_draft_answers_as_the_design(folder, first):
+def test_the_model_of_a_draft_answers_as_the_design(folder, study, first):
     for path in folder.glob("*.csv"):
         pd.read_csv(path).fillna(1.0).to_csv(path, index=False)
     campaign = read_campaign(folder)
@@ -162,6 +163,8 @@ def test_the_model_of_a_draft_answers_as_the_design(folder, first):
     if folder.name == "actuator":
         held = model.base.respond(model.design, "locked_force", {"current": np.array([current])})["torque"]
         assert held[0] == pytest.approx(float(field.torque(0.0, current)), rel=1e-4)
+        described = written(on_bench(designed(study, first.results)))
+        assert written(model.design.drawn) == pytest.approx(described, rel=1e-6)
 
 
 def test_a_campaign_is_never_overwritten(folder, study, first):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from study.errors import StudyError
 from study.inputs_actuator import actuator_inputs
 from study.read import read_study
 from tests.actuator.thesis import FORCE_LOOP, TORQUE_LAG, prototype
@@ -26,3 +27,11 @@ def test_what_is_stated_counts_in_si(tmp_path):
     found = actuator_inputs(read_study(path))
     assert (found.mount.play, found.loop.derivative, found.torque_lag) == pytest.approx((2e-5, 4e-3, 2e-3))
     assert found.mount.stiffness == pytest.approx(676e3) and found.loop.proportional == 7.4
+
+
+def test_a_negative_mount_stiffness_is_one_sentence(tmp_path):
+    text = (STUDIES / "motorcycle.toml").read_text(encoding="utf-8")
+    path = tmp_path / "soft.toml"
+    path.write_text(f"{text}\n[actuator]\nmount_stiffness_kN_per_m = -500.0\n", encoding="utf-8")
+    with pytest.raises(StudyError, match="mount_stiffness_kN_per_m = -500.0 is outside the allowed range; give 1 to"):
+        read_study(path)

@@ -49,6 +49,9 @@ def test_the_numbers_that_the_thesis_leads_to():
     shorted = np.abs(table_b1(LinearStar(0.07)).impedance(np.array([1e-3, 1.0, 5.0]), 0.0, 0.1))
     assert shorted / 1e3 == pytest.approx([7.0, 6.8, 4.6], abs=0.05)
     assert table_b1(Star()).natural_frequency == pytest.approx(30.1, abs=0.05)
+    nominal = LumpedActuator(MACHINE, Star(), TAU, 5.6, 70.0, 5e5, 100.0)  # Table 4.2
+    identified = LumpedActuator(MACHINE, Star(), TAU, 5.6 * 1.1, 70.0 * 1.519, 5e5 * 1.352, 100.0 * 5.452)
+    assert (nominal.natural_frequency, identified.natural_frequency) == pytest.approx((47.6, 52.7), abs=0.05)
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from vehicle.equations import equations
 from vehicle.errors import VehicleError
 from vehicle.models import NO_STOPS, Axle, EndStops, Motorcycle, QuarterCar, Tyre
 from vehicle.motion import SEEN, act, ride
-from vehicle.ride import Run, Scenario, simulate
+from vehicle.ride import HarmonicForce, Run, Scenario, simulate
 from vehicle.road import IsoRoad, Obstacle, ObstacleShape, Road, roughness_of_class
 
 pytestmark = pytest.mark.physics
@@ -103,14 +103,14 @@ def test_the_acceleration_is_that_of_the_forces(vehicle):
     curve, propulsion = motorcycle_damping()[2], 500.0
     actuator = Actuator(equivalent_mass=5.0)
     e = equations(vehicle, actuator, curve, None, propulsion)
-    seen, change, still = np.empty(e.seen), np.empty(e.size), np.zeros(count)
+    seen, change, still = np.empty(e.seen), np.empty(e.size), np.zeros(count + 1)
     position = np.array([axle.position for axle in vehicle.axles])
     unsprung = np.array([axle.unsprung_mass for axle in vehicle.axles])
     for _ in range(50):
         state = np.zeros(e.size)
         state[: 4 + 2 * count] = draw.normal(size=4 + 2 * count) * np.repeat([0.1, 0.7], 2 + count)
-        road = 0.05 * draw.normal(size=count)
-        ride(e, state, road, still, change, seen)
+        imposed = np.append(0.05 * draw.normal(size=count), 300.0 * draw.normal())
+        ride(e, state, imposed, still, change, seen)
         act(e, state, change, seen)
         tyre, stroke, moving, stop = seen[len(SEEN) :].reshape(4, count)
         sine, cosine = np.sin(state[1]), np.cos(state[1])
@@ -123,7 +123,7 @@ def test_the_acceleration_is_that_of_the_forces(vehicle):
         own = curve.at(moving[-1]) + 5.0 * (relative - acceleration[-1])
         forces = [damper.at(v) for damper, v in zip(vehicle.passive_dampers, moving, strict=False)] + [own]
         pull = np.array([axle.spring_stiffness for axle in vehicle.axles]) * stroke + stop + forces
-        assert vehicle.sprung_mass * acceleration[0] == pytest.approx(-pull.sum())
+        assert vehicle.sprung_mass * acceleration[0] == pytest.approx(imposed[-1] - pull.sum())
         turning = (state[0] + vehicle.cog_height) * propulsion
         moment = turning - cosine * (position * pull).sum()
         assert vehicle.pitch_inertia * acceleration[1] == pytest.approx(moment, abs=1e-6)
@@ -136,6 +136,24 @@ def test_vehicle_at_rest_stays_at_rest():
     history = simulate([Run(motorcycle(), linear_damper(1e3, "rear"), Scenario("rest", 0.0, 0.5))])[0]
     assert not history.stroke.any() and not history.pitch.any()
     assert history.tyre_loads[:, -1] == pytest.approx([axle.static_load for axle in BIKE.axles])
+
+
+def test_a_harmonic_force_shakes_the_body_as_the_transfer_function_says():
+    """Settled, against (-w^2 M + j w C + K) x = F; its work is what the damper takes."""
+    car, damping, shaking = quarter_car(), 2e3, HarmonicForce(50.0, 1.3)
+    step, w = 1e-3, 2 * np.pi * 1.3
+    found = simulate([Run(car, linear_damper(damping, "c"), Scenario("shaken", 0.0, 12.0, body_force=shaking))])[0]
+    between = car.spring_stiffness + 1j * w * damping
+    dynamic = np.array([[between - w**2 * car.sprung_mass, -between],
+                        [-between, between + car.tyre_stiffness - w**2 * car.unsprung_mass]])  # fmt: skip
+    body, wheel = np.linalg.solve(dynamic, [50.0, 0.0])
+    turn, late = np.exp(1j * w * found.time), found.time > 10.0
+    for seen, expected in ((found.body_height, body), (found.stroke, body - wheel)):
+        assert seen[late] == pytest.approx((expected * turn).imag[late], abs=2e-4 * abs(expected))
+    work = np.trapezoid(shaking.at(found.time) * np.gradient(found.body_height, step), dx=step)
+    assert found.energy.lift == pytest.approx(work, rel=1e-3) and found.energy.error < 1e-6
+    with pytest.raises(VehicleError, match="frequency must be above zero, found 0"):
+        HarmonicForce(50.0, 0.0)
 
 
 def statics(bike, propulsion):

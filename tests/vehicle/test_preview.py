@@ -86,6 +86,17 @@ def test_the_plan_is_what_the_simulation_does_with_its_force():
 
 
 @pytest.mark.physics
+def test_half_the_step_between_nodes_changes_little():
+    """Nodes of 5 ms, as the plans are made, against 2.5 ms: cost to 0.5 %, force to 5 % RMS, travel to 1 %."""
+    for ahead in (0.0, 0.2):
+        usual, fine = ((one, plan(one)) for one in (task(ahead, step=5e-3), task(ahead, step=2.5e-3)))
+        assert cost(*usual) == pytest.approx(cost(*fine), rel=5e-3)
+        force = np.interp(usual[1].time, fine[1].time, fine[1].motor_force)
+        assert np.std(usual[1].motor_force - force) < 0.05 * np.std(force)
+        assert usual[1].stroke.max() == pytest.approx(fine[1].stroke.max(), rel=0.01)
+
+
+@pytest.mark.physics
 def test_force_travel_and_tyre_keep_their_bounds():
     narrow = replace(CAR, stops=EndStops(-0.06, 0.07, 1e6))
     weak = replace(

@@ -76,12 +76,17 @@ def require_whole(values: Mapping[str, float], *fields: str) -> None:
 
 def moved(design: Any, tolerance: Tolerance, z: float, fields: tuple[str, ...]) -> Any:
     """The design with the toleranced field moved by z sigma; the tolerance names it with or without its unit."""
-    name = tolerance.name if tolerance.name in fields else split_unit(tolerance.name)[0]
-    if name not in fields:
-        raise WorkbenchError(f"[tolerance] {tolerance.name} is no input of this model: use one of {', '.join(fields)}")
-    nominal = getattr(design, name)
-    sigma = tolerance.sigma * (abs(nominal) if tolerance.relative else 1.0)
-    return replace(design, **{name: nominal + sigma * z})
+    values = moved_number({name: getattr(design, name) for name in fields}, tolerance, z)
+    return replace(design, **values)
+
+
+def moved_number(values: Mapping[str, float], tolerance: Tolerance, z: float) -> dict[str, float]:
+    """Numbers with the toleranced one moved by z sigma; the tolerance names it with or without its unit."""
+    name = tolerance.name if tolerance.name in values else split_unit(tolerance.name)[0]
+    if name not in values:
+        raise WorkbenchError(f"[tolerance] {tolerance.name} is no input of this model: use one of {', '.join(values)}")
+    sigma = tolerance.sigma * (abs(values[name]) if tolerance.relative else 1.0)
+    return {**values, name: values[name] + sigma * z}
 
 
 def _number(key: str, value: object) -> float:

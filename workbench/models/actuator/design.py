@@ -1,7 +1,7 @@
-"""An actuator as the effects see it: ``effects.damper_design.Damper`` at the output, made from machine, gears, linkage.
+"""An actuator as the effects see it: ``effects.damper_design.Damper`` at the output, made from the one description.
 
-Output and rotor:  v = tau w,  F = T / tau,  tau = linkage ratio / gear ratio.  With the RMS line-to-line voltage
-u = sqrt(3/2) e and the current i' = sqrt(3/2) i, of the peak phase voltage e and the peak q-axis current i,
+Output and rotor:  v = tau w,  F = T / tau.  With the RMS line-to-line voltage u = sqrt(3/2) e and the current
+i' = sqrt(3/2) i, of the peak phase voltage e and the peak q-axis current i,
 
     F v = T w = 3/2 e i = u i',   K = sqrt(3/2) p psi_m / tau [Vs/m = N/A],   u = (R + R_shunt) i'
 
@@ -10,72 +10,95 @@ so that R, L and the shunts, in star, are those of one phase (thesis eq. 3.75: K
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import sqrt
 
 import numpy as np
 
+from actuator.model import Actuator
+from actuator.parts import GearEfficiency, MechanicalLoss, fixed_ratio
 from effects.damper_design import Damper
 from effects.electrical.force_constant_saturation import ForceConstantSaturation
 from effects.mechanical.coulomb_friction import CoulombFriction
+from electrical.synchronous_machine import SynchronousMachine
 
 OF_PEAK = sqrt(1.5)  # u over the peak phase voltage, i' over the peak q-axis current
 
 
 @dataclass(frozen=True)
-class ActuatorInputs:
-    """What is drawn, SI; at a shaft the linkage ratio is 1, forces are torques and masses inertias.
+class OnBench:
+    """What lies on the bench.
 
-    pole_pairs: p;  psi_m: magnet flux linkage, peak of a phase [Vs];  phase_resistance: at reference_T [ohm]
-    inductance: of a phase, sqrt(L_d L_q) [H];  reference_T [degC]
-    gear_ratio: fast over slow speed [1];  linkage_ratio: output travel over angle of the slow shaft [m/rad or 1]
-    efficiency_driven, efficiency_driving: of the meshes, the output drives the rotor and the other way round [1]
-    equivalent_mass: of rotor and gears at the output [kg or kg m^2]
-    viscous_friction [Ns/m or Nms/rad], coulomb_friction [N or Nm]: at the output
+    actuator: as simulation and exported unit take it, at its nominal ratio and without drive; its mount does not act at
+    rest or at constant speed; on a shaft the ratio is 1 over that of the gears, masses are inertias, forces torques
+    machine: at the terminals; reference_T: at which its resistance holds [degC]
     saturation: s of K(i') = K / (1 + s i'^2) [1/A^2]
     """
 
-    pole_pairs: float
-    psi_m: float
-    phase_resistance: float
-    inductance: float
-    gear_ratio: float
-    linkage_ratio: float
-    equivalent_mass: float
+    actuator: Actuator
+    machine: SynchronousMachine
     reference_T: float = 20.0
-    efficiency_driven: float = 1.0
-    efficiency_driving: float = 1.0
-    viscous_friction: float = 0.0
-    coulomb_friction: float = 0.0
     saturation: float = 0.0
 
-    @property
-    def ratio(self) -> float:
-        """tau [m/rad or 1]."""
-        return self.linkage_ratio / self.gear_ratio
+
+REQUIRED = ("pole_pairs", "psi_m", "phase_resistance", "inductance", "transmission_ratio", "equivalent_mass")
+OPTIONAL = ("reference_T", "saturation", "efficiency_driven", "efficiency_driving", "viscous_friction",
+            "coulomb_friction")  # fmt: skip
+
+
+def read(values: Mapping[str, float]) -> OnBench:
+    """From the numbers of a ``[device]`` table; values: by the names of ``REQUIRED`` and ``OPTIONAL`` [SI]."""
+    given = {"reference_T": 20.0, "saturation": 0.0, **values}
+    inductance = given["inductance"]
+    machine = SynchronousMachine(
+        int(given["pole_pairs"]), given["psi_m"], inductance, inductance, given["phase_resistance"]
+    )
+    actuator = Actuator(
+        ratio=fixed_ratio(given["transmission_ratio"]),
+        equivalent_mass=given["equivalent_mass"],
+        loss=MechanicalLoss(given.get("viscous_friction", 0.0), given.get("coulomb_friction", 0.0)),
+        gears=GearEfficiency(given.get("efficiency_driven", 1.0), given.get("efficiency_driving", 1.0)),
+    )
+    return OnBench(actuator, machine, given["reference_T"], given["saturation"])
+
+
+def written(found: OnBench) -> dict[str, float]:
+    """The numbers of a ``[device]`` table, by the names of ``REQUIRED`` and ``OPTIONAL`` [SI]; ``read`` reads them.
+
+    Of a machine with L_d and L_q their geometric mean: at constant speed that is what a shunted current meets.
+    """
+    machine, actuator = found.machine, found.actuator
+    numbers = (
+        machine.pole_pairs, machine.psi_m, machine.resistance, np.sqrt(machine.inductance_d * machine.inductance_q),
+        actuator.ratio.nominal, actuator.equivalent_mass, found.reference_T, found.saturation, actuator.gears.driven,
+        actuator.gears.driving, actuator.loss.viscous, actuator.loss.coulomb,
+    )  # fmt: skip
+    return dict(zip((*REQUIRED, *OPTIONAL), (float(one) for one in numbers), strict=True))
 
 
 @dataclass(frozen=True)
-class Actuator(Damper):
-    """inputs: what the constants of the damper were made from;  is_shaft: the output is a shaft, not a wheel"""
+class BenchActuator(Damper):
+    """drawn: what the constants of the damper were made from;  is_shaft: the output is a shaft, not a wheel"""
 
-    inputs: ActuatorInputs = field(kw_only=True)
+    drawn: OnBench = field(kw_only=True)
     is_shaft: bool = field(default=False, kw_only=True)
 
     @classmethod
-    def of(cls, inputs: ActuatorInputs, is_shaft: bool) -> Actuator:
+    def of(cls, drawn: OnBench, is_shaft: bool) -> BenchActuator:
         """The actuator as drawn, with its friction and the saturation of its machine."""
+        constants, loss = written(drawn), drawn.actuator.loss
         bare = cls(
-            force_constant=OF_PEAK * inputs.pole_pairs * inputs.psi_m / inputs.ratio,
-            internal_resistance=inputs.phase_resistance,
-            moving_mass=inputs.equivalent_mass,
-            viscous_damping=inputs.viscous_friction,
-            inductance=inputs.inductance,
-            inputs=inputs,
+            force_constant=OF_PEAK * constants["pole_pairs"] * constants["psi_m"] / constants["transmission_ratio"],
+            internal_resistance=constants["phase_resistance"],
+            moving_mass=drawn.actuator.equivalent_mass,
+            viscous_damping=loss.viscous,
+            inductance=constants["inductance"],
+            drawn=drawn,
             is_shaft=is_shaft,
         )
-        saturating = ForceConstantSaturation(inputs.saturation).on_design(bare)
-        return CoulombFriction(level=inputs.coulomb_friction).on_design(saturating)
+        saturating = ForceConstantSaturation(drawn.saturation).on_design(bare)
+        return CoulombFriction(level=loss.coulomb).on_design(saturating)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,37 +8,46 @@ Kinds of measurement and their columns, SI; at a shaft "velocity" is "speed" and
     phase_resistance  [winding_T]                        -> resistance  of one phase
     force_loop        frequency, amplitude, shunt, phase -> force       x = A sin(phase), slow: 2 pi f L << R + shunt
 
-All effects of a damper act (``effects.damper_design``): the constants are brought to the output by the ratio. Their
-voltages are RMS line to line, their resistances those of one phase, their currents sqrt(3/2) of the peak q-axis one.
+The device is the description that every simulation and the exported unit take (``actuator.model.Actuator``) with its
+machine (``workbench.models.actuator.design``). All effects of a damper act (``effects.damper_design``): the constants
+are brought to the output by the ratio. Voltages are RMS line to line, resistances those of one phase, currents
+sqrt(3/2) of the peak q-axis one.
 
-The meshes: driven by the output it must give F_em / efficiency_driven, driving it gets efficiency_driving F_em. At a
-held output ``direction`` is +1 where the current pushes the friction and -1 where the output pushes it back; without it
-the mean of both is meant. Iron loss is no part of the model.
+The meshes stand between the output and all that turns, friction and rotor (``GearEfficiency.through``). At a held
+output ``direction`` is +1 where the current pushes the friction and -1 where the output pushes it back; without it the
+mean of both is meant. Iron loss is no part of the model.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from math import isinf, pi
 
 import numpy as np
 
+from actuator.errors import ActuatorError
 from effects.base import Columns
 from effects.damper_design import Damper
 from materials.conductor import COPPER
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models import device
-from workbench.models.actuator.design import OF_PEAK, Actuator, ActuatorInputs, Reactance
+from workbench.models.actuator.design import (
+    OF_PEAK,
+    OPTIONAL,
+    REQUIRED,
+    BenchActuator,
+    Reactance,
+    read,
+    written,
+)
 from workbench.models.base import BaseModel
 from workbench.models.damper.steady_circuit import circuit_current, coupling_factor
 
 CREEP = 0.05  # m/s or rad/s, at which the friction of a held output is read: beyond presliding, before viscosity
 SLOW = 0.1  # 2 pi f L over R + shunt up to which a force loop is answered; it errs by half its square
 
-_FIELDS = tuple(f.name for f in fields(ActuatorInputs))
-_REQUIRED = _FIELDS[:7]
 
 
 class ActuatorModel(BaseModel):
@@ -47,23 +56,24 @@ class ActuatorModel(BaseModel):
     name = "actuator"
 
     def accepts(self, device_table: Mapping[str, object]) -> bool:
-        return {"psi_m", "gear_ratio", "linkage_ratio"} <= set(device.names(device_table))
+        return {"psi_m", "transmission_ratio"} <= set(device.names(device_table))
 
-    def design(self, device_table: Mapping[str, object]) -> Actuator:
-        """The actuator of the ``[device]`` table; keys are the fields of ``ActuatorInputs`` with a unit at their end,
-        and ``output = "wheel"`` or ``"shaft"``."""
-        values = device.numbers(device_table, _REQUIRED, _FIELDS[7:])
-        device.require_positive(values, *_REQUIRED)
+    def design(self, device_table: Mapping[str, object]) -> BenchActuator:
+        """The actuator of the ``[device]`` table: the numbers of ``workbench.models.actuator.design``, a unit at their
+        end, and ``output = "wheel"`` or ``"shaft"``."""
+        values = device.numbers(device_table, REQUIRED, OPTIONAL)
+        device.require_positive(values, *REQUIRED)
+        device.require_whole(values, "pole_pairs")
         output = device_table.get("output", "wheel")
         if output not in ("wheel", "shaft"):
             raise WorkbenchError(f'[device] output must be "wheel" or "shaft", found {output!r}')
-        return Actuator.of(ActuatorInputs(**values), is_shaft=output == "shaft")
+        return _actuator(values, output == "shaft")
 
-    def with_tolerance(self, design: Actuator, tolerance: Tolerance, z: float) -> Actuator:
+    def with_tolerance(self, design: BenchActuator, tolerance: Tolerance, z: float) -> BenchActuator:
         """The actuator with one drawn number moved by z standard deviations."""
-        return Actuator.of(device.moved(design.inputs, tolerance, z, _FIELDS), design.is_shaft)
+        return _actuator(device.moved_number(written(design.drawn), tolerance, z), design.is_shaft)
 
-    def respond(self, design: Actuator, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
+    def respond(self, design: BenchActuator, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns of one table, see the module."""
         if kind not in _ANSWERS:
             known = ", ".join(sorted(_ANSWERS))
@@ -71,13 +81,21 @@ class ActuatorModel(BaseModel):
         return _ANSWERS[kind](design, conditions)
 
 
-def steady_force(design: Actuator, velocity: np.ndarray, shunt: np.ndarray) -> np.ndarray:
-    """Force that the output must give at constant velocity [N or Nm]: friction and the driven machine."""
+def _actuator(values: Mapping[str, float], is_shaft: bool) -> BenchActuator:
+    """Raises WorkbenchError for numbers that no actuator has."""
+    try:
+        return BenchActuator.of(read(values), is_shaft)
+    except ActuatorError as wrong:
+        raise WorkbenchError(f"[device] {wrong}") from None
+
+
+def steady_force(design: BenchActuator, velocity: np.ndarray, shunt: np.ndarray) -> np.ndarray:
+    """Force that the output must give at constant velocity [N or Nm]: friction and machine, through the meshes."""
     still = np.zeros_like(velocity)
     turning = _turning(design, velocity)
     current = circuit_current(turning, still, velocity, shunt)
     made = design.force_constant * coupling_factor(design, still, current) * current
-    return made / design.inputs.efficiency_driven + friction(design, velocity)
+    return design.drawn.actuator.gears.through(made + friction(design, velocity), velocity)
 
 
 def friction(design: Damper, velocity: np.ndarray) -> np.ndarray:
@@ -86,18 +104,18 @@ def friction(design: Damper, velocity: np.ndarray) -> np.ndarray:
     return design.viscous_damping * velocity + sum(law.force(still, velocity) for law in design.forces)
 
 
-def _turning(design: Actuator, velocity: np.ndarray) -> Damper:
+def _turning(design: BenchActuator, velocity: np.ndarray) -> Damper:
     """The actuator at constant velocity, where the inductance is a reactance."""
-    frequency = design.inputs.pole_pairs * velocity / design.inputs.ratio
+    frequency = design.drawn.machine.pole_pairs * velocity / design.drawn.actuator.ratio.nominal
     law = Reactance(frequency * design.inductance)
     return replace(design, circuits=(law, *design.circuits))
 
 
-def _warm(design: Actuator, conditions: Columns) -> Actuator:
+def _warm(design: BenchActuator, conditions: Columns) -> BenchActuator:
     """With the resistance at ``winding_T``, where that is read."""
     if "winding_T" not in conditions:
         return design
-    reference = COPPER.resistivity(design.inputs.reference_T)
+    reference = COPPER.resistivity(design.drawn.reference_T)
     factor = COPPER.resistivity(conditions["winding_T"]) / reference
     return replace(design, internal_resistance=design.internal_resistance * factor)
 
@@ -109,41 +127,41 @@ def _motion(conditions: Columns) -> np.ndarray:
     raise WorkbenchError("an actuator that moves needs a column velocity, at a shaft a column speed")
 
 
-def _named(design: Actuator, force: np.ndarray) -> dict[str, np.ndarray]:
+def _named(design: BenchActuator, force: np.ndarray) -> dict[str, np.ndarray]:
     return {"torque" if design.is_shaft else "force": force}
 
 
-def _locked(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
+def _locked(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
     current = OF_PEAK * conditions["current"]
     made = design.force_constant * coupling_factor(design, np.zeros_like(current), current) * current
     if "direction" not in conditions:
         return _named(design, made)
-    pushed = conditions["direction"] > 0
-    held = np.sign(current) * friction(replace(design, viscous_damping=0.0), np.full_like(current, CREEP))
-    driving, driven = design.inputs.efficiency_driving, design.inputs.efficiency_driven
-    return _named(design, np.where(pushed, driving * made - held, made / driven + held))
+    creep = -np.sign(current * conditions["direction"]) * CREEP  # the current pushes against the sense of its force
+    held = made + friction(replace(design, viscous_damping=0.0), creep)
+    return _named(design, design.drawn.actuator.gears.through(held, creep))
 
 
-def _damping(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
+def _damping(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
     return _named(design, steady_force(_warm(design, conditions), _motion(conditions), conditions["shunt"]))
 
 
-def _back_emf(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
+def _back_emf(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
     velocity = _motion(conditions)
     factor = coupling_factor(design, np.zeros_like(velocity), np.zeros_like(velocity))
     return {"v_ll": np.abs(design.force_constant * factor * velocity)}
 
 
-def _drag(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
-    return _named(design, friction(design, _motion(conditions)))
+def _drag(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
+    velocity = _motion(conditions)
+    return _named(design, design.drawn.actuator.gears.through(friction(design, velocity), velocity))
 
 
-def _resistance(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
+def _resistance(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
     rows = len(next(iter(conditions.values())))
     return {"resistance": np.broadcast_to(_warm(design, conditions).internal_resistance, (rows,)).astype(float)}
 
 
-def _loop(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
+def _loop(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
     """F = F_steady(v) + m a, friction and machine as at constant velocity."""
     frequency, amplitude, shunt = (conditions[name] for name in ("frequency", "amplitude", "shunt"))
     if np.any(2 * pi * frequency * design.inductance > SLOW * (design.internal_resistance + shunt)):
@@ -158,7 +176,7 @@ def _loop(design: Actuator, conditions: Columns) -> dict[str, np.ndarray]:
     return _named(design, steady_force(design, velocity, shunt) + design.moving_mass * acceleration)
 
 
-_ANSWERS: dict[str, Callable[[Actuator, Columns], dict[str, np.ndarray]]] = {
+_ANSWERS: dict[str, Callable[[BenchActuator, Columns], dict[str, np.ndarray]]] = {
     "locked_force": _locked,
     "damping_velocity": _damping,
     "back_emf": _back_emf,
