@@ -19,16 +19,21 @@ from magnetostatics.torque import arkkio_torque, maxwell_torque
 COLD, PREPARED = "Airgap", "Airgap, prepared"
 
 
+def _settings(tolerance: float) -> NewtonSettings:
+    """The stopping rule of the other codes, with chord steps in the place of the last Newton steps."""
+    return NewtonSettings(tolerance, chords_within=30.0)
+
+
 def solve_cold(case: FieldCase, tolerance: float) -> CodeResult:
     """Everything after the mesh, in a model that has never solved before."""
     began = time.process_time(), time.perf_counter()
-    model = FieldModel(case.section, case.materials, NewtonSettings(tolerance), case.order)
+    model = FieldModel(case.section, case.materials, _settings(tolerance), case.order)
     return _solve(COLD, model, case, began)
 
 
 def solve_prepared(case: FieldCase, tolerance: float) -> CodeResult:
     """The same from zero field, in a model whose numbering and pattern are there, as for the next current."""
-    model = FieldModel(case.section, case.materials, NewtonSettings(tolerance), case.order)
+    model = FieldModel(case.section, case.materials, _settings(tolerance), case.order)
     model.solve(case.state.point)
     return _solve(PREPARED, model, case, (time.process_time(), time.perf_counter()))
 

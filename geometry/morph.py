@@ -172,11 +172,16 @@ class _PieceMorpher:
     def _factor(self) -> SuperLU:
         return splu(self._stiffness[self._inside][:, self._inside].tocsc())
 
+    @cached_property
+    def _pull(self) -> sp.csr_matrix:
+        """Forces on the inside of moves of the outline."""
+        return -self._stiffness[self._inside][:, self.outline_nodes]
+
     def _follow(self, outline_moves: np.ndarray) -> np.ndarray:
         """Moves of all nodes (n, 2) from those of the outline (k, 2)."""
         moves = np.zeros_like(self.drawn_points)
         moves[self.outline_nodes] = outline_moves
-        moves[self._inside] = self._factor.solve(-self._stiffness[self._inside][:, self.outline_nodes] @ outline_moves)
+        moves[self._inside] = self._factor.solve(self._pull @ outline_moves)
         return moves
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 from cmath import exp
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from math import ceil, gcd, pi, sin
 from typing import ClassVar
 
@@ -66,7 +67,7 @@ class WindingLayout:
         """Coils of one phase, all in series."""
         return len(self.coils) // self.phases
 
-    @property
+    @cached_property
     def phase_axis(self) -> float:
         """Electrical angle of the magnetic axis of phase A [rad], in [-pi/6, pi/6].
 
@@ -169,6 +170,7 @@ class WindingLayout:
         return [(angle + self.slots) % turn - self.slots for angle in turned]
 
 
+@lru_cache
 def star_of_slots(slots: int, pole_pairs: int, layers: int = 2, coil_pitch: int | None = None) -> WindingLayout:
     """The winding of a stator.
 

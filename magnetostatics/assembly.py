@@ -7,24 +7,25 @@ depends on the rotor's turn. Entries are addressed by one integer key, column * 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 
 from magnetostatics.cholesky import SymmetricSystem
-from magnetostatics.passes import symmetric_product
+from magnetostatics.passes import add_scattered, addresses, found_in, merged, symmetric_product
 
 
 @dataclass(frozen=True, eq=False)
 class Entries:
     """Addresses of the local entries (K, E) of a set of elements in the reduced matrix.
 
-    keys (k,): sorted distinct integers, dimensionless; adder (k, K E): sparse, +-1 where a local entry belongs to a key
+    keys (k,): sorted distinct integers, dimensionless; places: index of the key of every local entry, (K, E)
+    signs: of every local entry, dimensionless, 0 where an unknown is fixed, (K, E)
     """
 
     keys: np.ndarray
-    adder: sp.csr_matrix
+    places: np.ndarray
+    signs: np.ndarray
 
     @classmethod
     def of(
@@ -40,27 +41,13 @@ class Entries:
         pairs: local (row, column) indices of the K entries, each (K,); dofs: indices, (F, E)
         column: index of the unknown of every degree of freedom, (n,); dof_sign: its sign, dimensionless, (n,)
         """
-        i, j = pairs
-        a, b = column[dofs][i].ravel(), column[dofs][j].ravel()
-        sign = (dof_sign[dofs][i] * dof_sign[dofs][j]).ravel()
-        rows, columns = np.maximum(a, b), np.minimum(a, b)
-        order = _counting_sort(rows, size)
-        order = order[sign[order] != 0]  # fixed unknowns must not fill the pattern
-        order = order[_counting_sort(columns[order], size)]
-        keys = columns[order] * np.int64(size) + rows[order]
-        starts = np.flatnonzero(np.append(True, keys[1:] != keys[:-1]))
-        adder = sp.csr_matrix((sign[order], order, np.append(starts, len(keys))), shape=(len(starts), len(sign)))
-        return cls(keys[starts], adder)
+        return cls(*addresses(pairs, dofs, column, dof_sign, size))
 
     def sum(self, local: np.ndarray) -> np.ndarray:
         """The local entries (K, E) [m/H] summed up, one value per key [m/H], (k,)."""
-        return self.adder @ local.ravel()
-
-
-def _counting_sort(values: np.ndarray, size: int) -> np.ndarray:
-    """Stable order of integers from 0 to size - 1, in linear time: the transposition of a sparse matrix is one."""
-    one_a_row = sp.csr_matrix((np.ones(len(values), bool), values, np.arange(len(values) + 1)), (len(values), size))
-    return one_a_row.tocsc().indices
+        total = np.zeros(len(self.keys))
+        add_scattered(total, local, self.places, self.signs)
+        return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +68,7 @@ class FixedPattern:
     @classmethod
     def of(cls, iron: Entries, linear: Entries, size: int) -> FixedPattern:
         """The pattern of the entries of the iron and of everything linear."""
-        keys, linear_position, iron_position = _merge(linear.keys, iron.keys)
+        keys, linear_position, iron_position = merged(linear.keys, iron.keys)
         return cls(iron, linear, keys, iron_position, linear_position, size)
 
 
@@ -94,13 +81,14 @@ class JoinedPattern:
     """
 
     def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
-        band_keys = reduce(lambda first, second: _merge(first, second)[0], (band.keys for band in bands.values()))
-        keys, fixed_position, _ = _merge(fixed.keys, band_keys)
+        band_keys = np.sort(np.concatenate([band.keys for band in bands.values()]))
+        keys, fixed_position, _ = merged(fixed.keys, band_keys[np.diff(band_keys, prepend=-1) > 0])
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
         self.columns, self.rows = np.divmod(keys, self.size)
         self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))
-        self.linear_position, self.iron_position = fixed_position[fixed.linear], fixed_position[fixed.iron]
-        self.band_positions = {edges: np.searchsorted(keys, band.keys) for edges, band in bands.items()}
+        self.linear_position = fixed_position[fixed.linear]
+        self.iron_places = fixed_position.astype(np.int32)[fixed.iron][fixed.iron_entries.places]
+        self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
 
     @cached_property
     def system(self) -> SymmetricSystem:
@@ -131,15 +119,6 @@ class JoinedSystem:
         iron_tangent: local iron entries [m/H], (K, E)
         """
         values = self._linear.copy()
-        values[self.pattern.iron_position] += self.pattern.fixed.iron_entries.sum(iron_tangent)
+        add_scattered(values, iron_tangent, self.pattern.iron_places, self.pattern.fixed.iron_entries.signs)
         self.pattern.system.factorise(values)
         return self.pattern.system
-
-
-def _merge(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sorted distinct keys of two sorted lists of distinct keys, and the positions in them of either list."""
-    place = np.searchsorted(first, second)
-    is_new = np.append(first, -1)[place] != second
-    keys = np.insert(first, place[is_new], second[is_new])
-    inserted = np.cumsum(np.bincount(place[is_new], minlength=len(first)))
-    return keys, np.arange(len(first)) + inserted[: len(first)], place + np.cumsum(is_new) - is_new

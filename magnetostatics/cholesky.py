@@ -2,7 +2,7 @@
 
 The order is that of approximate minimum degree (Amestoy, Davis and Duff, through cvxopt); the factorisation itself is
 the project's own (``magnetostatics/fronts.py``, ``magnetostatics/multifrontal.py``): on the problems of this room it
-takes 0.6 of the time of CHOLMOD as cvxopt carries it (``docs/speed.md``).
+takes 0.5 to 0.6 of the time of CHOLMOD as cvxopt carries it (``docs/speed.md``).
 """
 
 from __future__ import annotations

@@ -21,6 +21,8 @@ from skfem.assembly import Dofs
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
+from magnetostatics.passes import lowered
+
 
 @dataclass(frozen=True, eq=False)
 class TriangleOrder:
@@ -114,41 +116,36 @@ def refine_order(facets: np.ndarray, a: np.ndarray) -> np.ndarray:
 
     facets: indices of the ends of the edges, (2, k); a: potential at the nodes [Wb/m], (nodes,)
     """
-    return np.concatenate([a, a[facets].mean(axis=0)])
+    return np.concatenate([a, (a[facets[0]] + a[facets[1]]) / 2])
 
 
 def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Load on the linear functions [A], (nodes,), from that on the quadratic ones; the transpose of ``refine_order``.
 
-    facets: indices of the ends of the edges, (2, k); load: on the quadratic functions [A], (n,)
+    facets: indices of the ends of the edges, (2, k); load: on the quadratic functions [A], (n,); or several, (m, n)
     """
-    nodes = len(load) - facets.shape[1]
-    halves = np.tile(load[nodes:] / 2, 2)
-    return load[:nodes] + np.bincount(facets.ravel(), weights=halves, minlength=nodes)
+    return lowered(facets, np.atleast_2d(load)).reshape(*load.shape[:-1], -1)
 
 
 @dataclass(frozen=True, eq=False)
-class Elements:
-    """A set of straight triangles with F functions each (3 linear, 6 quadratic).
+class Triangles:
+    """Straight triangles; elements of either order share what is known of their shape.
 
-    dofs: indices (F, E); first: the first corners (2, E) [m]
-    edges: from them to the second and third corners (2, 2, E) [m]
+    first: the first corners (2, E) [m]; edges: from them to the second and third corners (2, 2, E) [m]
     """
 
-    order: TriangleOrder
-    dofs: np.ndarray
     first: np.ndarray
     edges: np.ndarray
 
     @classmethod
-    def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
-        """Elements with corners (2, 3, E) [m] and dofs, indices (F, E)."""
+    def of(cls, corners: np.ndarray) -> Triangles:
+        """Triangles with corners (2, 3, E) [m]."""
         a, b, c = corners.transpose(1, 0, 2)
-        return cls(order, dofs, a, np.stack([b - a, c - a]))
+        return cls(a, np.stack([b - a, c - a]))
 
-    def take(self, which: np.ndarray) -> Elements:
-        """The elements with these indices; which: indices (k,)."""
-        return Elements(self.order, *(np.take(part, which, axis=-1) for part in (self.dofs, self.first, self.edges)))
+    def take(self, which: np.ndarray) -> Triangles:
+        """The triangles with these indices; which: indices (k,)."""
+        return Triangles(*(np.take(part, which, axis=-1) for part in (self.first, self.edges)))
 
     @cached_property
     def determinant(self) -> np.ndarray:
@@ -167,6 +164,42 @@ class Elements:
         u, v = self.edges
         return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / self.size
 
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """A set of straight triangles with F functions each (3 linear, 6 quadratic).
+
+    dofs: indices (F, E); shape: the triangles
+    """
+
+    order: TriangleOrder
+    dofs: np.ndarray
+    shape: Triangles
+
+    @classmethod
+    def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
+        """Elements with corners (2, 3, E) [m] and dofs, indices (F, E)."""
+        return cls(order, dofs, Triangles.of(corners))
+
+    def take(self, which: np.ndarray) -> Elements:
+        """The elements with these indices; which: indices (k,)."""
+        return Elements(self.order, np.take(self.dofs, which, axis=-1), self.shape.take(which))
+
+    @property
+    def determinant(self) -> np.ndarray:
+        """Of the map from the reference triangle (E,) [m^2]: twice the signed area."""
+        return self.shape.determinant
+
+    @property
+    def size(self) -> np.ndarray:
+        """|D|, twice the area (E,) [m^2]."""
+        return self.shape.size
+
+    @property
+    def metric(self) -> np.ndarray:
+        """M_11, M_12, M_22, dimensionless (3, E): grad . grad times |D| in reference coordinates."""
+        return self.shape.metric
+
     @cached_property
     def weights(self) -> np.ndarray:
         """Area that belongs to every quadrature point (Q, E) [m^2]."""
@@ -175,19 +208,19 @@ class Elements:
     @cached_property
     def points(self) -> np.ndarray:
         """Quadrature points (2, Q, E) [m]."""
-        (u, v), (along_u, along_v) = self.edges, self.order.points[:, :, None]
-        return self.first[:, None] + u[:, None] * along_u + v[:, None] * along_v
+        (u, v), (along_u, along_v) = self.shape.edges, self.order.points[:, :, None]
+        return self.shape.first[:, None] + u[:, None] * along_u + v[:, None] * along_v
 
     @cached_property
     def gradient_x(self) -> np.ndarray:
         """d/dx of the functions at the quadrature points (F, Q, E) [1/m]."""
-        (u, v), (along_u, along_v) = self.edges, self.order.gradients[..., None].swapaxes(0, 1)
+        (u, v), (along_u, along_v) = self.shape.edges, self.order.gradients[..., None].swapaxes(0, 1)
         return (along_u * v[1] - along_v * u[1]) / self.determinant
 
     @cached_property
     def gradient_y(self) -> np.ndarray:
         """d/dy of the functions at the quadrature points (F, Q, E) [1/m]."""
-        (u, v), (along_u, along_v) = self.edges, self.order.gradients[..., None].swapaxes(0, 1)
+        (u, v), (along_u, along_v) = self.shape.edges, self.order.gradients[..., None].swapaxes(0, 1)
         return (along_v * u[0] - along_u * v[0]) / self.determinant
 
     def stiffness(self, reluctivity: np.ndarray | float) -> np.ndarray:
@@ -200,7 +233,7 @@ class Elements:
 
     def gradient(self, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(dA/dx, dA/dy) at the quadrature points [T], each (Q, E); a: potential [Wb/m], (n,)."""
-        (u, v), (along_u, along_v) = self.edges / self.determinant, self.slopes(a[self.dofs])
+        (u, v), (along_u, along_v) = self.shape.edges / self.determinant, self.slopes(a[self.dofs])
         return along_u * v[1] - along_v * u[1], along_v * u[0] - along_u * v[0]
 
     def forces(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -208,7 +241,7 @@ class Elements:
 
         x, y: [A/m], (Q, E); forces: [A], (F, E), or in metres times another unit of the field
         """
-        u, v = self.edges * np.sign(self.determinant)
+        u, v = self.shape.edges * np.sign(self.determinant)
         return self.order.weighted_slopes @ np.concatenate([x * v[1] - y * v[0], y * u[0] - x * u[1]])
 
     def integrals(self) -> np.ndarray:

@@ -12,7 +12,7 @@ All currents at one angle share one joined system, so an angle is the task to ha
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import zip_longest
 from math import atan2, cos, hypot, pi, sin
 from typing import Any
@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from magnetostatics.flux_linkage import park, phase_flux_linkage
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, blended
 from magnetostatics.positions import torque_period
 from magnetostatics.torque import arkkio_torque
 
@@ -202,12 +202,7 @@ def to_dataset(
 
 def _blend(solutions: list[FieldSolution], weights: np.ndarray) -> FieldSolution | None:
     """A start between solutions; None (a start from linear elements) where fewer than two are known."""
-    if len(solutions) < 2:
-        return None
-    a = weights @ np.stack([solution.a for solution in solutions])
-    below = [solution.coarse for solution in solutions if solution.coarse is not None]
-    coarse = _blend(below, weights) if below else None
-    return replace(solutions[0], a=a, coarse=coarse)
+    return blended(solutions, weights) if len(solutions) > 1 else None
 
 
 def _order(i_d: np.ndarray, i_q: np.ndarray) -> Iterator[tuple[tuple[int, int], list[tuple[int, int]], np.ndarray]]:

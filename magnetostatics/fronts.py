@@ -65,7 +65,8 @@ def _with_tree(rows: np.ndarray, columns: np.ndarray, order: np.ndarray) -> tupl
     smaller, larger = _ordered(rows, columns, _inverse(order))
     of_row = _bucketed(larger, len(order))
     parent = _elimination_tree(of_row, smaller)
-    counts, post = _column_counts(of_row, smaller, parent), _postorder(parent)
+    post = _postorder(parent)
+    counts = _column_counts(_bucketed(smaller, len(order)), larger, parent, post)
     return order[post], np.append(_inverse(post), -1)[parent[post]], counts[post]
 
 
@@ -81,7 +82,7 @@ def _indexed(
     """
     entries = _bucketed(pairs[0], int(starts[-1]))
     owner = np.repeat(np.arange(len(starts) - 1), np.diff(row_starts)) * starts[-1]
-    rows = np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner
+    rows = (np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner).astype(np.uint32)
     return {
         "row_starts": row_starts,
         "rows": rows,
@@ -152,19 +153,65 @@ def _elimination_tree(of_row: tuple[np.ndarray, np.ndarray], smaller: np.ndarray
 
 
 @compiled
-def _column_counts(of_row: tuple[np.ndarray, np.ndarray], smaller: np.ndarray, parent: np.ndarray) -> np.ndarray:
-    """Number of entries in every column of the factor, its diagonal among them (n,); arguments as of the tree (n,)."""
-    starts, order = of_row
-    counts, seen = np.ones(len(parent), np.int64), np.full(len(parent), -1)
-    for j in range(len(parent)):
-        seen[j] = j
+def _column_counts(
+    of_column: tuple[np.ndarray, np.ndarray], larger: np.ndarray, parent: np.ndarray, post: np.ndarray
+) -> np.ndarray:
+    """Number of entries in every column of the factor, its diagonal among them (n,).
+
+    Row i of the factor is the part of the elimination tree between i and the columns of its entries. Only the leaves
+    of these parts and where their ways up meet are counted: Gilbert, Ng and Peyton, An efficient algorithm to compute
+    row and column counts for sparse Cholesky factorization, SIAM J. Matrix Anal. Appl. 15 (1994).
+    of_column: entries by the smaller of their indices; larger: the other one, indices (k,)
+    parent: index, -1 for none (n,); post: order in which every node follows its descendants at once, indices (n,)
+    """
+    starts, order = of_column
+    first = _first_descendants(parent, post)
+    counts = np.zeros(len(parent), np.int64)
+    last_first, last_leaf, ancestor = np.full(len(parent), -1), np.full(len(parent), -1), np.arange(len(parent))
+    for k in range(len(post)):
+        j = post[k]
+        if first[j] == k:
+            counts[j] += 1
+        if parent[j] >= 0:
+            counts[parent[j]] -= 1
         for entry in order[starts[j] : starts[j + 1]]:
-            i = smaller[entry]
-            while seen[i] != j:
-                seen[i] = j
-                counts[i] += 1
-                i = parent[i]
+            i = larger[entry]
+            if i == j or first[j] <= last_first[i]:
+                continue
+            last_first[i] = first[j]
+            counts[j] += 1
+            if last_leaf[i] >= 0:
+                counts[_root(last_leaf[i], ancestor)] -= 1
+            last_leaf[i] = j
+        if parent[j] >= 0:
+            ancestor[j] = parent[j]
+    for j in post:
+        if parent[j] >= 0:
+            counts[parent[j]] += counts[j]
     return counts
+
+
+@compiled
+def _first_descendants(parent: np.ndarray, post: np.ndarray) -> np.ndarray:
+    """Place in the postorder of the first descendant of every node, indices (n,); arguments as of the counts (n,)."""
+    first = np.full(len(parent), -1)
+    for k in range(len(post)):
+        node = post[k]
+        while node != -1 and first[node] == -1:
+            first[node] = k
+            node = parent[node]
+    return first
+
+
+@compiled
+def _root(node: int, ancestor: np.ndarray) -> int:
+    """Root of the part of a tree that a node is in, an index; the ways up, indices (n,), become shorter by it."""
+    root = node
+    while root != ancestor[root]:
+        root = ancestor[root]
+    while node != root:
+        node, ancestor[node] = ancestor[node], root
+    return root
 
 
 @compiled
@@ -273,7 +320,7 @@ def _relative_places(
     starts: np.ndarray, row_starts: np.ndarray, rows: np.ndarray, child: np.ndarray, sibling: np.ndarray
 ) -> np.ndarray:
     """``Fronts.relative``, indices (r,); the arguments as there, indices (s + 1,), (s + 1,), (r,), (s,) and (s,)."""
-    relative, place = np.zeros_like(rows), np.empty(starts[-1], np.int64)
+    relative, place = np.zeros(len(rows), np.uint32), np.empty(starts[-1], np.uint32)
     for s in range(len(child)):
         for k in range(row_starts[s], row_starts[s + 1]):
             place[rows[k]] = k - row_starts[s]

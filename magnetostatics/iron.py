@@ -8,12 +8,13 @@ In reference coordinates, with g the slopes of A, h = M g and b2 = g . h / |D| (
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from magnetostatics.elements import Elements
-from magnetostatics.passes import flux
+from magnetostatics.elements import Elements, TriangleOrder
+from magnetostatics.passes import flux, iron_forces, tangent_tensor
 from materials.reluctivity import Reluctivity
 
 
@@ -29,6 +30,12 @@ class Iron:
         parts = [slice(end - count, end) for end, count in zip(ends, counts)]
         one_law = all(law is laws[0] for law in laws)
         self._laws = [(slice(None), laws[0])] if one_law else list(zip(parts, laws, strict=True))
+
+    def of_order(self, order: TriangleOrder, dofs: np.ndarray) -> Iron:
+        """The same iron with elements of another order; dofs: indices (F, E)."""
+        other = copy(self)
+        other.elements = Elements(order.of_distinct_gradients, dofs, self.elements.shape)
+        return other
 
     def at(self, local: np.ndarray) -> IronState:
         """The iron in the field of local values [Wb/m], (F, E)."""
@@ -58,13 +65,11 @@ class IronState:
     @property
     def forces(self) -> np.ndarray:
         """Local vectors integral nu grad A . grad v [A], (F, E)."""
-        return self.elements.order.weighted_slopes @ np.concatenate([self.nu * self.h1, self.nu * self.h2])
+        return iron_forces(self.elements.order.weighted_slopes, self.h1, self.h2, self.nu)
 
     @property
     def tangent(self) -> np.ndarray:
         """Local matrices integral nu grad u . grad v + 2 nu' (grad A . grad u)(grad A . grad v) [m/H], (K, E)."""
-        m11, m12, m22 = self.elements.metric
-        twice = self.slope * (2 / self.elements.size)
-        s1, s2 = twice * self.h1, twice * self.h2
-        tensor = self.nu * m11 + s1 * self.h1, self.nu * m12 + s1 * self.h2, self.nu * m22 + s2 * self.h2
-        return self.elements.order.products @ np.concatenate(tensor)
+        elements = self.elements
+        tensor = tangent_tensor(elements.metric, elements.size, self.h1, self.h2, self.nu, self.slope)
+        return elements.order.products @ tensor

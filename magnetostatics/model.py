@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -20,6 +21,7 @@ from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, 
 from magnetostatics.iron import Iron, IronState
 from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
+from magnetostatics.passes import add_scattered, gathered
 from magnetostatics.topology import IRON, Topology
 from magnetostatics.unknowns import Turn, Unknowns
 from materials.magnet import Magnet
@@ -117,6 +119,16 @@ class FieldSolution:
     coarse: FieldSolution | None = None
 
 
+def blended(solutions: Sequence[FieldSolution], weights: np.ndarray) -> FieldSolution:
+    """A start between or beyond solutions on the same triangles.
+
+    weights: of their potentials, dimensionless (k,)
+    """
+    a = weights @ np.stack([solution.a for solution in solutions])
+    below = [solution.coarse for solution in solutions if solution.coarse is not None]
+    return replace(solutions[0], a=a, coarse=blended(below, weights) if below else None)
+
+
 class FieldModel:
     """Assembles and solves the field of one meshed cross-section with given materials.
 
@@ -134,14 +146,23 @@ class FieldModel:
         topology: Topology | None = None,
     ) -> None:
         _check_magnets(section, materials)
-        self.section, self.materials, self.settings = section, materials, settings
+        self.section, self.materials = section, materials
         self.topology = topology or Topology(section, order)
-        self.elements = Elements.of(self.order, section.mesh.p[:, section.mesh.t], self.topology.dofs)
-        counts = [len(self.topology.regions[name]) for name in IRON]
-        steels = zip(IRON, (materials.stator_steel, materials.rotor_steel))
-        laws = [law_in(steel, section, name) for name, steel in steels]
-        self.iron = Iron(self.elements.take(self.topology.iron), counts, laws)
+        self.settings = settings if self.order is QUADRATIC else replace(settings, chords_within=0.0)  # not worth it
         self._joined: tuple[Turn, JoinedSystem] | None = None
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Of the whole mesh."""
+        return Elements.of(self.order, self.section.mesh.p[:, self.section.mesh.t], self.topology.dofs)
+
+    @cached_property
+    def iron(self) -> Iron:
+        """The elements of the steels and their laws."""
+        counts = [len(self.topology.regions[name]) for name in IRON]
+        steels = zip(IRON, (self.materials.stator_steel, self.materials.rotor_steel))
+        laws = [law_in(steel, self.section, name) for name, steel in steels]
+        return Iron(self.elements.take(self.topology.iron), counts, laws)
 
     @property
     def order(self) -> TriangleOrder:
@@ -167,19 +188,41 @@ class FieldModel:
         other._coarse_topology = self._coarse_topology
         return other
 
+    @property
+    def finest(self) -> FieldModel:
+        """The problem with quadratic elements where this one belongs to such a one, else this one itself."""
+        return self
+
+    def of_order(self, order: TriangleOrder) -> FieldModel:
+        """The same problem with elements of the same or the lower order."""
+        return self if order is self.order else self.coarse_model
+
     # ---- sources ----------------------------------------------------------------------------------------------
 
     @cached_property
     def magnet_loads(self) -> np.ndarray:
         """integral nu (B_rx dv/dy - B_ry dv/dx) of every magnet in the sector (magnets, n) [A]."""
-        loads = [self._magnet_load(m) for m in range(self.section.magnets)]
-        return np.array(loads).reshape(len(loads), self.size)
+        numbers = range(self.section.magnets)
+        if not numbers:
+            return np.empty((0, self.size))
+        regions = [self.topology.regions[f"magnet_{m}"] for m in numbers]
+        sizes, elements = [len(region) for region in regions], self.elements.take(np.concatenate(regions))
+        points = np.split(elements.points, np.cumsum(sizes)[:-1], axis=2)
+        x, y = np.concatenate([self._strength(m, points[m]) for m in numbers], axis=2)
+        return self._scattered(elements.dofs, elements.forces(-y, x), np.repeat(numbers, sizes), len(numbers))
 
-    def _magnet_load(self, number: int) -> np.ndarray:
-        elements, magnet = self.magnet_elements(number), self.materials.magnet_at(number)
-        strength = magnet.remanence / (MU_0 * magnet.recoil_permeability)
-        x, y = self.magnetisation(number)
-        return elements.scatter(elements.forces(-strength * y, strength * x), self.size)
+    def _strength(self, number: int, points: np.ndarray) -> np.ndarray:
+        """nu B_r of a magnet at some points [m], (2, ...), x and y [A/m] in one (2, ...)."""
+        magnet = self.materials.magnet_at(number)
+        return magnet.remanence / (MU_0 * magnet.recoil_permeability) * np.stack(self._direction(number, points))
+
+    def _scattered(self, dofs: np.ndarray, local: np.ndarray, rows: np.ndarray, count: int) -> np.ndarray:
+        """Local vectors (F, E) added up to ``count`` vectors (count, n), all [any unit].
+
+        dofs: indices (F, E); rows: index of the vector that every element counts in (E,)
+        """
+        place = rows * self.size + dofs
+        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
 
     def magnet_elements(self, number: int) -> Elements:
         """The elements of a magnet."""
@@ -192,8 +235,10 @@ class FieldModel:
     def magnetisation(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the unit vector of the magnetisation at the quadrature points of a magnet, dimensionless, each
         (Q, E); magnets of odd number point inwards."""
-        angle = self.section.magnetisation_angle(number, self.magnet_elements(number).points)
-        angle = angle + self.materials.magnet_at(number).axis_error
+        return self._direction(number, self.magnet_elements(number).points)
+
+    def _direction(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        angle = self.section.magnetisation_angle(number, points) + self.materials.magnet_at(number).axis_error
         polarity = self.section.polarity(number)
         return polarity * np.cos(angle), polarity * np.sin(angle)
 
@@ -230,12 +275,15 @@ class FieldModel:
         elements = self.elements.take(np.concatenate(regions))
         area = np.bincount(side, weights=elements.weights.sum(0))
         local = elements.integrals() * ((factors / area)[side] / self.section.half_slots_per_coil_side)
-        place = np.asarray(rows)[side] * self.size + elements.dofs
-        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
+        return self._scattered(elements.dofs, local, np.asarray(rows)[side], count)
 
     def load(self, point: OperatingState) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
-        return self.magnet_loads.sum(0) + point.current_load(self)
+        return self._all_magnets_load + point.current_load(self)
+
+    @cached_property
+    def _all_magnets_load(self) -> np.ndarray:
+        return self.magnet_loads.sum(0)
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
@@ -249,9 +297,14 @@ class FieldModel:
     @cached_property
     def _linear_values(self) -> np.ndarray:
         """Entries of the linear part without the rotor side of the gap."""
+        return self.topology.fixed_pattern.linear_entries.sum(self.order.stiffness @ self._linear_metric)
+
+    @cached_property
+    def _linear_metric(self) -> np.ndarray:
+        """Metric times reluctivity of the elements of constant reluctivity outside the rotor side of the gap [m/H],
+        (3, k)."""
         which = self.topology.linear
-        elements = self.elements.take(which)
-        return self.topology.fixed_pattern.linear_entries.sum(elements.stiffness(self._reluctivity[which]))
+        return np.take(self.elements.metric, which, axis=1) * self._reluctivity[which]
 
     @cached_property
     def _reluctivity(self) -> np.ndarray:
@@ -326,12 +379,61 @@ class FieldModel:
     @cached_property
     def coarse_model(self) -> FieldModel:
         """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
-        settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, self.settings.tolerance))
-        return FieldModel(self.section, self.materials, settings, topology=self._coarse_topology)
+        return _CoarseModel(copy(self), self._coarse_topology)  # of a copy: a cycle would hold its memory for long
 
     @cached_property
     def _coarse_topology(self) -> Topology:
         return Topology(self.section, LINEAR)
+
+
+class _CoarseModel(FieldModel):
+    """The problem of a model with quadratic elements on the same triangles with linear ones.
+
+    Triangles, steels and what is linear are those of the fine model; its loads are the fine ones on fewer functions.
+    """
+
+    def __init__(self, fine: FieldModel, topology: Topology) -> None:
+        settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, fine.settings.tolerance))
+        super().__init__(fine.section, fine.materials, settings, topology=topology)
+        self._fine = fine
+
+    @property
+    def finest(self) -> FieldModel:
+        """The problem with quadratic elements."""
+        return self._fine
+
+    def like(self, section: CrossSection | None = None, materials: MachineMaterials | None = None) -> FieldModel:
+        """As of the fine model, with linear elements."""
+        return self._fine.like(section, materials).coarse_model
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Of the whole mesh."""
+        return Elements(self.order, self.topology.dofs, self._fine.elements.shape)
+
+    @cached_property
+    def iron(self) -> Iron:
+        """The elements of the steels and their laws."""
+        return self._fine.iron.of_order(self.order, self.topology.dofs[:, self.topology.iron])
+
+    @property
+    def _linear_metric(self) -> np.ndarray:
+        return self._fine._linear_metric
+
+    @cached_property
+    def magnet_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (magnets, n) [A]."""
+        return lower_order(self.topology.facets, self._fine.magnet_loads)
+
+    @cached_property
+    def phase_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (3, n), dimensionless."""
+        return lower_order(self.topology.facets, self._fine.phase_loads)
+
+    @cached_property
+    def coil_loads(self) -> np.ndarray:
+        """As of the fine model, on the linear functions (coils, n), dimensionless."""
+        return lower_order(self.topology.facets, self._fine.coil_loads)
 
 
 class _Problem:
@@ -358,8 +460,9 @@ class _Problem:
 
     def residual(self, u: np.ndarray) -> np.ndarray:
         """Load minus field forces (m,) [A]."""
-        iron = self.model.topology.iron_adder @ self._iron_at(u).forces.ravel()
-        return self.load - self.system.linear_product(u) - iron
+        forces = self.system.linear_product(u)
+        add_scattered(forces, self._iron_at(u).forces, *self.model.topology.iron_unknowns)
+        return self.load - forces
 
     def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Newton step (m,)."""
@@ -376,8 +479,7 @@ class _Problem:
     def _iron_at(self, u: np.ndarray) -> IronState:
         """The iron at a field; residual and tangent of one field share it."""
         if self._iron is None or self._iron[0] is not u:
-            column, sign = self.model.topology.iron_unknowns
-            self._iron = u, self.model.iron.at(u[column] * sign)
+            self._iron = u, self.model.iron.at(gathered(u, *self.model.topology.iron_unknowns))
         return self._iron[1]
 
 

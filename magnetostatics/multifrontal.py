@@ -17,7 +17,8 @@ def factorise(fronts: Fronts, values: np.ndarray, factor: np.ndarray, workspace:
     """Fill the factor; false where the matrix is not positive definite.
 
     values: of the entries in the order of the given pattern [any unit], (k,)
-    factor: the panels, [its square root], (l,); workspace: for the update matrices [any unit], (w,)
+    factor: the panels, [its square root], on the diagonals one over it, (l,)
+    workspace: for the update matrices [any unit], (w,)
     """
     for s in range(len(fronts.parent)):
         pivots = fronts.columns[s + 1] - fronts.columns[s]
@@ -31,7 +32,7 @@ def factorise(fronts: Fronts, values: np.ndarray, factor: np.ndarray, workspace:
             panel[fronts.entry_places[k]] += values[fronts.entry_sources[k]]
         c = fronts.child[s]
         while c != -1:
-            _add_child(fronts, c, workspace, panel, update, pivots, height)
+            _add_child(fronts, c, workspace, panel, fronts.updates[s], pivots, height)
             c = fronts.sibling[c]
         if not _eliminate(panel, pivots, height):
             return False
@@ -45,31 +46,37 @@ def _add_child(
     child: int,
     workspace: np.ndarray,
     panel: np.ndarray,
-    update: np.ndarray,
+    update: int,
     pivots: int,
     height: int,
 ) -> None:
-    """Add the update matrix of a child to panel and update matrix of its parent, [any unit], (p,) and (u,)."""
+    """Add the update matrix of a child to panel and update matrix of its parent.
+
+    workspace: [any unit], (w,); panel: [the same], (p,); update: index where the update matrix of the parent begins
+    Indices without sign are the fast ones: others are asked whether they count from the end.
+    """
     places = fronts.relative[
         fronts.row_starts[child] + fronts.columns[child + 1] - fronts.columns[child] : fronts.row_starts[child + 1]
     ]
     size, below = len(places), height - pivots
+    source = workspace[fronts.updates[child] : fronts.updates[child] + size * size]
     for j in range(size):
-        start = fronts.updates[child] + j * size
-        source = workspace[start : start + size]
         if places[j] < pivots:
-            target = panel[places[j] * height : (places[j] + 1) * height]
+            column = panel[places[j] * height : (places[j] + 1) * height]
             for i in range(j, size):
-                target[places[i]] += source[i]
+                column[places[i]] += source[j * size + i]
         else:
-            target = update[(places[j] - pivots) * below : (places[j] - pivots + 1) * below]
+            start = update + (places[j] - pivots) * below - pivots
             for i in range(j, size):
-                target[places[i] - pivots] += source[i]
+                workspace[np.uint64(start + places[i])] += source[j * size + i]
 
 
 @vectorised
 def _eliminate(panel: np.ndarray, pivots: int, height: int) -> bool:
-    """Dense Cholesky factorisation of a panel in its place, [any unit], (p,); false at a pivot that is not positive."""
+    """Dense Cholesky factorisation of a panel in its place, [any unit], (p,); false at a pivot that is not positive.
+
+    The diagonal holds the reciprocals, since a solution multiplies sooner than it divides.
+    """
     for j in range(pivots):
         column = panel[j * height + j : (j + 1) * height]
         for p in range(0, j - 3, 4):
@@ -88,7 +95,8 @@ def _eliminate(panel: np.ndarray, pivots: int, height: int) -> bool:
         if not column[0] > 0.0:
             return False
         scale = 1.0 / np.sqrt(column[0])
-        for i in range(len(column)):
+        column[0] = scale
+        for i in range(1, len(column)):
             column[i] *= scale
     return True
 
@@ -171,7 +179,7 @@ def _forward(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndar
         front[i] = unknowns[rows[i]]
     below = front[pivots:height]
     for j in range(pivots):
-        value = front[j] / panel[j * height + j]
+        value = front[j] * panel[j * height + j]
         front[j] = value
         for i in range(j + 1, pivots):
             front[i] -= value * panel[j * height + i]
@@ -223,5 +231,5 @@ def _back(panel: np.ndarray, rows: np.ndarray, pivots: int, unknowns: np.ndarray
         value = front[j]
         for i in range(j + 1, pivots):
             value -= panel[j * height + i] * front[i]
-        front[j] = value / panel[j * height + j]
+        front[j] = value * panel[j * height + j]
         unknowns[rows[j]] = front[j]

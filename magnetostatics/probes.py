@@ -22,6 +22,7 @@ class ProbeReader:
     dofs: indices (F, n); gradient_x, gradient_y: of the functions [1/m], (F, n)
     weights: share of a point in the mean of its probe (n,); number: index of the probe (n,); names: of the probes
     elements: indices of those that hold the points (n,)
+    near: indices of those that may, on a mesh like this one, (n, m)
     """
 
     dofs: np.ndarray
@@ -31,6 +32,7 @@ class ProbeReader:
     number: np.ndarray
     names: tuple[str, ...]
     elements: np.ndarray
+    near: np.ndarray
     shares: np.ndarray  # barycentric coordinates of the points in their elements, dimensionless, (3, n)
 
     def moved(self, model: FieldModel) -> ProbeReader:
@@ -47,30 +49,42 @@ class ProbeReader:
         return dict(zip(self.names, means.tolist()))
 
 
-def probe_reader(model: FieldModel) -> ProbeReader:
-    """Prepare the tooth and back-iron probes of a model."""
+def probe_reader(model: FieldModel, known: ProbeReader | None = None) -> ProbeReader:
+    """Prepare the tooth and back-iron probes of a model; known: those of a model that shares its topology."""
     probes = model.section.tooth_probes + model.section.back_iron_probes
     points = np.hstack([probe.points for probe in probes])
     mesh = model.section.mesh
-    elements = _locate(mesh, points)
+    near = _near(mesh, points) if known is None else known.near
+    elements = _locate(mesh, points, near)
+    if elements is None:
+        if known is None:
+            raise GeometryError("a probe point lies outside the stator iron: refine the mesh")
+        return probe_reader(model)
     corners = mesh.p[:, mesh.t[:, elements]]
     shares = _barycentric(corners, points)
     dx, dy = _gradients(model.order, corners, shares)
     weights = np.concatenate([probe.weights for probe in probes])
     number = np.repeat(np.arange(len(probes)), [len(probe.weights) for probe in probes])
     names = tuple(probe.name for probe in probes)
-    return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, names, elements, shares)
+    return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, names, elements, near, shares)
 
 
-def _locate(mesh: MeshTri, points: np.ndarray) -> np.ndarray:
-    """Stator iron element that holds each point (2, n): the best of the nearest ones by barycentric coordinates."""
+def _near(mesh: MeshTri, points: np.ndarray) -> np.ndarray:
+    """Indices of the elements of the stator iron that are nearest to each point [m], (2, n): (n, m)."""
     iron = mesh.subdomains["stator_iron"]
-    corners = mesh.p[:, mesh.t[:, iron]]
-    _, near = cKDTree(corners.mean(axis=1).T).query(points.T, k=_NEAREST)
-    inside = _barycentric(corners[:, :, near], points[:, :, None]).min(axis=0)
+    _, near = cKDTree(mesh.p[:, mesh.t[:, iron]].mean(axis=1).T).query(points.T, k=_NEAREST)
+    return iron[near]
+
+
+def _locate(mesh: MeshTri, points: np.ndarray, near: np.ndarray) -> np.ndarray | None:
+    """Element that holds each point [m], (2, n): the best of those near it by barycentric coordinates, indices (n,).
+
+    near: indices (n, m). None where a point lies in none of its elements.
+    """
+    inside = _barycentric(mesh.p[:, mesh.t[:, near]], points[:, :, None]).min(axis=0)
     if inside.max(axis=1).min() < -1e-6:
-        raise GeometryError("a probe point lies outside the stator iron: refine the mesh")
-    return iron[np.take_along_axis(near, inside.argmax(axis=1)[:, None], axis=1)[:, 0]]
+        return None
+    return near[np.arange(len(near)), inside.argmax(axis=1)]
 
 
 def _barycentric(corners: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 
 from geometry.cross_section import CrossSection
 from magnetostatics.assembly import Entries, FixedPattern, JoinedPattern
@@ -52,12 +51,6 @@ class Topology:
         """Index of the free unknown and sign of every degree of freedom of the iron, each (F, E); of any angle."""
         dofs = self.dofs[:, self.iron]
         return self.unknowns.column[dofs], self.unknowns.sign[dofs]
-
-    @cached_property
-    def iron_adder(self) -> sp.csr_matrix:
-        """Adds local vectors of the iron, raveled (F E,), up to forces on the free unknowns (m,)."""
-        columns, signs = (part.ravel() for part in self.iron_unknowns)
-        return sp.csr_matrix((signs, (columns, np.arange(len(columns)))), shape=(self.unknowns.count, len(columns)))
 
     @cached_property
     def fixed_pattern(self) -> FixedPattern:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from geometry.cross_section import CrossSection
 from geometry.machine import Machine
@@ -145,7 +146,19 @@ class Dimension:
     step: float = 1e-6  # [m]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
-        return model.like(self.morpher.to(self.machine(change))), point
+        return self._changed(model.finest, change).of_order(model.order), point
+
+    def _changed(self, model: FieldModel, change: float) -> FieldModel:
+        """Moved once for all states of a model; a gradient asks for several. The last one is kept."""
+        kept = self._models.get(change)
+        if kept is None or kept[0].section is not model.section or kept[0].materials is not model.materials:
+            kept = self._models[change] = model, model.like(self.morpher.to(self.machine(change)))
+        return kept[1]
+
+    @cached_property
+    def _models(self) -> dict[float, tuple[FieldModel, FieldModel]]:
+        """By the change: the model that was changed, and what became of it."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ S-shaped curve (initial permeability below the maximum); that is physics, not a 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, isfinite
 
 import numpy as np
@@ -137,7 +138,7 @@ class PiecewiseCubic:
         t = b - self.starts[k]
         return self.a0[k] + t * (self.a1[k] + t * (self.a2[k] + t * self.a3[k]))
 
-    @property
+    @cached_property
     def coefficients(self) -> np.ndarray:
         """B_k [T] and a0 to a3, as the compiled law reads them (5, n - 1)."""
         return np.stack([self.starts, self.a0, self.a1, self.a2, self.a3])

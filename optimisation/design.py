@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from math import nan
+from math import inf, nan
+from operator import attrgetter
 
 import numpy as np
 
@@ -15,13 +16,14 @@ from geometry.errors import GeometryError
 from geometry.machine import Machine, dimensions_of
 from geometry.morph import Morpher
 from magnetostatics.case import FamilyCase
-from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
+from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, blended
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import aligned_teeth
 from magnetostatics.probes import ProbeReader, probe_reader
 from magnetostatics.sensitivity import Variation, sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from magnetostatics.variations import Dimension
+from optimisation.starts import weights_at_origin
 from optimisation.states import SaturationReading
 from optimisation.torque import MeanTorque, TorqueObjective, TorqueOfReading, is_null_state
 
@@ -69,6 +71,12 @@ class _Solved:
     states: list[FieldSolution]
     further: list[FieldSolution]
 
+    @classmethod
+    def blended(cls, some: Sequence[_Solved], weights: np.ndarray) -> _Solved:
+        """The sum of fields times their weights, dimensionless (k,)."""
+        parts = [zip(*fields) for fields in ([one.states for one in some], [one.further for one in some])]
+        return cls(some[0].machine, *([blended(state, weights) for state in part] for part in parts))
+
     @property
     def iterations(self) -> int:
         """Newton iterations with the elements of the model."""
@@ -81,6 +89,7 @@ class _Solved:
 _FARTHEST = {"back_iron_width": 0.4, "rotor_outer_radius": 0.1, "stator_outer_radius": 0.1}
 
 
+_SOURCES = 8  # most similar designs whose fields a start is made of
 _TINY = 1e-9  # step along the slopes of the flux densities, per unit of a change
 
 
@@ -92,6 +101,7 @@ class DesignSolver:
         self.judge = judge
         self._morpher: Morpher | None = None
         self._solved: list[_Solved] = []  # designs on the mesh of the morpher
+        self._probes: ProbeReader | None = None  # of the last of them
 
     def design(self, machine: Machine) -> Design:
         """The judged machine. Raises as ``Judge.judge``."""
@@ -103,35 +113,36 @@ class DesignSolver:
 
         Each mesh is that of the machine with the most others in its reach, and these are solved from it outwards.
         """
-        left = dict(enumerate(machines))
-        found: dict[int, Design | None] = {number: None for number in left}
+        left, apart = list(range(len(machines))), _distances(machines, machines)
+        found: dict[int, Design | None] = dict.fromkeys(left)
         while left:
-            base = _most_central(list(left.values()))
+            base = left[_most_central(apart[np.ix_(left, left)])]
             with suppress(GeometryError):
-                found |= self._around(base, left)
-            left = {number: machine for number, machine in left.items() if machine != base and found[number] is None}
+                order = sorted(left, key=lambda number: float(apart[number, base]))
+                found |= self._around(machines[base], {number: machines[number] for number in order})
+            left = [number for number in left if machines[number] != machines[base] and found[number] is None]
         return list(found.values())
 
     def _around(self, base: Machine, machines: dict[int, Machine]) -> dict[int, Design]:
         """Those of the machines that the mesh of one of them can be moved onto."""
         check_machine(base)
         found, model = {}, self._meshed(base)
-        for number in sorted(machines, key=lambda k: _distance(machines[k], base)):
-            machine = machines[number]
+        for number, machine in machines.items():
             moved = model if machine == base else self._moved(machine)
             if moved is not None:
                 found[number] = self._judged(machine, moved)
         return found
 
     def _judged(self, machine: Machine, model: FieldModel) -> Design:
-        near = self._nearest(machine)
+        starts = self._starts(machine)
         states: list[FieldSolution] = []
         for number, point in enumerate(self.judge.states(machine)):
-            start = near.states[number] if near else (states[-1] if states else None)
+            start = starts.states[number] if starts else (states[-1] if states else None)
             states.append(model.solve(point, start=start))
-        further = self.judge.torque.further(states, near.further if near else ())
+        further = self.judge.torque.further(states, starts.further if starts else ())
         self._solved.append(_Solved(machine, states, further))
-        return self._summary(self._solved[-1], probe_reader(model))
+        self._probes = probe_reader(model, self._probes)
+        return self._summary(self._solved[-1], self._probes)
 
     def _summary(self, solved: _Solved, probes: ProbeReader) -> Design:
         seen = np.array([_flux_densities(state, probes) for state in solved.states])
@@ -156,14 +167,14 @@ class DesignSolver:
         machine_of: changes [any units], (k,) -> machine, zero for the last design
         steps: small size of each change [as the change], (k,)
         """
-        if self._morpher is None:
+        if self._morpher is None or self._probes is None:
             raise ValueError("no design has been judged yet, so there is none to take derivatives of")
         variations: dict[str, Variation] = {
             str(number): Dimension(self._morpher, partial(_one_change, machine_of, number, len(steps)), step)
             for number, step in enumerate(steps)
         }
-        solved, reader, torque = self._solved[-1], probe_reader(self._solved[-1].states[0].model), self.judge.torque
-        read = partial(_state_results, torque, reader)
+        solved, torque = self._solved[-1], self.judge.torque
+        read = partial(_state_results, torque, self._probes)
         states = _values_and_slopes(solved.states, variations, read)
         further = _values_and_slopes(solved.further, variations, lambda solution: np.array([torque.read(solution)]))
         return _torque_slope(torque, states, further), self._limited_slope(states)
@@ -178,11 +189,17 @@ class DesignSolver:
 
     def mesh_anew(self) -> None:
         """Forget the mesh: the next design gets its own."""
-        self._morpher, self._solved = None, []
+        self._morpher, self._solved, self._probes = None, [], None
 
-    def _nearest(self, machine: Machine) -> _Solved | None:
-        """The most similar design on this mesh, whose fields are a start."""
-        return min(self._solved, key=lambda known: _distance(machine, known.machine), default=None)
+    def _starts(self, machine: Machine) -> _Solved | None:
+        """Fields to start from, by those of the most similar designs on this mesh."""
+        if not self._solved:
+            return None
+        places = _places([known.machine for known in self._solved], machine)
+        nearest = np.argsort(np.abs(places).max(axis=1), kind="stable")[:_SOURCES]
+        weights = weights_at_origin(places[nearest])
+        used = np.flatnonzero(weights)
+        return _Solved.blended([self._solved[number] for number in nearest[used]], weights[used])
 
     def _meshed(self, machine: Machine) -> FieldModel:
         self.mesh_anew()
@@ -191,7 +208,9 @@ class DesignSolver:
         return model
 
     def _moved(self, machine: Machine) -> FieldModel | None:
-        if self._morpher is None or not _is_near(machine, dimensions_of(self._morpher.section.machine)):
+        if self._morpher is None:
+            return None
+        if _distances([machine], [dimensions_of(self._morpher.section.machine)]).item() > 1:
             return None
         try:
             section = self._morpher.to(machine)
@@ -244,23 +263,38 @@ def _directional(function: Callable[[np.ndarray], float], here: np.ndarray, slop
     return (function(here + _TINY * slope) - function(here - _TINY * slope)) / (2 * _TINY)
 
 
-def _is_near(machine: Machine, base: Machine) -> bool:
-    return (machine.slots, machine.poles) == (base.slots, base.poles) and _distance(machine, base) <= 1
+def _distances(machines: Sequence[Machine], bases: Sequence[Machine]) -> np.ndarray:
+    """Largest relative difference of a dimension of every machine from every base, (n, m).
+
+    As a share of what a mesh may be moved, dimensionless; infinite between other numbers of slots or poles.
+    """
+    sizes, of_bases = (_numbers(some, *_FARTHEST) for some in (machines, bases))
+    kinds, of_base_kinds = (_numbers(some, "slots", "poles") for some in (machines, bases))
+    apart = np.abs(sizes[:, None] / of_bases - 1) / np.array(list(_FARTHEST.values()))
+    return np.where((kinds[:, None] == of_base_kinds).all(axis=2), apart.max(axis=2), inf)
 
 
-def _distance(machine: Machine, base: Machine) -> float:
-    """Largest relative difference of a dimension, as a share of what a mesh may be moved."""
-    return max(abs(getattr(machine, name) / getattr(base, name) - 1) / share for name, share in _FARTHEST.items())
+def _places(machines: Sequence[Machine], origin: Machine) -> np.ndarray:
+    """Relative differences of the dimensions of machines from those of another one, dimensionless (n, 3).
+
+    As shares of what a mesh may be moved.
+    """
+    differences = _numbers(machines, *_FARTHEST) / _numbers([origin], *_FARTHEST) - 1
+    return differences / np.array(list(_FARTHEST.values()))
 
 
-def _most_central(machines: list[Machine]) -> Machine:
-    """The machine with the most others in the reach of its mesh; of equals the one closest to them."""
+def _numbers(machines: Sequence[Machine], *names: str) -> np.ndarray:
+    """Named values of machines, (machines, names)."""
+    return np.array(list(map(attrgetter(*names), machines)), dtype=float).reshape(-1, len(names))
 
-    def rank(base: Machine) -> tuple[int, float]:
-        near = [_distance(machine, base) for machine in machines if _is_near(machine, base)]
-        return -len(near), sum(near)
 
-    return min(machines, key=rank)
+def _most_central(apart: np.ndarray) -> int:
+    """Index of the machine with the most others in the reach of its mesh; of equals the one closest to them.
+
+    apart: distances of every machine from every base, dimensionless (n, n)
+    """
+    is_near = apart <= 1
+    return int(np.lexsort((np.where(is_near, apart, 0.0).sum(axis=0), -is_near.sum(axis=0)))[0])
 
 
 @dataclass(frozen=True)

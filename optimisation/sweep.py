@@ -24,7 +24,8 @@ from tasks import Workers
 from units import MILLIMETRE
 
 _RADII_TOGETHER = 5  # rotor radii of a task; of a fine sweep one mesh reaches about so many
-_TOLERANCE = 1e-3  # of Newton's method: torque is within 0.03 % of the converged one
+# Torque is within 0.04 % of the converged one at 12 slots, RMS 0.01 % (56 designs), within 0.15 % at 9, RMS 0.04 %.
+_QUICK = NewtonSettings(tolerance=1e-3, chords_within=30.0)
 # What the map holds of a ``Design``.
 VARIABLES = ("torque", "torque_null", "tooth_aligned", "tooth_worst", "back_iron_worst", "limited")
 _DIMENSIONS = ("combination", "stator_outer_radius", "back_iron", "rotor_radius")
@@ -133,7 +134,7 @@ class SweepBlock:
 
     @property
     def judge(self) -> Judge:
-        return Judge(self.case, self.reading, self.case.nominal_density, QuickMeanTorque(), NewtonSettings(_TOLERANCE))
+        return Judge(self.case, self.reading, self.case.nominal_density, QuickMeanTorque(), _QUICK)
 
     def machine(self, rotor_outer_radius: float, back_iron_width: float) -> Machine:
         """One design. Raises GeometryError where it cannot even be drawn."""

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from magnetostatics.assembly import Entries
 from magnetostatics.elements import LINEAR, QUADRATIC, lower_order, refine_order
 from magnetostatics.model import OperatingPoint, _Problem
+from magnetostatics.passes import merged
 from tests.magnetostatics.reference_machine import STEEL, model_of, reference_machine
 from units import DEGREE
 
@@ -91,6 +92,22 @@ def test_lower_order_is_the_transpose_of_refine_order():
     linear = random.standard_normal(facets.max() + 1)
     load = random.standard_normal(len(linear) + facets.shape[1])
     assert_allclose(lower_order(facets, load) @ linear, load @ refine_order(facets, linear), rtol=1e-10)
+
+
+def test_merged_keys_are_the_union():
+    random = np.random.default_rng(6)
+    first, second = (np.unique(random.integers(0, 60, 40)) for _ in range(2))
+    keys, of_first, of_second = merged(first, second)
+    assert keys.tolist() == np.union1d(first, second).tolist()
+    assert (keys[of_first] == first).all() and (keys[of_second] == second).all()
+
+
+def test_the_coarse_model_is_that_of_linear_elements():
+    """What it takes over from the fine model is what linear elements find themselves."""
+    coarse, linear = model_of(reference_machine()).coarse_model, model_of(reference_machine(), order=LINEAR)
+    assert_allclose(coarse.magnet_loads, linear.magnet_loads, atol=1e-12 * np.abs(linear.magnet_loads).max())
+    assert_allclose(coarse.phase_loads, linear.phase_loads, atol=1e-12 * np.abs(linear.phase_loads).max())
+    assert_allclose(coarse.solve(POINT).a, linear.solve(POINT).a, atol=1e-4 * np.abs(linear.solve(POINT).a).max())
 
 
 def test_a_pattern_serves_its_neighbours():

@@ -76,3 +76,14 @@ def test_a_matrix_that_is_not_positive_definite_is_refused(bad):
 
 def test_entries_of_the_columns_of_a_full_factor():
     assert sorted(factorised(scattered(60, 1.0)).column_counts) == list(range(1, 61))
+
+
+@pytest.mark.parametrize("name", MATRICES)
+def test_entries_of_the_columns_of_a_sparse_factor(name):
+    """Against elimination on the full pattern, in the order that was chosen."""
+    system = factorised(MATRICES[name])
+    pattern = MATRICES[name].toarray()[np.ix_(system._order, system._order)] != 0
+    for column in range(len(pattern)):
+        below = np.flatnonzero(pattern[column + 1 :, column]) + column + 1
+        pattern[np.ix_(below, below)] = True
+    assert system.column_counts.tolist() == np.tril(pattern).sum(axis=0).tolist()

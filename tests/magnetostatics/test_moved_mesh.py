@@ -13,7 +13,9 @@ from geometry.errors import GeometryError
 from geometry.morph import Morpher
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import OperatingPoint
+from magnetostatics.probes import probe_reader
 from magnetostatics.torque import arkkio_torque, maxwell_torque
+from magnetostatics.variations import Dimension
 from tests.magnetostatics.reference_machine import SWEEP, TIGHT, model_of, reference_machine, section_of
 from units import DEGREE
 
@@ -56,3 +58,19 @@ def test_moved_and_new_mesh_agree(name):
 def test_a_gap_that_closes_is_refused():
     with pytest.raises(GeometryError):
         morpher().to(replace(reference_machine(), airgap=0.0))
+
+
+def test_probes_of_a_moved_mesh_are_found_among_those_of_the_first():
+    first = model_of(reference_machine())
+    moved = first.like(morpher().to(replace(reference_machine(), back_iron_width=3.6e-3)))
+    known, anew = probe_reader(moved, probe_reader(first)), probe_reader(moved)
+    assert (known.elements == anew.elements).all() and (known.shares == anew.shares).all()
+
+
+def test_a_dimension_moves_the_mesh_once_for_all_states():
+    """Linear and quadratic elements of one model get their share of one moved model."""
+    model = model_of(reference_machine())
+    varied = Dimension(morpher(), lambda d: replace(reference_machine(), airgap=0.5e-3 + d))
+    fine, coarse = (varied.at(one, POINTS[0], 1e-6)[0] for one in (model, model.coarse_model))
+    assert fine.coarse_model is coarse and varied.at(model, POINTS[1], 1e-6)[0] is fine
+    assert varied.at(model, POINTS[0], -1e-6)[0] is not fine
