@@ -24,7 +24,7 @@ class BearingFriction(DesignEffect):
     remedy = ("drag with a rotor without magnets",)
     designs = (BuiltMachine,)
     signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 0.0))
-    base_rate = 0.7
+    base_rate = 0.5
     base_rate_source = "judgement: every rotor turns in bearings, and few campaigns declare their friction"
 
     level: float = parameter(

@@ -112,12 +112,12 @@ def test_sealed_rows_that_disagree_make_nothing_missing_impossible():
 
 
 def test_probabilities_from_evidences_by_hand():
-    """Odds: base rates of a tenth each, an unknown function 0.12 to 0.88, ten nats for a."""
+    """Odds: base rates of a tenth each, an unknown function 0.03 to 0.97, ten nats for a."""
     odds = np.log(1 / 9)
     beliefs = Beliefs({"a": odds, "b": odds}, frozenset())
     none, a, both = frozenset(), frozenset("a"), frozenset("ab")
     found = posterior({none: 0.0, a: 10.0, both: 10.0}, {none: 8.0}, beliefs)
-    weights = np.array([1.0, np.exp(10) / 9, np.exp(10) / 81, np.exp(8) * 0.12 / 0.88])
+    weights = np.array([1.0, np.exp(10) / 9, np.exp(10) / 81, np.exp(8) * 0.03 / 0.97])
     shares = weights / weights.sum()
     assert [found.nothing, found.alone[a], found.alone[both], found.none_of_these] == pytest.approx(list(shares))
     assert found.of("a") == pytest.approx(shares[1] + shares[2]) and found.of("b") == pytest.approx(shares[2])
