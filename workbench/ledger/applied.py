@@ -247,8 +247,9 @@ class _Around:
     def noise_variance(self) -> np.ndarray:
         """Of a reading: its own, what its scan as a whole may be off by, and what the model leaves open (n,)."""
         of_scans = [2 * c.scans**2 for c in self.noise.channels]  # an offset and a slope, each of rms 1
-        own = self.white.sigma**2 * (1 + np.repeat(of_scans, [c.size for c in self.part.channels]))
-        return own + np.square(self.part.left_open).sum(axis=1)
+        straight = np.square(self.white.sigma / self.noise.inflation)
+        of_scans = straight * np.repeat(of_scans, [c.size for c in self.part.channels])
+        return self.white.sigma**2 + of_scans + np.square(self.part.left_open).sum(axis=1)
 
     @cached_property
     def residual(self) -> np.ndarray:

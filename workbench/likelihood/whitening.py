@@ -86,18 +86,19 @@ def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitene
     """What every scan of a channel may be off by as a whole, and what the model leaves open in it; None where there is
     neither."""
     raw = np.zeros((stack.size, 0))
-    for shapes in (_of_scans(stack, channel, found, white.sigma), stack.left_open[channel.rows]):
+    for shapes in (_of_scans(stack, channel, found), stack.left_open[channel.rows]):
         columns = np.zeros((stack.size, shapes.shape[1]))
         columns[channel.rows] = shapes
         raw = np.hstack([raw, columns])
     return law_error(channel.rows, white(raw)[channel.rows]) if np.any(raw) else None
 
 
-def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, sigma: np.ndarray) -> np.ndarray:
-    """What every scan of a channel may be off by as a whole, an offset and a slope each (rows, 2 scans)."""
+def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise) -> np.ndarray:
+    """What every scan of a channel may be off by as a whole, an offset and a slope each (rows, 2 scans), straight
+    through its wild readings too."""
     scans = scans_of(stack.tables[channel.table]) if channel.size and found.scans else []
     columns = np.zeros((channel.size, 2 * len(scans)))
     for k, rows in enumerate(scans):
-        shapes = found.scans * scan_shapes(stack.u[channel.rows][rows])
-        columns[rows, 2 * k : 2 * k + 2] = shapes * sigma[channel.rows][rows][:, None]
+        u = stack.u[channel.rows][rows]
+        columns[rows, 2 * k : 2 * k + 2] = found.scans * found.scale * u[:, None] * scan_shapes(u)
     return columns
