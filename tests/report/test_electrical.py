@@ -27,6 +27,7 @@ from tests.electrical.analytic_map import (
     Saturating,
     flux_map,
 )
+from tests.electrical.wires import series_star
 from units import RPM
 
 MAP = flux_map(Saturating())
@@ -92,6 +93,12 @@ def test_files_of_the_drive(driven, winding, tmp_path):
     assert {"base_speed_field_rpm", "base_speed_constant_rpm", "peak_torque_field_Nm", "chosen"} <= set(both)
     pictures = "flux_map field_envelope torque_speed force_velocity force_velocity_field".split()
     assert sorted(path.stem for path in (folder / "figures").iterdir()) == sorted(pictures)
+
+
+@pytest.mark.parametrize(("turns", "strands", "said"), [(1, 1, "1 turn of 1 wire in hand, star"),
+                                                        (15, 11, "15 turns of 11 wires in hand, star")])  # fmt: skip
+def test_figures_count_the_wires_in_words(turns, strands, said):
+    assert drive._name(SimpleNamespace(field=SimpleNamespace(design=series_star(turns, strands)))) == said
 
 
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
