@@ -138,6 +138,8 @@ def test_the_section_says_up_to_where_the_damping_holds(brake):
     assert (braking.summary_table(brake, Wheel())["holds up to"] == "no speed").iloc[0], "40 kNs/m are too much for it"
     brake = replace(brake, demand=replace(brake.demand, damping=0.5 * brake.damping(brake.hot)[0]))
     table = braking.summary_table(brake, Wheel())
+    slow = f"damping at {Wheel().at_speed(brake.speed[0])} / (kNs/m)"
+    assert table[slow].iloc[0] * 1e3 == pytest.approx(brake.damping(brake.cold)[0]), "each damping with its speed"
     cold, hot, controlled = (brake.held_up_to(one) for one in (brake.cold, brake.hot, brake.controlled))
     assert brake.poles[0] < brake.poles[1] and max(cold, hot) < controlled
     assert np.interp(hot, brake.speed, brake.damping(brake.hot)) == pytest.approx(brake.demand.damping, rel=1e-3)
