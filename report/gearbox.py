@@ -211,7 +211,8 @@ def _decision(found: GearboxOutcome, output: Output) -> str:
 def _weakness(search: GearSearch) -> tuple[Remark, ...]:
     if search.weakness is None:
         return ()
-    return (Remark(f"The wanted safety factors are out of reach, the nearest is shown: {search.weakness}."),)
+    said = "The wanted safety factors are out of reach; shown is the least cost at a share of them"
+    return (Remark(f"{said}: {search.weakness}."),)
 
 
 def _budgets(search: GearSearch) -> pd.DataFrame:

@@ -26,7 +26,7 @@ from drivetrain.proof import Impossibility
 from drivetrain.remedies import Remedy
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
-from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table, capped
+from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table, capped, number_text
 from gearbox.stage import SafetyCheck
 from mechanics.checks import LoadCheck
 from report.datasheet import plus_minus
@@ -120,7 +120,7 @@ def _known(budget: Budget) -> dict[type[Requirement], Uncertain]:
 def remarks(found: Outcome, output: Output) -> Iterator[str]:
     """What the run says at once: every requirement, and whether it holds."""
     for row in checks_table(found, output).itertuples():
-        reached, needed = (f"{value:.4g} {row.unit}".rstrip() for value in (row.reached, row.needed))
+        reached, needed = (f"{number_text(value)} {row.unit}".rstrip() for value in (row.reached, row.needed))
         yield f"{row.requirement}: {reached}, {row.sense} {needed} needed: " + (
             "holds" if row.holds == "yes" else "DOES NOT HOLD"
         )
