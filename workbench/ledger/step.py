@@ -18,7 +18,6 @@ import numpy as np
 from scipy.stats import chi2
 
 from effects.base import Effect
-from workbench.believed import SURE
 from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
@@ -33,6 +32,7 @@ from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
+NOISE_BAND = 0.95  # share of models as good as they can be whose chi2/n stays inside what noise alone makes
 START, ACCEPTED, REFUSED = "start", "accepted", "refused"
 TOGETHER = " + "  # between effects of one step
 OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent")
@@ -159,8 +159,8 @@ def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[
 
 
 def noise_alone(rows: int) -> float:
-    """chi2/n of so many rows that noise alone stays below with probability ``SURE``."""
-    return float(chi2.ppf(SURE, rows)) / rows
+    """chi2/n of so many rows that noise alone stays below with probability ``NOISE_BAND``."""
+    return float(chi2.ppf(NOISE_BAND, rows)) / rows
 
 
 def _nats(odds: float) -> str:
