@@ -11,5 +11,8 @@ LOG_STEP = atanh(LITTLE)  # ln x moves by twice that between x (1 - LITTLE) and 
 
 
 def power(more: float, less: float) -> float:
-    """p = d ln y / d ln x, dimensionless; more, less: y where ln x is ``LOG_STEP`` larger and smaller, of one sign."""
+    """p = d ln y / d ln x, dimensionless.
+
+    more, less: y where ln x is ``LOG_STEP`` larger and smaller, of one sign [any unit]
+    """
     return float(np.log(more / less)) / (2 * LOG_STEP)
