@@ -19,8 +19,8 @@ class StaticEccentricity(Eccentricity):
     looks_like = "faint cogging orders near multiples of the poles; even in its size for a machine of two alike halves"
     base_rate = 0.03
     base_rate_source = "judgement: bearing seats and end shields of prototypes"
-    # NGSolve has 10 % less (12 slots, 10 poles) and 15 % more (9, 8) cogging of the order of the poles than the mesh of a
-    # bench model; on 720 edges in 360's place 3 % of the second remain.
+    # NGSolve has 10 % less (12 slots, 10 poles) and 15 % more (9, 8) cogging of the order of the poles than the mesh
+    # of a bench model; on 720 edges in 360's place 3 % of the second remain.
     model_error = 0.12
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
