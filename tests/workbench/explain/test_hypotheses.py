@@ -9,6 +9,7 @@ from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
+import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
 from workbench.believed import TAILS
@@ -354,6 +355,36 @@ def test_what_leads_is_weighed_against_its_twin(tmp_path):
     search = Search(bench, signatures, beliefs, (), found)
     exchange(search, one.names, lambda words: None)
     assert search.log_evidence(frozenset(("twin",))) == pytest.approx(one.log_evidence, abs=1e-3)
+
+
+def test_a_twin_is_one_that_tolerances_make_alike(tmp_path):
+    """A law that differs from the one that was found by as much as itself, in the direction of a tolerance."""
+
+    class Slanted(WAVES["wave2"]):
+        def on_response(self, response, conditions, kind, design):
+            slanted = super().on_response(response, conditions, kind, design)
+            return {**slanted, "force": slanted["force"] + 120.0 * self.size * conditions["displacement"]}
+
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    slanted = type("Slanted", (Slanted,), {"name": classmethod(lambda cls: "slanted")})
+    signatures = signatures_of(bench, (WAVES["wave2"](), slanted()))
+    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    beliefs = beliefs_of({"wave2": WAVES["wave2"], "slanted": slanted}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), one.names: one})
+    exchange(search, one.names, lambda words: None)
+    assert frozenset(("slanted",)) in search.fitted
+
+
+def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects_whatever_that_promises(tmp_path):
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    search = searching(bench, {frozenset(): null_of(bench), one.names: one})
+    heap = [
+        Promise(order, f"wave{k}", frozenset((f"wave{k}",)), (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
+        for k, order in ((3, 5e3), (4, 2e3), (5, 1e3))
+    ]
+    search_module._rivals(search, heap, one.names, lambda words: None)
+    assert set(search.fitted) == {frozenset(), one.names, frozenset(("wave5",)), frozenset(("wave4",))}
 
 
 def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
