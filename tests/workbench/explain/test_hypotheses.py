@@ -358,12 +358,12 @@ def test_what_leads_is_weighed_against_its_twin(tmp_path):
 
 
 def test_a_twin_is_one_that_tolerances_make_alike(tmp_path):
-    """A law that differs from the one that was found by as much as itself, in the direction of a tolerance."""
+    """A law that differs from the one that was found by more than itself, in the direction of a tolerance."""
 
     class Slanted(WAVES["wave2"]):
         def on_response(self, response, conditions, kind, design):
             slanted = super().on_response(response, conditions, kind, design)
-            return {**slanted, "force": slanted["force"] + 120.0 * self.size * conditions["displacement"]}
+            return {**slanted, "force": slanted["force"] + 300.0 * self.size * conditions["displacement"]}
 
     bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
     slanted = type("Slanted", (Slanted,), {"name": classmethod(lambda cls: "slanted")})
