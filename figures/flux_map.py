@@ -91,7 +91,8 @@ def _draw_currents(axes: Axes, found: Performance, current_peak: float) -> None:
     circle = -current_peak * np.sin(angle), current_peak * np.cos(angle)
     axes.plot(*circle, color=GREY, linestyle=":", label="current limit")
     axes.plot(found.mtpa_direct, found.mtpa_quadrature, color=BLACK, label="MTPA")
-    axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
+    if np.isfinite(found.mtpv_direct).any():
+        axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
     axes.plot(
         found.envelope.i_d, found.envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed"
     )
