@@ -26,9 +26,9 @@ def quick(monkeypatch):
 
 
 def coarse(name, folder):
-    """A shipped file on a coarse mesh, beside its curves."""
+    """A shipped machine as it is drawn, on a coarse mesh, beside its curves."""
     text = (MACHINES / f"{name}.toml").read_text(encoding="utf-8")
-    text = text[: text.index("[mesh]")].replace('"curves/', f'"{MACHINES}/curves/') + COARSE
+    text = text[: text.index("[search]")].replace('"curves/', f'"{MACHINES}/curves/') + COARSE
     path = folder / f"{name}.toml"
     path.write_text(text, encoding="utf-8")
     return path
