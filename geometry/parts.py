@@ -24,7 +24,7 @@ Segment = tuple[tuple[float, float], tuple[float, float]]  # from one point x, y
 
 
 def radial(inner: float, outer: float, angle: float) -> Segment:
-    """From one radius [m] to another along a ray at an angle [rad]."""
+    """Along a ray. inner, outer: radii of its ends [m]; angle: of the ray [rad]"""
     return (inner * cos(angle), inner * sin(angle)), (outer * cos(angle), outer * sin(angle))
 
 

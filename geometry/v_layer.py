@@ -49,7 +49,7 @@ class VLayer:
         return across if which == 0 else -across
 
     def corner(self, along: float, down: float) -> complex:
-        """Point x + jy [m] along the outer face of the magnet beyond its inner end and down from it [m]."""
+        """Point x + jy [m]. along: the outer face of the magnet from its inner end on [m]; down: from the face [m]"""
         face = np.exp(1j * self.tilt)
         return complex(self.tip_depth + along * face + down * 1j * face)
 
@@ -139,6 +139,7 @@ class RibbedVLayer(VLayer):
     rib: float
 
     def corner(self, along: float, down: float) -> complex:
+        """Point x + jy [m]. along: the outer face of the magnet from its inner end on [m]; down: from the face [m]"""
         return super().corner(along, down) + 1j * self.rib / 2
 
     @property

@@ -14,6 +14,7 @@ from geometry.magnetisation import HalbachMagnetisation, RadialMagnetisation
 from geometry.morph import Morpher
 from geometry.parts import ComposedMachine
 from magnetostatics.flux_linkage import phase_flux_linkage
+from magnetostatics.mesh_error import refined_model
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import torque_period
 from magnetostatics.probes import probe_reader
@@ -62,6 +63,43 @@ def test_a_sector_is_the_whole_machine(name):
 def test_two_routes_to_the_torque(name):
     found = solved(name, FINE)
     assert maxwell_torque(found) == pytest.approx(arkkio_torque(found), rel=2e-3)
+
+
+ROUGH = MeshDensity(gap_edges=144, longest_gap_edge=10.0, gap_layers=1, across_iron=1.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMED)
+def test_order_of_convergence(name):
+    """Torque by both routes and flux linkages at full current, the worst of them, against triangles of an eighth.
+
+    At a corner of the iron the field is that of a wedge of air of an angle omega, and what is quadratic in it converges
+    with h^(2 pi/omega): h^(4/3) at right angles, h at a thin tip, until the corner saturates; the chords of circles
+    leave h^2. In two halvings, seen from the third, an error falls sevenfold with h, tenfold with h^(4/3), 21-fold
+    with h^2.
+    """
+    model, found = model_of(NAMED[name], ROUGH, settings=NewtonSettings(tolerance=1e-9)), []
+    edge = 2 * np.pi / ROUGH.edges_around(NAMED[name])  # the rotor stands on nodes of every mesh
+    points = [currents(model, k * edge, AMPERE_TURNS[name], 0.5, 1.0) for k in (1, 3)]
+    for finer in (model, *halved(model, 3)):
+        found.append([torques_and_linkages(finer.solve(point)) for point in points])
+    fine = np.array(found[-1])
+    scale = np.abs(fine).mean(axis=0)
+    scale[2:] = scale[2:].mean()
+    errors = [np.sqrt((((np.array(one) - fine) / scale) ** 2).mean(axis=0)).max() for one in found[:-1]]
+    assert errors[0] > 7 * errors[2]
+    assert errors[2] < 6e-3
+
+
+def halved(model, times):
+    """Models of ever smaller triangles."""
+    for _ in range(times):
+        model = refined_model(model)
+        yield model
+
+
+def torques_and_linkages(solution):
+    return arkkio_torque(solution), maxwell_torque(solution), *phase_flux_linkage(solution)
 
 
 def test_consequent_poles_have_even_harmonics_that_alternating_ones_have_not():
