@@ -61,13 +61,15 @@ def envelope_over_speed(envelope: Envelope) -> Figure:
 
 
 def _envelopes(figure: Figure, envelopes: Iterable[tuple[Envelope, dict[str, Any]]]) -> np.ndarray:
-    axes = figure.subplots(1, 3)
-    for envelope, look in envelopes:
+    axes, drawn = figure.subplots(1, 3), tuple(envelopes)
+    magnetising = all(np.nanmin(envelope.i_d) >= 0 < np.nanmax(envelope.i_d) for envelope, _ in drawn)
+    for envelope, look in drawn:
         speed_rpm = envelope.speed / RPM
         axes[0].plot(speed_rpm, envelope.torque, **look)
         axes[1].plot(speed_rpm, envelope.power / 1e3, **look)
-        axes[2].plot(speed_rpm, -envelope.i_d, **look)
-    titles = (("torque", "torque / Nm"), ("power", "power / kW"), ("field-weakening current", "$-i_d$ / A"))
+        axes[2].plot(speed_rpm, envelope.i_d if magnetising else -envelope.i_d, **look)
+    direct = ("magnetising current", "$i_d$ / A") if magnetising else ("field-weakening current", "$-i_d$ / A")
+    titles = (("torque", "torque / Nm"), ("power", "power / kW"), direct)
     for axis, (heading, label) in zip(axes, titles, strict=True):
         axis.set(xlabel="rotor speed / rpm", ylabel=label)
         axis.set_title(heading, loc="left")

@@ -44,6 +44,7 @@ _OFF_LIMIT = 0.9  # of full torque and base speed: the map is read inside its li
 # Usual values where the file of a machine states none: sheet EN 10106, NdFeB 7400 to 7600 in data sheets, copper
 # IEC 60028, shaft of plain steel; stacking of sheet of 0.35 mm. Estimates for a machine that was not weighed.
 _PARTS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
+_LARGE = 1e-3  # H, from which on an inductance is written in mH
 _CAPITAL = re.compile(r"(?<!^)(?=[A-Z])")  # begins the next word of a kind, OuterMagnets
 
 
@@ -75,7 +76,7 @@ def machine_sheet(
         Group("Torque, speed and supply", tuple(_torques(driven, flux_map, performance, turning))),
         Group("Constants", tuple(_constants(copper, driven, flux_map, performance))),
         Group("Iron at full current", tuple(_iron(wound.machine.rotor, turning))),
-        Group("Losses", tuple(_losses(performance, losses))),
+        Group("Losses", tuple(_losses(wound.machine.rotor, performance, losses))),
         Group("Masses and inertia", tuple(_masses(masses))),
     )
     return MachineSheet(DataSheet(tuple(group for group in groups if group.rows)), masses)
@@ -202,9 +203,10 @@ def map_section(flux_map: FluxMap, performance: Performance) -> Section:
 
 def turning_section(turning: TurningMachine) -> Section:
     """What the angle does."""
+    idle = f"; without current {turning.idle.ripple:.3g} Nm" if turning.idle.ripple > 0 else ""
     text = (
-        f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak; "
-        f"without current {turning.idle.ripple:.3g} Nm. The two torque routes differ by at most "
+        f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak"
+        f"{idle}. The two torque routes differ by at most "
         f"{turning.full.routes_apart:.2%}."
     )
     return Section(
@@ -213,14 +215,17 @@ def turning_section(turning: TurningMachine) -> Section:
     )
 
 
-def losses_section(losses: LossMap | None) -> Section | None:
+def losses_section(losses: LossMap | None, driven: DrivenMachine) -> Section | None:
     """Loss and efficiency; none without loss data."""
     if losses is None:
         return None
+    machine = driven.wound.machine
+    magnets = "; eddy currents in the magnets" if machine.rotor.magnets_per_pitch else ""
+    cup = " A cup of solid steel loses more than this." if machine.rotor.rim_radius > machine.stator.rim_radius else ""
     stands_in = f", which stand in for {losses.steel}" if losses.law_is_of_another_grade else ""
     text = (
         f"Copper at {losses.winding_temperature:g} °C, iron of stator and rotor as laminated, by the loss data of "
-        f"{losses.law.grade}{stands_in}; eddy currents in the magnets. A cup of solid steel loses more than this. "
+        f"{losses.law.grade}{stands_in}{magnets}.{cup} "
         "Without bearings, windage and the inverter."
     )
     return Section("Losses and efficiency", (text, Picture(picture_name(LOSSES), "Electrical loss and efficiency.")))
@@ -291,7 +296,8 @@ def _torques(
     error = f"{current}; the mesh may put it off by {100 * flux_map.torque_error:.2f} %"
     yield row("peak torque", full.torque, "Nm", error)
     yield row("torque ripple", turning.full.ripple, "Nm", f"peak to peak, {current}")
-    yield row("cogging torque", turning.idle.ripple, "Nm", "peak to peak, without current")
+    if driven.wound.machine.rotor.magnets_per_pitch:
+        yield row("cogging torque", turning.idle.ripple, "Nm", "peak to peak, without current")
     beyond = ", beyond the largest of the file" if full.base_speed > driven.fastest else ""
     yield row("base speed", full.base_speed, "rpm", f"up to which the peak torque is given{beyond}")
     if not beyond:
@@ -321,8 +327,9 @@ def _constants(
     places = {"no load": (0.0, 0.0), "full current": (full.direct, full.quadrature)}
     for name, currents in places.items():
         (l_dd, _), (_, l_qq) = machine.incremental_inductances(*currents)
-        yield row("L_d", float(l_dd), "uH", f"phase, incremental, {name}")
-        yield row("L_q", float(l_qq), "uH", f"phase, incremental, {name}")
+        unit = "mH" if max(l_dd, l_qq) >= _LARGE else "uH"
+        yield row("L_d", float(l_dd), unit, f"phase, incremental, {name}")
+        yield row("L_q", float(l_qq), unit, f"phase, incremental, {name}")
 
 
 def _iron(rotor: Rotor, turning: TurningMachine) -> Iterator[Row]:
@@ -332,7 +339,7 @@ def _iron(rotor: Rotor, turning: TurningMachine) -> Iterator[Row]:
         yield row(f"largest flux density, {probe.replace('_', ' ')}", turning.largest(probe), "T", f"mean {where}")
 
 
-def _losses(found: Performance, losses: LossMap | None) -> Iterator[Row]:
+def _losses(rotor: Rotor, found: Performance, losses: LossMap | None) -> Iterator[Row]:
     if losses is None:
         return
     map_, full = losses.losses, found.full
@@ -342,7 +349,8 @@ def _losses(found: Performance, losses: LossMap | None) -> Iterator[Row]:
     yield row("copper loss", one.copper, "W", f"{losses.winding_temperature:g} °C")
     yield row("stator iron loss", one.stator_iron, "W", f"by the loss data of {losses.law.grade}")
     yield row("rotor iron loss", one.rotor_iron, "W", "as if laminated")
-    yield row("magnet loss", one.magnet, "W", "eddy currents, estimate")
+    if rotor.magnets_per_pitch:
+        yield row("magnet loss", one.magnet, "W", "eddy currents, estimate")
     yield row("efficiency", one.efficiency, "percent", at)
     yield row("best efficiency", losses.motor.efficiency, "percent",
               f"{losses.motor.torque:.4g} Nm at {losses.motor.speed / RPM:.0f} rpm")  # fmt: skip
