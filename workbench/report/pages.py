@@ -198,7 +198,7 @@ def _predicted(predictions: tuple[Prediction, ...]) -> tuple[Section, ...]:
          "interval": f"{number(p.low, 4)} to {number(p.high, 4)}", "given": p.given}
         for p in predictions
     ]  # fmt: skip
-    words = "These were stored before anything was measured on the other device; none of them was compared."
+    words = "These were stored before they were held against any measurement."
     table = Table(pd.DataFrame(rows), "Predictions of this campaign.")
     return (Section("Predicted, not yet compared", (words, table)),)
 
