@@ -79,6 +79,11 @@ _WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²
             "mK": "(m K)", "m2K": "(m² K)"}  # fmt: skip
 
 
+def percent(share: float, decimals: int = 0) -> str:
+    """A share [1] as people read it: ``56 %``."""
+    return f"{100 * share:.{decimals}f} %"
+
+
 def split_unit(name: str) -> tuple[str, str]:
     """Quantity and unit of a name, ``("airgap", "mm")`` of ``airgap_mm``; the unit is empty for a pure number."""
     for unit in _LONGEST_FIRST:

@@ -15,19 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bench.force_loops import (
-    CONTACT,
-    LOSS,
-    MASS,
-    MOUNT_DAMPING,
-    NOMINAL,
-    PLAY,
-    STIFFNESS,
-    TORQUE_CONSTANT,
-    TRANSITION,
-    ForceLoop,
-    identify_loops,
-)  # fmt: skip
+from bench.force_loops import NOMINAL, ForceLoop, identify_loops
 from bench.identification import Identification
 from benchmarks.virtual_benches.actuator_loops import TRANSMISSION, Drive, Loop, Truth, loop_of
 
@@ -38,15 +26,6 @@ STROKE_NOISE = 1e-6  # m, white, after the filter that a velocity needs
 # Two seconds each: with half a second the play, of 9 um, is known to 2.7 % only
 DRIVES = (Drive(15, 3e-3, 0, 2.0), Drive(15, 3e-3, 4000, 2.0), Drive(5, 8e-3, 4000, 2.0), Drive(8, 5e-3, 2000, 2.0),
           Drive(30, 1e-3, 0, 2.0))  # fmt: skip
-
-
-def truth_values(truth: Truth) -> dict[str, float]:
-    """What is sought, SI by name."""
-    return {
-        MASS: truth.mass, PLAY: truth.play, STIFFNESS: truth.stiffness, CONTACT: truth.contact_damping,
-        TRANSITION: truth.transition, LOSS: truth.loss, MOUNT_DAMPING: truth.mount_damping,
-        TORQUE_CONSTANT: truth.torque_constant,
-    }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -86,9 +65,7 @@ def fits(case: Case) -> list[Identification]:
 def rows(case: Case) -> list[Mapping[str, object]]:
     """One parameter a row: errors and coverage over the seeds."""
     found = fits(case)
-    return [
-        _row(case, found, place, name, value) for place, (name, value) in enumerate(truth_values(case.truth).items())
-    ]
+    return [_row(case, found, place, name, value) for place, (name, value) in enumerate(case.truth.sought.items())]
 
 
 def _row(case: Case, found: list[Identification], place: int, name: str, value: float) -> Mapping[str, object]:

@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.ticker import NullFormatter
 
 from figures.style import new_figure, show_grid, styled
+from units import percent
 
 _EFFICIENCY = 0.85  # wanted of two processes
 
@@ -50,5 +51,5 @@ def _draw_processes(axes, walls: dict[int, float]) -> None:
     counts, one = list(walls), walls[1]
     axes.plot(counts, [one / walls[count] for count in counts], "o-", label="measured")
     axes.plot(counts, counts, "--", label="ideal")
-    axes.plot([2], [2 * _EFFICIENCY], "v", label=f"target, {_EFFICIENCY:.0%} efficiency")
+    axes.plot([2], [2 * _EFFICIENCY], "v", label=f"target, {percent(_EFFICIENCY)} efficiency")
     axes.set(xlabel="processes", ylabel="speed-up of the wall time", xticks=counts)

@@ -36,7 +36,11 @@ class WindingDesign:
         """Of the same gauge and connection."""
         return (self.wire, self.connection) == (other.wire, other.connection)
 
-    def __str__(self) -> str:
+    @property
+    def wound(self) -> str:
+        """Turns and wires in words."""
         turns, wires = ("turn" if self.turns == 1 else "turns"), ("wire" if self.strands == 1 else "wires")
-        wound = f"{self.turns} {turns} of {self.strands} {wires} in hand"
-        return f"{wound}, {1e3 * self.wire.copper_diameter:g} mm, {self.connection}"
+        return f"{self.turns} {turns} of {self.strands} {wires} in hand"
+
+    def __str__(self) -> str:
+        return f"{self.wound}, {1e3 * self.wire.copper_diameter:g} mm, {self.connection}"

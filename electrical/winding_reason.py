@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from electrical.winding_selection import AS_SHORT, Winding, WindingChoice, WindingLimits, WindingRequirement
-from units import RPM
+from units import RPM, percent
 
 _VISIBLE = 1e-3  # relative; what is closer is called the same
 
@@ -25,11 +25,11 @@ def verdict(one: Winding, choice: WindingChoice, limits: WindingLimits, requirem
     if one == choice.chosen:
         return "chosen"
     if one.circulating_share > limits.circulating_share:
-        return f"its current round the delta loses {one.circulating_share:.1%} of the copper loss"
+        return f"its current round the delta loses {percent(one.circulating_share, 1)} of the copper loss"
     if one.current_rms > limits.phase_current_rms:
         return f"{one.current_rms:.1f} A RMS at least"
     if not choice.chosen.satisfies(requirement):
-        return f"{1 - _power_density(one) / _power_density(choice.chosen):.1%} less power for its length"
+        return f"{percent(1 - _power_density(one) / _power_density(choice.chosen), 1)} less power for its length"
     if not one.satisfies(requirement):
         return "misses: " + _relaxed(one, requirement)
     meeting = (w for w in choice.table if w.satisfies(requirement) and w.current_rms <= limits.phase_current_rms)
@@ -45,9 +45,9 @@ def _behind(one: Winding, chosen: Winding, shortest: float) -> str:
     """What a winding that meets the requirement lacks against the chosen one; shortest: of those that do [m]."""
     longer, more = one.needed_length / shortest - 1, one.current_rms / chosen.current_rms - 1
     if longer > AS_SHORT:
-        return f"{longer:.1%} longer than the shortest"
+        return f"{percent(longer, 1)} longer than the shortest"
     if more > _VISIBLE:
-        return f"{more:.1%} more current"
+        return f"{percent(more, 1)} more current"
     if one.packing < chosen.packing * (1 - _VISIBLE):
         return "as much current, less copper"
     return "as good, with more paths, wires or in delta"
@@ -56,9 +56,9 @@ def _behind(one: Winding, chosen: Winding, shortest: float) -> str:
 def _reason_met(chosen: Winding, limits: WindingLimits, requirement: WindingRequirement) -> str:
     within = "" if limits.phase_current_rms == inf else f" and within the limit of {limits.phase_current_rms:.1f} A RMS"
     return (
-        f"{chosen.design}: lowest current of the full slots that meet the requirement and are at most {AS_SHORT:.0%} "
-        f"longer than the shortest, {chosen.current_rms:.1f} A RMS ({chosen.current_peak:.1f} A peak){within}; base "
-        f"speed {chosen.base_speed / RPM:.0f} rpm against "
+        f"{chosen.design}: lowest current of the full slots that meet the requirement and are at most "
+        f"{percent(AS_SHORT)} longer than the shortest, {chosen.current_rms:.1f} A RMS ({chosen.current_peak:.1f} A "
+        f"peak){within}; base speed {chosen.base_speed / RPM:.0f} rpm against "
         f"{requirement.base_speed / RPM:.0f} rpm required, power at base speed {chosen.power_at_base_speed:.0f} W "
         f"against {requirement.power:.0f} W."
     )
@@ -86,7 +86,7 @@ def _relaxed(chosen: Winding, requirement: WindingRequirement) -> str:
 def _relaxation(what: str, reached: float, required: float, unit: str) -> str:
     if reached >= required:
         return ""
-    return f"{what} from {required:.0f} to {reached:.0f} {unit} ({reached / required:.0%} of the requirement)"
+    return f"{what} from {required:.0f} to {reached:.0f} {unit} ({percent(reached / required)} of the requirement)"
 
 
 def _without_limit(unrestricted: Winding | None) -> str:
@@ -103,8 +103,8 @@ def _torque_remark(chosen: Winding, requirement: WindingRequirement) -> str:
         return ""
     missing = requirement.torque - chosen.peak_torque
     return (
-        f"Its peak torque of {chosen.peak_torque:.3f} Nm is {missing:.3f} Nm ({missing / requirement.torque:.1%}) "
-        "below the peak force requirement."
+        f"Its peak torque of {chosen.peak_torque:.3f} Nm is {missing:.3f} Nm "
+        f"({percent(missing / requirement.torque, 1)}) below the peak force requirement."
     )
 
 
@@ -113,5 +113,6 @@ def _packing_remark(chosen: Winding, limits: WindingLimits) -> str:
         return ""
     return (
         f"Its packing factor {chosen.packing:.4f} exceeds the limit {limits.packing_limit:g} by "
-        f"{chosen.packing / limits.packing_limit - 1:.2%}, inside the accepted {limits.packing_tolerance:.2%}."
+        f"{percent(chosen.packing / limits.packing_limit - 1, 2)}, inside the "
+        f"accepted {percent(limits.packing_tolerance, 2)}."
     )

@@ -22,6 +22,7 @@ from electrical.synchronous_machine import SynchronousMachine
 from electrical.winding_connection import WindingConnection
 from electrical.winding_design import WindingDesign
 from electrical.wire import Wire
+from units import percent
 
 WEAKENING = 0.25  # negative d-axis current over the q-axis current, at which the loaded inductance L_d is read
 _SAME_CURRENT = 1e-9  # relative; currents this close are one, and one this close above its limit meets it
@@ -380,8 +381,8 @@ def _without_much_circulation(windings: tuple[Winding, ...], limits: WindingLimi
     if not quiet:
         least = min(one.circulating_share for one in windings)
         raise WindingError(
-            f"in every winding the current round the delta loses more than {limits.circulating_share:.1%} of the "
-            f"copper loss, {least:.1%} at least: allow star (winding_selection.connections)"
+            f"in every winding the current round the delta loses more than {percent(limits.circulating_share, 1)} of "
+            f"the copper loss, {percent(least, 1)} at least: allow star (winding_selection.connections)"
         )
     return quiet
 

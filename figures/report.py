@@ -173,7 +173,17 @@ def render_report(
 def template_environment() -> Environment:
     """Where the page templates are found; everything put into them is escaped."""
     folder = FileSystemLoader(Path(__file__).parent)
-    return Environment(loader=folder, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    found = Environment(loader=folder, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    found.filters["typeset"] = typeset
+    return found
+
+
+_SIGN = re.compile(r"(?<![^\s(])-(?=[\d.])")  # a hyphen that begins a number
+
+
+def typeset(text: str) -> str:
+    """A sentence or a cell with minus signs before its numbers, as number_text writes them."""
+    return _SIGN.sub("\N{MINUS SIGN}", text)
 
 
 def heading(column: str) -> str:

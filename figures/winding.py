@@ -59,7 +59,7 @@ def torque_speed(envelopes: dict[str, Envelope], chosen: str, required: tuple[Re
         axis.set_ylim(bottom=0.0)
     letter(axes)
     show_grid(*axes)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 

@@ -12,6 +12,7 @@ from geometry.errors import GeometryError, in_mm
 from geometry.outline import SHAFT, Curve
 from geometry.parts import Angle, Length, Rim, Rotor, Share
 from geometry.plane_mesh import Drawing
+from units import percent
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,9 @@ class CutOutRotor(Rotor):
         off = max(abs(area / iron[0] - 1) for area in iron)
         if off > self.unequal:
             raise GeometryError(
-                f"half poles of the outline differ by {off:.2%} of their iron: correct axis, say repeats_after = 2 if "
-                f"every second pole is alike, or allow it by unequal = {off * 1.01:.3f}, which takes all to be like "
-                "the one behind axis"
+                f"half poles of the outline differ by {percent(off, 2)} of their iron: correct axis, say repeats_after "
+                f"= 2 if every second pole is alike, or allow it by unequal = {off * 1.01:.3f}, which takes all to be "
+                "like the one behind axis"
             )
 
     def draw(self, rim: Rim) -> Drawing:

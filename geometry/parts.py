@@ -201,12 +201,16 @@ class MagnetOnAxis(Rotor):
         return self.magnetisation.direction_angle(position_angle, axis, self.pitch if self.gap_outside else -self.pitch)
 
 
-class SunkMagnets(MagnetOnAxis):
-    """Magnets in the surface of a core, flush with the iron beside them; radii and magnet_length [m]."""
+class MagnetsOfRoundCore(MagnetOnAxis):
+    """Magnets of constant thickness on a round core or let into it; radii and magnet_length [m].
+
+    outer_radius: over the magnets; outer_name: what it is called where such a rotor is stated
+    """
 
     outer_radius: Length
     magnet_length: Length
     shaft_radius: Length
+    outer_name: ClassVar[str] = "outer_radius"
 
     @property
     def core_radius(self) -> float:
@@ -222,7 +226,7 @@ class SunkMagnets(MagnetOnAxis):
         if self.core_radius <= self.shaft_radius:
             raise GeometryError(
                 f"the rotor core under the magnets ends at {in_mm(self.core_radius)}, inside the shaft of radius "
-                f"{in_mm(self.shaft_radius)}: enlarge outer_radius, or reduce magnet_length or shaft_radius"
+                f"{in_mm(self.shaft_radius)}: enlarge {self.outer_name}, or reduce magnet_length or shaft_radius"
             )
 
 

@@ -49,6 +49,7 @@ class CutEdge(LocalSteel):
             raise MaterialError(f"the severity of a damaged edge is below 1, found {self.severity:g}: take less")
 
     def in_region(self, section: CrossSection, region: str) -> Reluctivity:
+        """J(H) = J_s(H/k), k = 1/(1 - s eta), with eta of each element (E,) of a region, see ``damaged_share``."""
         if self.severity == 0:
             return self.law
         share = damaged_share(section, region, self.depth)

@@ -42,6 +42,7 @@ class TriangleOrder:
 
     @classmethod
     def of(cls, element: Element, functions: int) -> TriangleOrder:
+        """Of an element of scikit-fem with so many shape functions, F, at points that integrate quadratics exactly."""
         points, weights = get_quadrature(element, 2)  # exact for a constant reluctivity on straight quadratic triangles
         values, gradients = zip(*(element.lbasis(points, i) for i in range(functions)))
         return cls(element, np.stack(values), _same_shape(gradients), points, weights, np.tril_indices(functions))

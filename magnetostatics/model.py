@@ -166,10 +166,12 @@ class FieldModel:
 
     @property
     def order(self) -> TriangleOrder:
+        """Shape functions and points of integration of the triangles of the mesh."""
         return self.topology.order
 
     @property
     def unknowns(self) -> Unknowns:
+        """Which degrees of freedom are free, and which follow others by periodicity or are zero."""
         return self.topology.unknowns
 
     @property

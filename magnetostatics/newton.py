@@ -46,6 +46,7 @@ class NewtonRecord:
 
     @property
     def iterations(self) -> int:
+        """How many steps it took, chord steps not counted."""
         return len(self.residuals)
 
 

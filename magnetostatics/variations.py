@@ -24,6 +24,7 @@ class Remanence:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with B_r + change in all magnets, the state as it is; change: [T]."""
         materials = model.materials.with_magnets(lambda m: replace(m, remanence=m.remanence + change))
         return model.like(materials=materials), point
 
@@ -35,6 +36,7 @@ class RecoilPermeability:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with mu_r + change in all magnets, the state as it is; change: dimensionless."""
         materials = model.materials.with_magnets(
             lambda m: replace(m, recoil_permeability=m.recoil_permeability + change)
         )
@@ -53,6 +55,7 @@ class OneMagnet:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with that property of that magnet + change, the state as it is; change: [as the property]."""
         magnet = model.materials.magnet_at(self.number)
         changed = replace(magnet, **{self.name: getattr(magnet, self.name) + change})
         return model.like(materials=model.materials.with_magnet(self.number, changed)), point
@@ -65,6 +68,7 @@ class CurrentDensity:
     step: float = 1e3
 
     def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model as it is, the state at J + change; change: of the amplitude [A/m^2]."""
         return model, replace(point, current_density=point.current_density + change)
 
 
@@ -75,6 +79,7 @@ class CurrentAngle:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model as it is, the state at gamma + change; change: [rad]."""
         return model, replace(point, current_angle=point.current_angle + change)
 
 
@@ -85,6 +90,7 @@ class SteelStrength:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with H(B) (1 + change) in both steels, the state as it is; change: relative, dimensionless."""
         return _with_steels(model, lambda law: ScaledReluctivity(law, 1 + change)), point
 
 
@@ -95,6 +101,7 @@ class SaturationPolarisation:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with J_s (1 + change) in both steels, the state as it is; change: relative, dimensionless."""
         return _with_steels(model, lambda law: ScaledSaturation(law, 1 + change)), point
 
 
@@ -108,6 +115,7 @@ class StackingFactor:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with 1 + change of the present steel in both stacks, the state as it is; change: dimensionless."""
         return _with_steels(model, lambda law: stacked(law, 1 + change)), point
 
 
@@ -130,6 +138,7 @@ class Materials:
     step: float
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with the changed materials, the state as it is; change: the amount [its unit]."""
         return model.like(materials=self.change(model.materials, change)), point
 
 
@@ -146,6 +155,10 @@ class Dimension:
     step: float = 1e-6  # [m]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model on the moved mesh, of the same order of elements, the state as it is; change: [as of ``machine``].
+
+        Raises what the drawing of the changed machine raises: GeometryError.
+        """
         return self._changed(model.finest, change).of_order(model.order), point
 
     def _changed(self, model: FieldModel, change: float) -> FieldModel:
@@ -173,6 +186,7 @@ class Shape:
     step: float = 1e-6  # [m or rad]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model on the moved cross-section, the state as it is; change: [m or rad]."""
         return model.like(self.section(change)), point
 
 
@@ -191,6 +205,10 @@ class SameAmpereTurns:
         return self.varied.step
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The varied model, its state at J A / A_changed, A the area of half a slot; change: [unit of what varies].
+
+        Raises TypeError for a supply that is no ``OperatingPoint``.
+        """
         if not isinstance(point, OperatingPoint):
             raise TypeError(
                 f"ampere-turns are kept of a balanced supply, an OperatingPoint; found {type(point).__name__}"
@@ -208,6 +226,7 @@ class PhaseCurrent:
     step: float = 1e-2
 
     def at(self, model: FieldModel, point: PhaseCurrents, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model as it is, the state with i + change in that phase; change: [A]."""
         a, b, c = (i + change * (k == self.phase) for k, i in enumerate(point.currents))
         return model, replace(point, currents=(a, b, c))
 
@@ -220,6 +239,7 @@ class CoilTurns:
     step: float = 1e-4
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
+        """The model with that coil's turns + change, the state as it is; change: relative to the design's."""
         layout = model.section.layout
         now = next(coil.turns for coil in layout.coils if coil.index == self.coil)
         section = replace(model.section, layout=layout.with_turns({self.coil: now + change}))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from units import MILLIMETRE
+from units import MILLIMETRE, percent
 
 ORDER = 2
 _LARGEST_RELATIVE_RESIDUAL = 0.03
@@ -132,7 +132,7 @@ def _reason_to_refuse(where: float, relative: float, r_squared: float) -> str:
     if relative <= _LARGEST_RELATIVE_RESIDUAL:
         return ""
     return (
-        f"the point at {where / MILLIMETRE:g} mm is {relative:.1%} of the mean away from the curve "
-        f"(R^2 = {r_squared:.4f}), more than {_LARGEST_RELATIVE_RESIDUAL:.0%}: look at the optimum there, or fit "
+        f"the point at {where / MILLIMETRE:g} mm is {percent(relative, 1)} of the mean away from the curve "
+        f"(R^2 = {r_squared:.4f}), more than {percent(_LARGEST_RELATIVE_RESIDUAL)}: look at the optimum there, or fit "
         "a narrower range (sweep.stator_diameters_mm)"
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from drivetrain.output import Output, in_unit
+from drivetrain.output import Output, in_unit, labelled
 from electrical.braking import Braking
 from electrical.braking_stage import BrakingOutcome
 from figures.braking import braking_over_speed
@@ -53,7 +53,7 @@ def braking_table(found: BrakingOutcome, output: Output) -> pd.DataFrame:
 
 
 def summary_table(found: BrakingOutcome, output: Output) -> pd.DataFrame:
-    """Slow, at the RMS speed and where it brakes most, one way of braking a row."""
+    """At the slowest speed, at the RMS speed and where it brakes most, one way of braking a row."""
     return pd.DataFrame([_row(name, one, found, output) for name, one in _named(found).items()])
 
 
@@ -66,12 +66,12 @@ def _row(name: str, one: Braking, found: BrakingOutcome, output: Output) -> dict
     at_rms = np.interp(found.demand.speed_rms, found.speed, damping)
     row = {
         "brake": name.replace("_", ", "),
-        f"damping, slow / {written(unit)}": in_unit(damping[0], unit),
-        f"damping at {output.at_speed(found.demand.speed_rms)} / {written(unit)}": in_unit(at_rms, unit),
-        f"largest {output.effort} / {written(output.effort_unit)}": in_unit(
+        labelled(f"damping at {output.at_speed(found.speed[0])}", unit): in_unit(damping[0], unit),
+        labelled(f"damping at {output.at_speed(found.demand.speed_rms)}", unit): in_unit(at_rms, unit),
+        labelled(f"largest {output.effort}", output.effort_unit): in_unit(
             np.nanmax(one.torque) / found.demand.ratio, output.effort_unit
         ),
-        "largest i_d against the magnets / A": -np.nanmin(one.i_d),
+        "largest d-axis current against the magnets / A": -np.nanmin(one.i_d),
     }
     if found.demand.damping:
         row["holds up to"] = _held(found, one, output)

@@ -179,7 +179,7 @@ def dimensions(wound: WoundMachine, case: FieldCase, steel: LossInputs) -> Itera
     yield row("magnet thickness", machine.magnet_length, "mm", f"{machine.poles} pieces on the rotor core")
     yield row("magnet arc", machine.magnet_arc_fraction, "", "of the pole pitch")
     yield Row("magnetisation", _pattern(machine), "", "of each magnet, outwards and inwards in turn")
-    yield row("remanence", magnet.remanence, "T", "at the working temperature of the magnets")
+    yield row("remanence", magnet.remanence, "T", "in the field solutions; hot magnets have less")
 
 
 def winding_rows(

@@ -155,7 +155,8 @@ def _demand(required: Requirements, transmission: Transmission, output: Output) 
 
 
 def _name(pair: Neighbour) -> str:
-    return f"{pair.field.turns} turns, {pair.field.strands} wires, {pair.field.design.connection}"
+    design = pair.field.design
+    return f"{design.wound}, {design.connection}"
 
 
 def _row(pair: Neighbour, chosen: WindingDesign) -> dict[str, object]:

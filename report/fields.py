@@ -18,7 +18,7 @@ from magnetostatics.case import FieldCase
 from magnetostatics.fields_stage import NullFields, SolvedFields
 from magnetostatics.gap_stress_stage import GapStress
 from magnetostatics.rotation import STATES, Rotation
-from units import DEGREE
+from units import DEGREE, percent
 
 _FIELD_FIGURES = {"reference": ("nominal",), "matched": ("nominal", "overload")}
 
@@ -34,7 +34,7 @@ def machine(found: SolvedFields) -> Section:
     """The study's own machine and its field."""
     text = (
         f"The machine of the study file at the nominal current density: {_torques(found.rotation, found.reference)}. "
-        f"The two torque routes differ by at most {found.rotation.routes_apart('nominal'):.2%}."
+        f"The two torque routes differ by at most {percent(found.rotation.routes_apart('nominal'), 2)}."
     )
     return Section(
         "Reference machine and its field",

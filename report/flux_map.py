@@ -24,7 +24,7 @@ def section(found: FluxMap) -> Section:
     solved = data["iterations"].sel(iq=data["iq"] >= 0)
     text = (
         f"Flux linkages and torque per turn and metre at {data.sizes['angle']} rotor angles over 60 electrical degrees "
-        f"and {data.sizes['id']} x {solved.sizes['iq']} currents up to {float(data['iq'].max()):.0f} A peak in one "
+        f"and {data.sizes['id']} × {solved.sizes['iq']} currents up to {float(data['iq'].max()):.0f} A peak in one "
         f"coil ({solved.size} field solutions, {int(solved.sum())} Newton iterations, at most {int(solved.max())} "
         f"each). The map is solved before the winding is chosen and serves every winding that the slot can hold. At "
         f"the overload current the mesh may put the torque off by {100 * found.torque_error:.2f} %."

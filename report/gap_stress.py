@@ -14,7 +14,7 @@ from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import amplitude_of, classical_pull, effective_gap, moving
 from magnetostatics.gap_stress_stage import GapStress
 from magnetostatics.rotation import STATES, Rotation
-from units import DEGREE, FACTORS, MILLIMETRE
+from units import DEGREE, FACTORS, MILLIMETRE, percent
 
 WAVES, FIGURE = "gap_stress_waves.csv", "gap_stress"
 _IN_REPORT = 10
@@ -64,7 +64,7 @@ def _ripple_row(found: Rotation, state: str) -> dict[str, object]:
         "mean_torque_Nm_per_m": mean,
         "ripple_peak_to_peak_Nm_per_m": found.ripple(state),
         "ripple_percent": 100 * found.ripple(state) / abs(mean),
-        "largest orders of the electrical frequency": ", ".join(f"{order}: {share:.2%}" for order, share in orders),
+        "largest orders of the electrical frequency": ", ".join(f"{one}: {percent(share, 2)}" for one, share in orders),
     }
 
 

@@ -173,7 +173,8 @@ def _searched(found: GearboxOutcome, search: GearSearch, output: Output) -> tupl
         Picture(picture_name("gear_end_view"), "Stage 1 along its axis."),
         Table(
             gears_table(search)[["gears", *_SHOWN]],
-            "The chosen gears and, where there are any, those of the study file.",
+            "The chosen gears and, where there are any, those of the study file; internal teeth, those of a ring, "
+            "count negative.",
         ),
         Picture(picture_name("gear_safety"), "Safety factors; lines: what is wanted, dotted where only reported."),
         Table(_budgets(search), _BUDGET),
@@ -210,7 +211,8 @@ def _decision(found: GearboxOutcome, output: Output) -> str:
 def _weakness(search: GearSearch) -> tuple[Remark, ...]:
     if search.weakness is None:
         return ()
-    return (Remark(f"The wanted safety factors are out of reach, the nearest is shown: {search.weakness}."),)
+    said = "The wanted safety factors are out of reach; shown is the least cost at a share of them"
+    return (Remark(f"{said}: {search.weakness}."),)
 
 
 def _budgets(search: GearSearch) -> pd.DataFrame:

@@ -13,7 +13,7 @@ from drivetrain.whole_search import Bettered, SolvedDesign, WholeSearch, objecti
 from figures.files import File, figure_file, table_file, text_file
 from figures.report import Picture, Remark, Section, Table, render_report
 from figures.whole_design import whole_designs
-from units import MILLIMETRE, written
+from units import MILLIMETRE, percent, written
 
 TABLE, PAGE, FIGURE = "optimise.csv", "optimise.html", "whole_designs"
 
@@ -165,4 +165,4 @@ def _gain(staged: RatedDesign, one: Bettered, output: Output) -> dict[str, objec
 def _fit_error(found: WholeSearch) -> str:
     """How far the fits are from the field in the damping."""
     apart = max(abs(one.field.values.objectives[2] / one.model.values.objectives[2] - 1) for one in found.solved)
-    return f"The damping of the fits is off by up to {apart:.1%}."
+    return f"The damping of the fits is off by up to {percent(apart, 1)}."

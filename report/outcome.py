@@ -26,7 +26,7 @@ from drivetrain.proof import Impossibility
 from drivetrain.remedies import Remedy
 from figures.files import File, figure_file, picture_name, table_file
 from figures.gearbox import axial_section
-from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table, capped
+from figures.report import KeyNumber, KeyNumbers, Picture, Remark, Section, Table, capped, number_text
 from gearbox.stage import SafetyCheck
 from mechanics.checks import LoadCheck
 from report.datasheet import plus_minus
@@ -120,12 +120,16 @@ def _known(budget: Budget) -> dict[type[Requirement], Uncertain]:
 def remarks(found: Outcome, output: Output) -> Iterator[str]:
     """What the run says at once: every requirement, and whether it holds."""
     for row in checks_table(found, output).itertuples():
-        reached, needed = (f"{value:.4g} {row.unit}".rstrip() for value in (row.reached, row.needed))
+        reached, needed = (_shown(value, row.unit) for value in (row.reached, row.needed))
         yield f"{row.requirement}: {reached}, {row.sense} {needed} needed: " + (
             "holds" if row.holds == "yes" else "DOES NOT HOLD"
         )
     if found.nearest is not None:
         yield nearest_in_words(found.nearest, output)
+
+
+def _shown(value: float, unit: str) -> str:
+    return f"{number_text(value)} {unit}".rstrip()
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
@@ -237,8 +241,8 @@ def _failures(found: Outcome, output: Output) -> tuple[Remark, ...]:
     table = checks_table(found, output)
     return tuple(
         Remark(
-            f"{row.requirement} does not hold: {row.reached:.4g} {row.unit} reached, {row.sense} {row.needed:.4g} "
-            f"{row.unit} asked ({row.margin_percent:.0f} %)."
+            f"{row.requirement} does not hold: {_shown(row.reached, row.unit)} reached, {row.sense} "
+            f"{_shown(row.needed, row.unit)} asked ({row.margin_percent:.0f} %)."
         )
         for row in table[table.holds == "NO"].itertuples()
     )
@@ -255,9 +259,20 @@ def _nearest(found: Outcome, output: Output) -> tuple[str | Table, ...]:
     there = pd.DataFrame([_check_row(one, output) for one in found.nearest.checks])
     return (
         nearest_in_words(found.nearest, output),
+        *_unmoved(found, found.nearest, output),
         Table(moves_table(found.nearest, output), _NEAREST),
         Table(there, "The requirements with these inputs."),
     )
+
+
+def _unmoved(found: Outcome, nearest: NearestDesign, output: Output) -> Iterator[str]:
+    """What does not hold and is not looked at again with the inputs moved: gears, strength and the like."""
+    table = checks_table(found, output)
+    moved = [one.requirement.name(output) for one in nearest.checks]
+    short = table[(table.holds == "NO") & ~table.requirement.isin(moved)]
+    if len(short):
+        names = "; ".join(short.requirement)
+        yield f"With the inputs moved these are not looked at again, and as it stands they do not hold: {names}."
 
 
 def nearest_in_words(nearest: NearestDesign, output: Output) -> str:
@@ -266,12 +281,13 @@ def nearest_in_words(nearest: NearestDesign, output: Output) -> str:
         decide = [one.requirement.name(output) for one in nearest.checks if abs(one.margin) < DECIDES]
         moves = ", ".join(_move_in_words(move, output) for move in nearest.moves)
         asked = f"What decides: {', '.join(decide)}."
-        return f"Nearest design of this cross-section that meets all requirements: {moves}. {asked}"
+        return f"Nearest design of this cross-section that meets all requirements that move with it: {moves}. {asked}"
     short = [one for one in nearest.checks if not one.holds]
     fails = ", ".join(f"{one.requirement.name(output)} ({100 * one.margin:.0f} %)" for one in short)
     return (
-        "No design of this cross-section was found that meets all requirements with these inputs between a third of "
-        f"their values and three times them. The one that comes nearest falls short in {fails}: try another radius. "
+        "No design of this cross-section was found that meets all requirements that move with these inputs, between a "
+        f"third of their values and three times them. The one that comes nearest falls short in {fails}: try another "
+        "radius. "
         f"{_proof_in_words(nearest.impossible, output)}"
     )
 

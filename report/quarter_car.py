@@ -10,7 +10,7 @@ import pandas as pd
 from figures.energy import powers_over_time, working_points
 from figures.files import File, figure_file, picture_name, table_file
 from figures.quarter_car import beside_the_thesis, car_inputs, comfort_setting, lent_powers, vehicle_over_time
-from figures.report import Picture, Section, Table
+from figures.report import Part, Picture, Section, Table
 from report.energy import stand_ins
 from units import GRAVITY
 from vehicle.energy import Scatter, scatter
@@ -50,33 +50,49 @@ def files(found: QuarterCarRides) -> Iterator[File]:
 
 def section(found: QuarterCarRides) -> Section:
     """What the tables of chapter 4 become with the actuator of the study."""
-    tables = [Table(beside(found, kind), words) for kind, words in _KINDS]
     return Section(
         "In the thesis's quarter car",
-        (
-            _text(),
-            *stand_ins(found.energy),
-            Picture(picture_name(INPUTS), "Dampings (a), straight lines in the place of Fig. 4.21; first road (b) "
-                    "(Fig. 4.22)."),
-            *tables,
-            Picture(picture_name(BESIDE), "Means over six roads; marks: the thesis's prototype, one road "
-                    "(Figs 4.54, 4.55)."),
-            Picture(picture_name(QUASI_TIME), "Force and power with the quasi-ideal actuator (Figs 4.23, 4.26, 4.29, "
-                    "4.32)."),
-            Picture(picture_name(QUASI_POINTS), "Its working points at suspension and rotor (Figs 4.25, 4.31, 4.34)."),
-            Picture(picture_name(TIME), "Force and power with the real actuator (Figs 4.40, 4.43, 4.46, 4.49)."),
-            Picture(picture_name(POINTS), "Its working points at suspension and rotor (Figs 4.42, 4.45, 4.48, 4.51)."),
-            Picture(picture_name(ALONE), "Minimum damping without the force loop (Fig. 4.52)."),
-            Picture(picture_name(ALONE_POINTS), "Working points without the force loop (Fig. 4.53)."),
-            Picture(picture_name(CAR), "Tyre load, acceleration as it is felt, and what spring and mass take and give "
-                    "back (Figs 4.24, 4.27, 4.30, 4.33, 4.40d, 4.41, 4.44, 4.47, 4.50)."),
-            Picture(picture_name(COMFORT), _lifted(found)),
-            Table(shaken_table(found.shaken), f"A force of {SHAKING.amplitude:g} N at {SHAKING.frequency:g} Hz on the "
-                  "body, maximum damping, printed numbers behind the bar (text to Figs 4.35 to 4.39)."),
-            Picture(picture_name(SHAKEN), "Force and power under the harmonic force (Figs 4.35 and 4.37)."),
-            Picture(picture_name(SHAKEN_POINTS), "Working points at suspension and rotor (Figs 4.36 and 4.38)."),
-            Picture(picture_name(LENT), "What spring and mass take and give back (Fig. 4.39)."),
-        ),
+        (_text(), *stand_ins(found.energy), *_energies(found), *_RIDES, *_car(found), *_under_a_force(found.shaken)),
+    )
+
+
+def _energies(found: QuarterCarRides) -> tuple[Part, ...]:
+    """What is driven, and the tables of its powers beside the printed ones."""
+    return (
+        Picture(picture_name(INPUTS), "Dampings (a), straight lines in the place of Fig. 4.21; first road (b) "
+                "(Fig. 4.22)."),
+        *(Table(beside(found, kind), words) for kind, words in _KINDS),
+        Picture(picture_name(BESIDE), "Means over six roads; marks: the thesis's prototype, one road "
+                "(Figs 4.54, 4.55)."),
+    )  # fmt: skip
+
+
+_RIDES = (
+    Picture(picture_name(QUASI_TIME), "Force and power with the quasi-ideal actuator (Figs 4.23, 4.26, 4.29, 4.32)."),
+    Picture(picture_name(QUASI_POINTS), "Its working points at suspension and rotor (Figs 4.25, 4.31, 4.34)."),
+    Picture(picture_name(TIME), "Force and power with the real actuator (Figs 4.40, 4.43, 4.46, 4.49)."),
+    Picture(picture_name(POINTS), "Its working points at suspension and rotor (Figs 4.42, 4.45, 4.48, 4.51)."),
+    Picture(picture_name(ALONE), "Minimum damping without the force loop (Fig. 4.52)."),
+    Picture(picture_name(ALONE_POINTS), "Working points without the force loop (Fig. 4.53)."),
+)
+
+
+def _car(found: QuarterCarRides) -> tuple[Part, ...]:
+    """What tyre, body, spring and mass do meanwhile."""
+    return (
+        Picture(picture_name(CAR), "Tyre load, acceleration as it is felt, and what spring and mass take and give "
+                "back (Figs 4.24, 4.27, 4.30, 4.33, 4.40d, 4.41, 4.44, 4.47, 4.50)."),
+        Picture(picture_name(COMFORT), _lifted(found)),
+    )  # fmt: skip
+
+
+def _under_a_force(shaken: EnergyOutcome) -> tuple[Part, ...]:
+    return (
+        Table(shaken_table(shaken), f"A force of {SHAKING.amplitude:g} N at {SHAKING.frequency:g} Hz on the body, "
+              "maximum damping, printed numbers behind the bar (text to Figs 4.35 to 4.39)."),
+        Picture(picture_name(SHAKEN), "Force and power under the harmonic force (Figs 4.35 and 4.37)."),
+        Picture(picture_name(SHAKEN_POINTS), "Working points at suspension and rotor (Figs 4.36 and 4.38)."),
+        Picture(picture_name(LENT), "What spring and mass take and give back (Fig. 4.39)."),
     )  # fmt: skip
 
 

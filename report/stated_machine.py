@@ -33,7 +33,7 @@ from losses.stage import LossMap
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
 from report.datasheet import DataSheet, Group, Row, group_tables, row
-from units import DEGREE, FACTORS, RPM
+from units import DEGREE, FACTORS, RPM, percent
 
 SHEET, TURN, ENVELOPE, DESIGNS = "sheet.csv", "turn.csv", "envelope.csv", "designs.csv"
 DRAWING, FIELD, MAP, OVER_SPEED, LOSSES, TURNING = (
@@ -206,8 +206,7 @@ def turning_section(turning: TurningMachine) -> Section:
     idle = f"; without current {turning.idle.ripple:.3g} Nm" if turning.idle.ripple > 0 else ""
     text = (
         f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak"
-        f"{idle}. The two torque routes differ by at most "
-        f"{turning.full.routes_apart:.2%}."
+        f"{idle}. The two torque routes differ by at most {percent(turning.full.routes_apart, 2)}."
     )
     return Section(
         "One turn",

@@ -17,7 +17,7 @@ from report.datasheet import plus_minus
 from uncertainty.budget import Budget, Uncertain
 from uncertainty.match_spread import DrawnMatch
 from uncertainty.stage import Uncertainty
-from units import written
+from units import percent, written
 
 TABLE, FIGURE = "uncertainty.csv", "match_moves"
 _PERCENT = 100.0
@@ -188,13 +188,13 @@ def _binding(found: Uncertainty, output: Output) -> str:
 
 def _shares(draws: Sequence[DrawnMatch | None], output: Output) -> str:
     found = Counter(one.binding.name(output) for one in draws if one is not None)
-    lengths = ", ".join(f"the {name} sets the length in {count / len(draws):.0%}" for name, count in found.items())
+    lengths = ", ".join(f"the {name} sets the length in {percent(count / len(draws))}" for name, count in found.items())
     on_bound = _share(draws, lambda one: one is not None and one.ratio_bound)
     return f"{lengths}, the ratio is on a bound in {on_bound}, {_share(draws, lambda one: one is None)} have no match"
 
 
 def _share(draws: Sequence[DrawnMatch | None], counts: Callable[[DrawnMatch | None], bool]) -> str:
-    return f"{sum(map(counts, draws)) / len(draws):.0%}"
+    return f"{percent(sum(map(counts, draws)) / len(draws))}"
 
 
 def _on_radius_bound(one: DrawnMatch | None) -> bool:

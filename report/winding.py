@@ -14,7 +14,7 @@ from electrical.winding_selection import Winding
 from electrical.winding_stage import WindingInputs, WindingOutcome
 from figures.files import File, table_file
 from figures.report import KeyNumber, KeyNumbers, Section, Table
-from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, drawn
+from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, drawn, percent
 
 TABLE, ALTERNATIVES = "windings.csv", "winding_alternatives.csv"
 _SHOWN = 6  # turns either side of the chosen winding
@@ -131,8 +131,8 @@ def _alternatives_caption(inputs: WindingInputs) -> str:
     return (
         "What would be wound of each gauge and connection, and why it was chosen or not; the wires with their enamel "
         f"may fill {limits.insulated_fill:g} of a coil side, and the current round a delta may lose "
-        f"{limits.circulating_share:.0%} of the copper loss, at the nominal current density and the base speed that is "
-        f"asked for. In {ALTERNATIVES} too."
+        f"{percent(limits.circulating_share)} of the copper loss, at the nominal current density and the base speed "
+        f"that is asked for. In {ALTERNATIVES} too."
     )
 
 

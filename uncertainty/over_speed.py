@@ -19,9 +19,8 @@ import numpy as np
 from electrical.braking import strongest_braking
 from electrical.dq import DriveLimits, maximum_power, torque_speed_envelope
 from electrical.flux_map_machine import FluxMapMachine
+from uncertainty.powers import LITTLE, power
 from uncertainty.wound_slopes import Quantities
-
-_LITTLE = 0.01  # relative, of a constant
 
 Reading = Callable[[FluxMapMachine], float]
 Powers = dict[str, float]  # p_k by the names of x_k in ``Quantities``, dimensionless
@@ -54,11 +53,7 @@ class OverSpeed:
 
     def powers(self, read: Reading) -> Powers:
         """p_k of what is read of a machine, a positive number [any unit]."""
-        return {name: self._log(read(more) / read(less)) for name, more, less in self._moved()}
-
-    @staticmethod
-    def _log(ratio: float) -> float:
-        return float(np.log(ratio) / np.log((1 + _LITTLE) / (1 - _LITTLE)))
+        return {name: power(read(more), read(less)) for name, more, less in self._moved()}
 
     def _moved(self) -> Iterator[tuple[str, FluxMapMachine, FluxMapMachine]]:
         """One constant after the other a little larger and a little smaller."""
@@ -68,7 +63,7 @@ class OverSpeed:
             ("loaded_inductance_q", self._with_inductance_q),
             ("resistance", self._with_resistance),
         ):
-            yield name, change(_LITTLE), change(-_LITTLE)
+            yield name, change(LITTLE), change(-LITTLE)
 
     def _with_flux(self, change: float) -> FluxMapMachine:
         return replace(self.machine, psi_d=self.machine.psi_d + change * self.loaded.loaded_flux)

@@ -125,20 +125,18 @@ def tolerances_stage(
     Raises FieldSolutionError, and GeometryError for a tolerance that the machine cannot be built with.
     """
     operated, machine = operated_machine(flux_map, winding, windings), winding.wound.dimensions
-    states = {name: StateTask(case, machine, state) for name, state in _states(operated, losses).items()}
-    states |= _magnet_states(case, winding.wound, magnets)
+    states = _drawn_states(case, machine, operated, losses) | _magnet_states(case, winding.wound, magnets)
     found = workers.map("tolerances", solve_slopes, _slope_tasks(machine, states, tolerances.deviations))
-    looked_at = {name: states[name] for name in (NO_LOAD, FULL, QUADRATURE, OPPOSED, KNEE) if name in states}
+    looked_at = {name: states[name] for name in _MESHED if name in states}
     errors = workers.map("mesh of the tolerances", mesh_errors, looked_at)
     length, materials = winding.wound.active_length, parts.materials
+    iron_loss, cogging = _iron_loss(found) * length, gap_stress.cogging * length
+    slopes = [(one, _slopes_of(one, found, states, machine)) for one in tolerances.deviations]
     return ToleranceOutcome(
         tolerances=tolerances,
-        values=values_of(
-            operated, winding, _iron_loss(found) * length, gap_stress.cogging * length, magnets, materials
-        ),
+        values=values_of(operated, winding, iron_loss, cogging, magnets, materials),
         sensitivities=tuple(
-            Sensitivity(one, relative_slopes(one, _slopes_of(one, found, states, machine), operated, materials))
-            for one in tolerances.deviations
+            Sensitivity(one, relative_slopes(one, field, operated, materials)) for one, field in slopes
         ),
         mesh=_mesh(errors, operated, flux_map, gap_stress),
         rated_speed=operated.speed,
@@ -147,8 +145,17 @@ def tolerances_stage(
     )
 
 
+_MESHED = (NO_LOAD, FULL, QUADRATURE, OPPOSED, KNEE)  # states whose mesh is looked at
+
+
+def _drawn_states(
+    case: FieldCase, machine: Machine, operated: OperatedMachine, losses: LossMap | None
+) -> dict[str, StateTask]:
+    """What is solved of the field of the machine as drawn, by name."""
+    return {name: StateTask(case, machine, state) for name, state in _states(operated, losses).items()}
+
+
 def _states(operated: OperatedMachine, losses: LossMap | None) -> dict[str, FieldState]:
-    """What is solved of the field, by name."""
     nominal, full = (operated.ampere_turns(one) for one in (operated.nominal, operated.full))
     most = hypot(*full)
     loaded = FieldState(*nominal) if losses is None else LoadedIron(*nominal, losses.law, operated.frequency)

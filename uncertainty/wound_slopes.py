@@ -26,8 +26,8 @@ from losses.copper import copper_loss
 from magnetostatics.flux_map_stage import FluxMap
 from uncertainty.deviations import Deviation
 from uncertainty.field_slopes import FLUX_D, FLUX_Q, IRON_LOSS, RIPPLE, TORQUE
+from uncertainty.powers import LITTLE, LOG_STEP, power
 
-_LITTLE = 0.01  # relative, of a current over which the torque is differentiated
 NO_LOAD, NOMINAL, FULL, COGGING = "no load", "nominal", "full", "cogging"  # states of the field
 QUADRATURE = "full, on the q axis"
 KNEE, OPPOSED = "magnets at their knee", "magnets in their worst state"
@@ -102,9 +102,8 @@ class OperatedMachine:
     @property
     def elasticity(self) -> float:
         """e = d ln T / d ln I at the nominal current, dimensionless; 1 without saturation."""
-        current = float(np.hypot(*self.nominal)) * np.array([1 - _LITTLE, 1 + _LITTLE])
-        less, more = self.machine.torque(*mtpa_currents(self.machine, current))
-        return float(np.log(more / less) / np.log((1 + _LITTLE) / (1 - _LITTLE)))
+        current = float(np.hypot(*self.nominal)) * np.array([1 + LITTLE, 1 - LITTLE])
+        return power(*self.machine.torque(*mtpa_currents(self.machine, current)).tolist())
 
     @property
     def frequency(self) -> float:
@@ -129,10 +128,8 @@ class OperatedMachine:
         values = *self.machine.flux_linkage(*self.full), self.wound.phase_resistance
         slopes = np.array([flux_d, flux_q, resistance])
         size = float(np.abs(slopes).max()) or 1.0
-        more, less = (
-            self.base_speed(*(np.array(values) * (1 + way * _LITTLE * slopes / size)).tolist()) for way in (1, -1)
-        )
-        return float(np.log(more / less)) * size / (2 * _LITTLE)
+        moved = (np.array(values) * np.exp(step * slopes / size) for step in (LOG_STEP, -LOG_STEP))
+        return power(*(self.base_speed(*one.tolist()) for one in moved)) * size
 
     def base_speed_error(self, flux_d: float, flux_q: float) -> float:
         """Bound of the base speed, relative, from those of both linkages; flux_d, flux_q: relative, of any sign."""

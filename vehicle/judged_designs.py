@@ -15,8 +15,6 @@ import numpy as np
 from actuator.drive import LossLaw, MappedMotor, flat_limit
 from actuator.model import Actuator
 from actuator.parts import Ratio
-from control.errors import ControlError
-from control.force_loop import ForceLoop
 from drivetrain.pareto import non_dominated
 from drivetrain.whole_design import RatedDesign, RoadMachine
 from drivetrain.whole_search import WholeSearch
@@ -26,11 +24,9 @@ from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
 from vehicle.energy import RideEnergy, ride_energy
 from vehicle.errors import VehicleError
-from vehicle.models import Vehicle
-from vehicle.ride import Run, Scenario, simulate
 from vehicle.road_aims import road_costs
+from vehicle.road_runs import RoadTask, read_of_rides, road_task
 
-_STEP = 5e-4  # s, of the history: means of powers are taken over its samples
 _MASS, _EQUIVALENT_MASS = 0, 1  # among the objectives of a design
 
 
@@ -44,17 +40,6 @@ class DesignLoss(LossLaw):
         """[W], of that shape; torque: [Nm], any shape; speed: [rad/s], any shape."""
         frequency = self.machine.pole_pairs * np.asarray(speed) / (2 * pi)
         return self.machine.copper * np.square(torque) + np.asarray(self.machine.idle.at(frequency))
-
-
-@dataclass(frozen=True)
-class JudgeTask:
-    """A design that is driven: vehicle, roads, commands, actuator and its force loop."""
-
-    vehicle: Vehicle
-    road: Scenario
-    commands: tuple[DamperCurve, ...]
-    actuator: Actuator
-    loop: ForceLoop
 
 
 @dataclass(frozen=True)
@@ -123,9 +108,8 @@ def _name(place: int, solved: int) -> str:
     return f"design {place + 1}" if place < solved else f"front {place - solved + 1}"
 
 
-def _task(case: RideCase, own: DesignedActuator, rated: RatedDesign, machine: RoadMachine) -> JudgeTask:
-    road = replace(case.road[0], time_step=min(case.road[0].time_step, _STEP))
-    return JudgeTask(case.vehicle, road, case.damping, actuator_of_design(own.actuator, rated, machine), own.loop)
+def _task(case: RideCase, own: DesignedActuator, rated: RatedDesign, machine: RoadMachine) -> RoadTask:
+    return road_task(case, actuator_of_design(own.actuator, rated, machine), own.loop)
 
 
 def actuator_of_design(own: Actuator, rated: RatedDesign, machine: RoadMachine) -> Actuator:
@@ -144,13 +128,9 @@ def actuator_of_design(own: Actuator, rated: RatedDesign, machine: RoadMachine) 
     )
 
 
-def driven(task: JudgeTask) -> tuple[RideEnergy, ...] | str:
+def driven(task: RoadTask) -> tuple[RideEnergy, ...] | str:
     """The energy of a design with every command, or why it cannot be driven."""
-    runs = [Run(task.vehicle, command, task.road, task.actuator, task.loop) for command in task.commands]
-    try:
-        return tuple(ride_energy(one) for one in simulate(runs))
-    except (ControlError, VehicleError) as error:
-        return str(error)
+    return read_of_rides(task, ride_energy)
 
 
 def _judged(

@@ -15,7 +15,6 @@ from math import inf, log, pi
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from control.errors import ControlError
 from drivetrain.matching import MatchInputs
 from drivetrain.whole_design import Aims, RatedDesign, RoadMachine, WholeProblem
 from tasks import Workers
@@ -23,19 +22,12 @@ from vehicle.demands import RideCase
 from vehicle.designed import DesignedActuator
 from vehicle.energy import ride_energy
 from vehicle.errors import VehicleError
-from vehicle.ride import RideHistory, Run, simulate
+from vehicle.ride import RideHistory
+from vehicle.road_runs import RoadTask, read_of_rides, road_task
 
 _TELLS = 1e-2  # relative: a road of 30 s tells no smaller difference of comfort or road holding
-_STEP = 5e-4  # s, of the history: means of powers are taken over its samples
 _POWERS = (1.0, 2.0, 1.5)  # of the speed in the losses of hysteresis, eddies and excess
 _LIGHTEST, _COUNT = 0.15, 6  # of the largest allowed equivalent mass; how many masses are driven
-
-
-@dataclass(frozen=True)
-class RoadTask:
-    """A run with every command."""
-
-    runs: tuple[Run, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +102,7 @@ def road_response_stage(
     ride not possible, are left out. Raises VehicleError where fewer than two remain.
     """
     masses = np.geomspace(_LIGHTEST, 1.0, _COUNT) * inputs.scales.equivalent_mass
-    tasks = {f"{mass:.3g} kg": RoadTask(_runs(case, own, float(mass))) for mass in masses}
+    tasks = {f"{mass:.3g} kg": _task(case, own, float(mass)) for mass in masses}
     found = dict(zip(masses, workers.map("equivalent masses on the road", driven_mass, tasks).values(), strict=True))
     kept = {mass: one for mass, one in found.items() if not isinstance(one, str)}
     if len(kept) < 2:
@@ -119,18 +111,13 @@ def road_response_stage(
     return RoadResponse(own.actuator.ratio.nominal, np.array(list(kept)), np.array(list(kept.values())))
 
 
-def _runs(case: RideCase, own: DesignedActuator, mass: float) -> tuple[Run, ...]:
-    road = replace(case.road[0], time_step=min(case.road[0].time_step, _STEP))
-    actuator = replace(own.actuator, equivalent_mass=mass)
-    return tuple(Run(case.vehicle, command, road, actuator, own.loop) for command in case.damping)
+def _task(case: RideCase, own: DesignedActuator, mass: float) -> RoadTask:
+    return road_task(case, replace(own.actuator, equivalent_mass=mass), own.loop)
 
 
-def driven_mass(task: RoadTask) -> np.ndarray | str:
+def driven_mass(task: RoadTask) -> tuple[list[float], ...] | str:
     """Means of every command with one mass as in ``RoadResponse`` [SI], (commands, 7), or why it cannot be driven."""
-    try:
-        return np.array([_means(one) for one in simulate(task.runs)])
-    except (ControlError, VehicleError) as error:
-        return str(error)
+    return read_of_rides(task, _means)
 
 
 def _means(history: RideHistory) -> list[float]:

@@ -15,7 +15,7 @@ from bench.report.identified import identification_remarks
 from bench.report.simulated_figures import active_mode, chirp, impedance, in_the_loop, quadrant_maps, static_shunts
 from bench.simulated import BENCH_FORCE, BenchTests
 from figures.files import File, figure_file, picture_name, table_file
-from figures.report import Picture, Remark, Section, Table
+from figures.report import Part, Picture, Remark, Section, Table
 from units import FACTORS, GRAVITY, MICROHENRY, MILLIOHM, split_unit
 
 PARAMETERS, SHUNTS, LOOPS = "bench_parameters.csv", "bench_shunts.csv", "bench_loops.csv"
@@ -64,34 +64,62 @@ def section(found: BenchTests) -> Section:
     """Chapter 5, appendix B and the identification of section 4.3.1."""
     return Section(
         "On the benches of the thesis",
-        (
-            "What the benches of thesis chapter 5 would read of this actuator, simulated with its own description, and "
-            "read with the tools of “airgap analyse”. The thesis's numbers are measurements of its automotive "
-            "prototype. Mount, torque lag and friction are as good as what the study states of them.",
-            Table(lumped_table(found), "Lumped parameters (Table B.1)."),
-            Table(shunt_table(found), f"Shunted machine behind a diode bridge (Table 5.1). The power is that at "
-                  f"{BENCH_FORCE:g} N, where the thesis's own rows ended. The printed open circuit is a straight line "
-                  "through a curve that bends; its short circuit fits no model of its other rows."),
-            Picture(picture_name(STATIC), "Force (a) and conversion efficiency (b) at constant speed (Fig. 5.4)."),
-            Picture(picture_name(QUADRANTS), _best_words(found)),
-            Picture(picture_name(IMPEDANCE), "Mechanical impedance at 1 mm of stroke: shunted (Figs 5.9 and B.2), and "
-                    "with a damping asked for without force loop (Fig. 5.10)."),
-            Picture(picture_name(CHIRP), "The chirp over time (Fig. 5.12)."),
-            Picture(picture_name(ACTIVE), _resonance_words(found)),
-            Table(parameter_table(found), "Parameters identified from the loops below (Table 4.2), 90 % intervals."),
-            *(Remark(line) for line in identification_remarks(found.identification)),
-            *_missed(found),
-            Table(match_table(found), "The identified model beside the loops (Table 4.3): gears, dry friction and "
-                  "a ratio that varies are in the loops and not in the model."),
-            Picture(picture_name(FORCE_LOOPS), "Force over stroke and over time (Figs 4.19 and 4.20)."),
-            Table(loop_table(found), "In the loop with the thesis's quarter car, 1000 Ns/m asked for (section 5.5); "
-                  "“airgap hil” runs it by the clock."),
-            Picture(picture_name(HIL), "In the loop: heights, stroke, force, felt acceleration, road holding "
-                    "(Fig. 5.16), powers and battery current (Fig. 5.17)."),
-            Table(sound_table(), "Sound pressure levels measured in the thesis (Table 5.2). None is computed: nothing "
-                  "here knows how a casing radiates; “airgap analyse sound” reads one's own records."),
-        ),
+        (_TEXT, *_steady(found), *_over_frequency(found), *_identified(found), *_in_the_loop(found), _sound()),
+    )
+
+
+_TEXT = (
+    "What the benches of thesis chapter 5 would read of this actuator, simulated with its own description, and read "
+    "with the tools of “airgap analyse”. The thesis's numbers are measurements of its automotive prototype. Mount, "
+    "torque lag and friction are as good as what the study states of them."
+)
+
+
+def _steady(found: BenchTests) -> tuple[Part, ...]:
+    """At constant speed, shunted and controlled."""
+    return (
+        Table(lumped_table(found), "Lumped parameters (Table B.1)."),
+        Table(shunt_table(found), f"Shunted machine behind a diode bridge (Table 5.1). The power is that at "
+              f"{BENCH_FORCE:g} N, where the thesis's own rows ended. The printed open circuit is a straight line "
+              "through a curve that bends; its short circuit fits no model of its other rows."),
+        Picture(picture_name(STATIC), "Force (a) and conversion efficiency (b) at constant speed (Fig. 5.4)."),
+        Picture(picture_name(QUADRANTS), _best_words(found)),
     )  # fmt: skip
+
+
+def _over_frequency(found: BenchTests) -> tuple[Part, ...]:
+    return (
+        Picture(picture_name(IMPEDANCE), "Mechanical impedance at 1 mm of stroke: shunted (Figs 5.9 and B.2), and "
+                "with a damping asked for without force loop (Fig. 5.10)."),
+        Picture(picture_name(CHIRP), "The chirp over time (Fig. 5.12)."),
+        Picture(picture_name(ACTIVE), _resonance_words(found)),
+    )  # fmt: skip
+
+
+def _identified(found: BenchTests) -> tuple[Part, ...]:
+    """Parameters from force loops, and how well they describe them."""
+    return (
+        Table(parameter_table(found), "Parameters identified from the loops below (Table 4.2), 90 % intervals."),
+        *(Remark(line) for line in identification_remarks(found.identification)),
+        *_missed(found),
+        Table(match_table(found), "The identified model beside the loops (Table 4.3): gears, dry friction and a ratio "
+              "that varies are in the loops and not in the model."),
+        Picture(picture_name(FORCE_LOOPS), "Force over stroke and over time (Figs 4.19 and 4.20)."),
+    )  # fmt: skip
+
+
+def _in_the_loop(found: BenchTests) -> tuple[Part, ...]:
+    return (
+        Table(loop_table(found), "In the loop with the thesis's quarter car, 1000 Ns/m asked for (section 5.5); "
+              "“airgap hil” runs it by the clock."),
+        Picture(picture_name(HIL), "In the loop: heights, stroke, force, felt acceleration, road holding (Fig. 5.16), "
+                "powers and battery current (Fig. 5.17)."),
+    )  # fmt: skip
+
+
+def _sound() -> Table:
+    return Table(sound_table(), "Sound pressure levels measured in the thesis (Table 5.2). None is computed: nothing "
+                 "here knows how a casing radiates; “airgap analyse sound” reads one's own records.")  # fmt: skip
 
 
 # Table 5.2: velocity [mm/s], frequency [Hz] (0: constant), levels in front and at the side [dBA]

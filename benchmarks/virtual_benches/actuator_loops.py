@@ -5,7 +5,7 @@
 
 z is the imposed stroke, i the q-axis current that a damping logic asks for (thesis 4.3.1): K_t,nom i = tau c z'.
 Integrated by LSODA (or Radau's method) with its own choice of steps: no step, order or event is shared with a model
-that is fitted.
+that is fitted, only the names of what is sought.
 """
 
 from __future__ import annotations
@@ -15,6 +15,17 @@ from math import copysign, cos, pi, sin
 
 import numpy as np
 from scipy.integrate import solve_ivp
+
+from bench.force_loops import (
+    CONTACT,
+    LOSS,
+    MASS,
+    MOUNT_DAMPING,
+    PLAY,
+    STIFFNESS,
+    TORQUE_CONSTANT,
+    TRANSITION,
+)  # fmt: skip
 
 SAMPLING = 4000.0  # Hz, thesis section 4.3.1
 RAMP = 0.15  # s in which the amplitude grows, so that a loop starts at rest
@@ -37,6 +48,15 @@ class Truth:
     loss: float = 70 * 1.519
     mount_damping: float = 500 * 0.590
     torque_constant: float = 49.3e-3 * 0.866
+
+    @property
+    def sought(self) -> dict[str, float]:
+        """What an identification should find, SI by the names of ``bench.force_loops``."""
+        return {
+            MASS: self.mass, PLAY: self.play, STIFFNESS: self.stiffness, CONTACT: self.contact_damping,
+            TRANSITION: self.transition, LOSS: self.loss, MOUNT_DAMPING: self.mount_damping,
+            TORQUE_CONSTANT: self.torque_constant,
+        }  # fmt: skip
 
     def mount_force(self, deformation: float, rate: float) -> float:
         """F_m [N]."""

@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.virtual_benches.case import Answer, Bench
 from benchmarks.virtual_benches.hiding import Hidden, Layout, Setup, hide, measured
 from benchmarks.virtual_benches.instruments import Noise
+from benchmarks.virtual_benches.machine_tables import COPPER, SPEED, WINDING, table_layout, there_and_back
 from benchmarks.virtual_benches.machine_truth import Expansion, FullField, with_strengths
 from benchmarks.virtual_benches.truths import DRAWINGS
 from effects.machine_design import MachineAsBuilt
@@ -31,9 +32,6 @@ SYSTEMATIC = {
     "encoder_zero_deg": ("offset", 0.25),
 }
 VOLTAGE, COGGING, TORQUE, LINKAGE, RESISTANCE = 0.012, 0.0015, 0.008, 6e-6, 0.015  # V, Nm, Nm, Vs, mohm
-SPEED = 1000.0  # rpm
-WINDING = np.array([20.0, 40.0, 60.0, 80.0, 100.0])  # degC
-COPPER = 0.00393  # 1/K at 20 degC, IEC 60028
 
 
 @dataclass(frozen=True)
@@ -313,25 +311,12 @@ def _layouts(grid: Grid) -> tuple[Layout, ...]:
     loaded = [_with_currents(angle[part], currents[part]) for part in parts]
     emf, cogging = (np.arange(0.0, 360.0, step) for step in (grid.emf_step, grid.cogging_step))
     return (
-        _layout("back_emf", _there_and_back(emf, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
-        _layout("cogging", _there_and_back(cogging), {"torque_Nm": COGGING}),
-        _layout("locked_rotor", loaded[0], {"torque_Nm": TORQUE}),
-        _layout("flux_linkage", loaded[1], {f"dpsi_{x}_Vs": LINKAGE for x in "abc"}),
-        _layout("phase_resistance", {"winding_T_degC": WINDING}, {f"r_{x}_mohm": RESISTANCE for x in "abc"}),
+        table_layout("back_emf", there_and_back(emf, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
+        table_layout("cogging", there_and_back(cogging), {"torque_Nm": COGGING}),
+        table_layout("locked_rotor", loaded[0], {"torque_Nm": TORQUE}),
+        table_layout("flux_linkage", loaded[1], {f"dpsi_{x}_Vs": LINKAGE for x in "abc"}),
+        table_layout("phase_resistance", {"winding_T_degC": WINDING}, {f"r_{x}_mohm": RESISTANCE for x in "abc"}),
     )
-
-
-def _layout(kind: str, conditions: Mapping[str, np.ndarray], u: Mapping[str, float]) -> Layout:
-    def declared(responses: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        return {name: np.full(len(values), u[name]) for name, values in responses.items()}
-
-    return Layout(f"{kind}.csv", kind, conditions, {name: f"{size:g}" for name, size in u.items()}, declared)
-
-
-def _there_and_back(angles: np.ndarray, speed: bool = False) -> dict[str, np.ndarray]:
-    direction = np.repeat([1.0, -1.0], len(angles))
-    conditions = {"direction": direction, "angle_mech_deg": np.concatenate([angles, angles[::-1]])}
-    return conditions | ({"speed_rpm": direction * SPEED} if speed else {})
 
 
 def _with_currents(angle: np.ndarray, currents: np.ndarray) -> dict[str, np.ndarray]:

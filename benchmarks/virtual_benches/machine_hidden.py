@@ -66,7 +66,7 @@ def _all(name: str, sign: float = 1.0) -> Change:
 EFFECTS: Mapping[str, InTheField] = {
     "magnet_temperature": InTheField(8.0, 70.0, _warm),
     "recoil_permeability": InTheField(0.015, 0.1, _all("recoil")),
-    "airgap_change": InTheField(0.04e-3, 0.12e-3, _gap),
+    "bore_grinding": InTheField(0.04e-3, 0.12e-3, _gap),
     "static_eccentricity": InTheField(0.1, 0.4, _shift("stator_shift")),
     "dynamic_eccentricity": InTheField(0.1, 0.4, _shift("rotor_shift")),
     "lamination_stacking": InTheField(0.01, 0.08, _all("stacking", -1.0)),

@@ -19,6 +19,7 @@ from benchmarks.virtual_benches.case import GROUPS, Answer, Bench, Series
 from benchmarks.virtual_benches.hiding import FREE, OUTSIDE, SEVERAL, SMALL, Layout, Setup, log_uniform, measured, white
 from benchmarks.virtual_benches.instruments import Noise, scan_shapes
 from benchmarks.virtual_benches.machine_hidden import MOVED, SYSTEMATIC, TOLERANCE, Solved, as_toleranced
+from benchmarks.virtual_benches.machine_tables import COPPER, SPEED, WINDING, table_layout, there_and_back
 from benchmarks.virtual_benches.truths import (
     DEGREE,
     DRAWINGS,
@@ -33,10 +34,7 @@ from benchmarks.virtual_benches.truths import (
 
 SOLVED = Path(__file__).parent / "solved"
 RPM = np.pi / 30
-SPEED = 1000.0  # rpm
 EMF_STEP, COGGING_STEP = 3.0, 2.25  # deg
-WINDING = np.array([20.0, 40.0, 60.0, 80.0, 100.0])  # degC
-COPPER = 0.00393  # 1/K at 20 degC, IEC 60028
 THERMOMETER = 0.3  # K, scatter of the logged temperature of the winding
 VOLTAGE, COGGING, TORQUE, LINKAGE, RESISTANCE = 0.012, 0.0015, 0.008, 6e-6, 0.015  # V, Nm, Nm, Vs, mohm
 PHASE_SCATTER = 0.004  # relative, of the resistance of a phase
@@ -145,25 +143,12 @@ def layouts(drawing: Drawing) -> tuple[Layout, ...]:
     locked = len(drawing.locked_angles) * len(drawing.locked_currents)
     emf, cogging = (np.arange(0.0, 360.0, step) for step in (EMF_STEP, COGGING_STEP))
     return (
-        _layout("back_emf", _there_and_back(emf, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
-        _layout("cogging", _there_and_back(cogging), {"torque_Nm": COGGING}),
-        _layout("locked_rotor", _with_currents(states[:locked]), {"torque_Nm": TORQUE}),
-        _layout("flux_linkage", _with_currents(states[locked:-1]), {f"dpsi_{x}_Vs": LINKAGE for x in "abc"}),
-        _layout("phase_resistance", {"winding_T_degC": WINDING}, {f"r_{x}_mohm": RESISTANCE for x in "abc"}),
+        table_layout("back_emf", there_and_back(emf, speed=True), {f"v_{x}_V": VOLTAGE for x in "abc"}),
+        table_layout("cogging", there_and_back(cogging), {"torque_Nm": COGGING}),
+        table_layout("locked_rotor", _with_currents(states[:locked]), {"torque_Nm": TORQUE}),
+        table_layout("flux_linkage", _with_currents(states[locked:-1]), {f"dpsi_{x}_Vs": LINKAGE for x in "abc"}),
+        table_layout("phase_resistance", {"winding_T_degC": WINDING}, {f"r_{x}_mohm": RESISTANCE for x in "abc"}),
     )
-
-
-def _layout(kind: str, conditions: Mapping[str, np.ndarray], u: Mapping[str, float]) -> Layout:
-    def declared(responses: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        return {name: np.full(len(values), u[name]) for name, values in responses.items()}
-
-    return Layout(f"{kind}.csv", kind, conditions, {name: f"{size:g}" for name, size in u.items()}, declared)
-
-
-def _there_and_back(angles: np.ndarray, speed: bool = False) -> dict[str, np.ndarray]:
-    direction = np.repeat([1.0, -1.0], len(angles))
-    conditions = {"direction": direction, "angle_mech_deg": np.concatenate([angles, angles[::-1]])}
-    return conditions | ({"speed_rpm": direction * SPEED} if speed else {})
 
 
 def _with_currents(states: Sequence[tuple[float, tuple[float, float, float]]]) -> dict[str, np.ndarray]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from effects.base import DesignEffect
 from effects.damper_design import Damper
 from effects.dq_design import DqMachine
+from effects.electrical.places import SERIES_RESISTANCE
 from effects.parameter import parameter
 from effects.prior import LogNormal
-from effects.signature import Odd, Power, Touches
 
 
 @dataclass(frozen=True)
@@ -20,17 +20,7 @@ class ContactResistance(DesignEffect):
     looks_like = "current and braking force fall at low total resistance, as with a warm winding"
     remedy = ("four-wire resistance at the shunt's own terminals", "tighten and measure again")
     designs = (Damper, DqMachine)
-    signature = (
-        Odd("damping_velocity.force", ("velocity",)),
-        Power("damping_velocity.force", "velocity", 1.0),
-        Touches("damping_shunt.damping"),
-        Touches("impedance.re"),
-        Touches("short_circuit.*"),
-        Touches("dq_supply.*"),
-        Touches("phase_resistance.resistance"),
-        Power("dq_operation.v_q", "i_q", 1.0),
-        Power("dq_operation.v_d", "i_d", 1.0),
-    )
+    signature = SERIES_RESISTANCE
     base_rate = 0.04
     base_rate_source = "engineering judgement: two-wire wiring or a loose screw, one bench in twenty-five"
 

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin
 
-from effects.base import DesignEffect
-from effects.machine.places import LEAKAGE
+from effects.machine.eccentricity import Eccentricity
 from effects.machine_design import MachineAsBuilt
-from effects.parameter import parameter
-from effects.prior import LogNormal, Uniform
 
 
 @dataclass(frozen=True)
-class DynamicEccentricity(DesignEffect):
+class DynamicEccentricity(Eccentricity):
     """The rotor stands beside the axis it turns about: the narrowest gap turns with it.
 
     The shift is ``share`` of the air gap in ``direction``, from the axis of magnet 0.
@@ -21,24 +17,10 @@ class DynamicEccentricity(DesignEffect):
 
     title = "dynamic eccentricity"
     looks_like = "faint cogging orders near multiples of the slots; even in its size for a machine of two alike halves"
-    remedy = ("run-out with a dial gauge", "bearing force", "back-EMF of single coils")
-    designs = (MachineAsBuilt,)
-    signature = LEAKAGE
     base_rate = 0.02
     base_rate_source = "judgement: bent or badly centred rotors of prototypes"
-    model_error = 0.02  # of a field solution on the mesh of a bench model, and of its expansion
-
-    share: float = parameter(
-        0.0, "1", prior=LogNormal(0.2, 0.5), low=0.0, high=0.45, source="gaps of small machines, 10 to 40 %"
-    )
-    direction: float = parameter(0.0, "rad", prior=Uniform(-pi, pi), low=-pi, high=pi, source="any")
-
-    @property
-    def is_null(self) -> bool:
-        return self.share == 0.0
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
         if self.is_null:
             return design
-        amount, (x, y) = self.share * design.machine.airgap, design.rotor_shift
-        return replace(design, rotor_shift=(x + amount * cos(self.direction), y + amount * sin(self.direction)))
+        return replace(design, rotor_shift=self.beyond(design.rotor_shift, design.machine.airgap))

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from effects.base import DesignEffect
+from effects.machine.grinding import ground_depth
 from effects.machine.places import FIELD
 from effects.machine_design import MachineAsBuilt
-from effects.parameter import parameter
-from effects.prior import LogNormal
-from units import MILLIMETRE
 
 
 @dataclass(frozen=True)
@@ -24,14 +22,7 @@ class MagnetGrinding(DesignEffect):
     base_rate = 0.01
     base_rate_source = "judgement: where fits are made by hand"
 
-    depth: float = parameter(
-        0.0,
-        "m",
-        prior=LogNormal(0.05 * MILLIMETRE, 0.6),
-        low=0.0,
-        high=0.3 * MILLIMETRE,
-        source="rotors ground after gluing, +-0.05 mm",
-    )
+    depth: float = ground_depth("rotors ground after gluing, +-0.05 mm")
 
     def on_design(self, design: MachineAsBuilt) -> MachineAsBuilt:
         return replace(design, magnet_grinding=design.magnet_grinding + self.depth)

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from effects.law_effects import ForceEffect
+from effects.mechanical.reversal import reversal_velocity
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power
-
-REVERSAL = 1e-3  # m/s, below it presliding rounds the reversal (Armstrong-Helouvry et al. 1994)
 
 
 @dataclass(frozen=True)
@@ -42,14 +41,7 @@ class CoulombFriction(ForceEffect):
         high=1e3,
         source="engineering judgement: seals and guides of suspension actuators, 1 to 50 N",
     )
-    reversal: float = parameter(
-        REVERSAL,
-        "m/s",
-        prior=LogNormal(REVERSAL, 0.7),
-        low=1e-5,
-        high=0.05,
-        source="textbook: presliding of lubricated contacts (Armstrong-Helouvry et al. 1994)",
-    )
+    reversal: float = reversal_velocity()
 
     def force(self, position, velocity):
         return self.level * np.tanh(velocity / self.reversal)

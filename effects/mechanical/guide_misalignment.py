@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from effects.law_effects import ForceEffect
-from effects.mechanical.coulomb_friction import REVERSAL
+from effects.mechanical.reversal import REVERSAL
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Power

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from effects.law_effects import ForceEffect
-from effects.mechanical.coulomb_friction import REVERSAL
+from effects.mechanical.reversal import reversal_velocity
 from effects.parameter import parameter
 from effects.prior import LogNormal
 from effects.signature import Odd, Power, Touches
@@ -60,14 +60,7 @@ class StribeckFriction(ForceEffect):
         high=1.0,
         source="textbook: lubricated contacts, 0.01 to 0.2 m/s (Armstrong-Helouvry et al. 1994)",
     )
-    reversal: float = parameter(
-        REVERSAL,
-        "m/s",
-        prior=LogNormal(REVERSAL, 0.7),
-        low=1e-5,
-        high=0.05,
-        source="textbook: presliding of lubricated contacts (Armstrong-Helouvry et al. 1994)",
-    )
+    reversal: float = reversal_velocity()
 
     def force(self, position, velocity):
         creeping = np.exp(-((velocity / self.stribeck_velocity) ** 2))

@@ -7,12 +7,12 @@ from math import pi
 
 from geometry.errors import GeometryError
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Length, Rim, Share, SunkMagnets
+from geometry.parts import Length, MagnetsOfRoundCore, Rim, Share
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class ConsequentPole(SunkMagnets):
+class ConsequentPole(MagnetsOfRoundCore):
     """Magnets of constant thickness with radial sides, all of one sign, let into a round rotor; lengths in m.
 
     The rotor repeats itself after two poles, so that north and south are not alike: a voltage may have even harmonics,

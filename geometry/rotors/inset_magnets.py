@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from geometry.errors import GeometryError
 from geometry.magnetisation import PARALLEL, Magnetisation
-from geometry.parts import Length, Rim, Share, SunkMagnets
+from geometry.parts import Length, MagnetsOfRoundCore, Rim, Share
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class InsetMagnets(SunkMagnets):
+class InsetMagnets(MagnetsOfRoundCore):
     """Magnets of constant thickness with radial sides, flush with the round rotor. Lengths in m."""
 
     poles: int

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
-from geometry.errors import GeometryError, in_mm
+from geometry.errors import GeometryError
 from geometry.magnetisation import Magnetisation
-from geometry.parts import Length, MagnetOnAxis, Rim, Share
+from geometry.parts import Length, MagnetsOfRoundCore, Rim, Share
 from geometry.plane_mesh import Drawing
 
 
 @dataclass(frozen=True)
-class SurfaceMagnets(MagnetOnAxis):
+class SurfaceMagnets(MagnetsOfRoundCore):
     """Magnets of constant thickness on a round core, lengths in m."""
 
     poles: int
@@ -20,15 +21,7 @@ class SurfaceMagnets(MagnetOnAxis):
     shaft_radius: Length
     arc_fraction: Share  # of the pole pitch
     magnetisation: Magnetisation
-
-    @property
-    def core_radius(self) -> float:
-        """Under the magnets [m]."""
-        return self.outer_radius - self.magnet_length
-
-    @property
-    def rim_radius(self) -> float:
-        return self.outer_radius
+    outer_name: ClassVar[str] = "rotor_outer_radius"
 
     @property
     def other_corners(self) -> str:
@@ -43,11 +36,7 @@ class SurfaceMagnets(MagnetOnAxis):
                 "magnet_arc_fraction must be at most 1 (neighbouring magnets touch), found "
                 f"{self.arc_fraction}: reduce it"
             )
-        if self.core_radius <= self.shaft_radius:
-            raise GeometryError(
-                f"the rotor core under the magnets ends at {in_mm(self.core_radius)}, inside the shaft of radius "
-                f"{in_mm(self.shaft_radius)}: enlarge rotor_outer_radius, or reduce magnet_length or shaft_radius"
-            )
+        self.check_core()
 
     def draw(self, rim: Rim) -> Drawing:
         """From the axis of magnet 0 to half a pole pitch; regions shaft, iron, magnet, (between)."""

@@ -4,19 +4,7 @@ import numpy as np
 import pytest
 
 from bench.errors import RecordError
-from bench.force_loops import (
-    CONTACT,
-    LOSS,
-    MASS,
-    MOUNT_DAMPING,
-    NOMINAL,
-    PLAY,
-    STIFFNESS,
-    TORQUE_CONSTANT,
-    TRANSITION,
-    ForceLoop,
-    identify_loops,
-)  # fmt: skip
+from bench.force_loops import NOMINAL, PLAY, ForceLoop, identify_loops
 from bench.identification import Unknown, identify
 from bench.impedance import ImpedancePoint
 from bench.lumped_fit import fit_lumped
@@ -27,11 +15,7 @@ from electrical.synchronous_machine import SynchronousMachine
 from vehicle.impedance import LumpedActuator
 
 TRUTH = Truth()
-SOUGHT = {
-    MASS: TRUTH.mass, PLAY: TRUTH.play, STIFFNESS: TRUTH.stiffness, CONTACT: TRUTH.contact_damping,
-    TRANSITION: TRUTH.transition, LOSS: TRUTH.loss, MOUNT_DAMPING: TRUTH.mount_damping,
-    TORQUE_CONSTANT: TRUTH.torque_constant,
-}  # fmt: skip
+SOUGHT = TRUTH.sought
 NOISE = 1.0  # N
 DRIVES = (Drive(15, 3e-3, 4000, 0.4), Drive(8, 6e-3, 3000, 0.4), Drive(30, 1e-3, 0, 0.3))
 

@@ -1,6 +1,7 @@
 """The outcome of a small machine: numbers that agree with each other, behind gears and as a direct drive."""
 
 import json
+from dataclasses import replace
 from math import pi
 from types import SimpleNamespace
 
@@ -228,6 +229,20 @@ def test_what_holds_everything_together_is_said(found):
     assert said.startswith("Nearest design" if found.nearest.holds else "No design")
     assert "outcome_nearest.csv" in [file.name for file in files(found, Wheel())]
     assert [move.now for move in found.nearest.moves][:2] == [found.active_length, found.features.transmission_ratio]
+
+
+def test_gears_that_do_not_hold_are_said_beside_the_nearest_design(found):
+    """The nearest design is searched by what the inputs move; gears are not among that."""
+
+    def said(outcome):
+        parts = section(outcome, Wheel(), None).content
+        return [part for part in parts if isinstance(part, str) and "not looked at again" in part]
+
+    strong = [replace(one, reached=2 * one.wanted) for one in found.gear_checks]
+    weak = [replace(strong[0], reached=0.5 * strong[0].wanted), *strong[1:]]
+    assert said(replace(found, gear_checks=tuple(strong), strength_checks=())) == []
+    (line,) = said(replace(found, gear_checks=tuple(weak), strength_checks=()))
+    assert line.endswith(f"do not hold: gears, safety {weak[0].kind.replace('_', ' ')}.")
 
 
 def test_the_outcome_is_written_and_read_again(found):

@@ -11,6 +11,7 @@ import pytest
 
 from figures.export import FieldFileError, read_vtu, to_grid, write_vtu
 from figures.report import (
+    Code,
     KeyNumber,
     KeyNumbers,
     Picture,
@@ -167,6 +168,14 @@ def test_headings_have_units(column, expected):
 )
 def test_numbers_are_written_plainly(value, expected):
     assert number_text(value) == expected
+
+
+def test_numbers_of_sentences_and_cells_have_minus_signs_and_code_and_names_do_not():
+    said = "-43 % (-2 of it) by ISO 6336-5, 2e-13, --jobs 4 and lamination-2"
+    sections = Section("signs", (said, Table(pd.DataFrame({"power": ["-15.7 ± 1.2"]}), "less: -1"), Code("x = -1")))
+    page = render_report((sections,), title="signs")
+    assert "<p>−43 % (−2 of it) by ISO 6336-5, 2e-13, --jobs 4 and lamination-2</p>" in page
+    assert "−15.7 ± 1.2</td>" in page and "less: −1</caption>" in page and "x = -1" in page
 
 
 def test_empty_report_is_a_page():

@@ -211,10 +211,11 @@ def test_envelopes_with_the_chosen_one_thick(assert_readable):
     speed = np.linspace(0, 1500, 40)
     torque = np.minimum(6.0, 4000 / np.maximum(speed, 1.0))
     envelope = SimpleNamespace(speed=speed, torque=torque, power=torque * speed)
-    names = {"7 turns, 22 wires": envelope, "5 turns, 31 wires": envelope}
-    figure = torque_speed(names, "7 turns, 22 wires", (RequiredPoint("peak force", 6643 * RPM, 6.0),))
+    seven, five = (f"{turns} wires in hand, star, 2 parallel paths" for turns in ("7 turns of 22", "5 turns of 31"))
+    demand = (RequiredPoint("peak force", 6643 * RPM, 6.0),)
+    figure = torque_speed({seven: envelope, five: envelope}, seven, demand)
     lines = {line.get_label(): line for line in figure.axes[0].lines}
-    assert lines["7 turns, 22 wires (chosen)"].get_linewidth() > lines["5 turns, 31 wires"].get_linewidth()
+    assert lines[f"{seven} (chosen)"].get_linewidth() > lines[five].get_linewidth()
     assert lines["peak force"].get_xdata()[0] == pytest.approx(6643)
     assert "rotor speed / rpm" in words(figure) and "power / kW" in words(figure)
     assert_readable(figure)

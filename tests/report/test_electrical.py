@@ -27,6 +27,7 @@ from tests.electrical.analytic_map import (
     Saturating,
     flux_map,
 )
+from tests.electrical.wires import series_star
 from units import RPM
 
 MAP = flux_map(Saturating())
@@ -94,6 +95,12 @@ def test_files_of_the_drive(driven, winding, tmp_path):
     assert sorted(path.stem for path in (folder / "figures").iterdir()) == sorted(pictures)
 
 
+@pytest.mark.parametrize(("turns", "strands", "said"), [(1, 1, "1 turn of 1 wire in hand, star"),
+                                                        (15, 11, "15 turns of 11 wires in hand, star")])  # fmt: skip
+def test_figures_count_the_wires_in_words(turns, strands, said):
+    assert drive._name(SimpleNamespace(field=SimpleNamespace(design=series_star(turns, strands)))) == said
+
+
 def test_the_peak_torque_is_one_number_in_the_report(driven, winding):
     said = f"{winding.peak_torque:.3f} ± {winding.peak_torque_error:.3f} Nm"
     assert said in drive.section(driven, winding, Wheel()).content[0]
@@ -131,6 +138,8 @@ def test_the_section_says_up_to_where_the_damping_holds(brake):
     assert (braking.summary_table(brake, Wheel())["holds up to"] == "no speed").iloc[0], "40 kNs/m are too much for it"
     brake = replace(brake, demand=replace(brake.demand, damping=0.5 * brake.damping(brake.hot)[0]))
     table = braking.summary_table(brake, Wheel())
+    slow = f"damping at {Wheel().at_speed(brake.speed[0])} / (kNs/m)"
+    assert table[slow].iloc[0] * 1e3 == pytest.approx(brake.damping(brake.cold)[0]), "each damping with its speed"
     cold, hot, controlled = (brake.held_up_to(one) for one in (brake.cold, brake.hot, brake.controlled))
     assert brake.poles[0] < brake.poles[1] and max(cold, hot) < controlled
     assert np.interp(hot, brake.speed, brake.damping(brake.hot)) == pytest.approx(brake.demand.damping, rel=1e-3)

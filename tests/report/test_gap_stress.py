@@ -47,7 +47,7 @@ def test_torques_are_told_from_peak_to_peak_and_by_orders():
     assert table.loc["overload", "mean_torque_Nm_per_m"] == pytest.approx(120.0)
     assert table.loc["overload", "ripple_peak_to_peak_Nm_per_m"] == pytest.approx(6.0)
     assert table.loc["nominal", "ripple_percent"] == pytest.approx(4.0)
-    assert table.iloc[0, -1].startswith("6: 2.00%")
+    assert table.iloc[0, -1].startswith("6: 2.00 %")
 
 
 def test_waves_are_told_by_both_orders_and_in_every_state():

@@ -99,8 +99,8 @@ def test_the_budget_speaks_of_the_output(output, words):
 
 def test_shares_count_every_draw():
     text = uncertainty_report._binding(certainty(), Wheel())
-    assert "the overload force sets the length in 75%" in text and "25% have no match" in text
-    assert "100% lie on an end of the investigated radii" in text
+    assert "the overload force sets the length in 75 %" in text and "25 % have no match" in text
+    assert "100 % lie on an end of the investigated radii" in text
     table = uncertainty_report.spread_table(certainty(), Wheel())
     lengths = table[(table.number == "active length") & (table.choice == "chosen machine")]
     assert float(lengths["mean"].iloc[0]) == pytest.approx(45.667, abs=1e-3)

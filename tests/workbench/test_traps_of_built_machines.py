@@ -40,7 +40,7 @@ def test_two_tables_of_one_measurement_at_other_angles_are_seen(tmp_path):
     (tmp_path / "campaign.toml").write_text('[campaign]\nholdout = "none"\n' + both, encoding="utf-8")
     found = read_campaign(tmp_path)
     (said,) = checks_of(found)
-    assert "the same" in said and "angle_mech differ by up to 4.6%" in said
+    assert "the same" in said and "angle_mech differ by up to 4.6 %" in said
     assert checks_of(replace(found, tables=found.tables[:1])) == ()
 
 

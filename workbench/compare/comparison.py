@@ -17,6 +17,7 @@ from workbench.findings import ChannelScore, Comparison, Pull, SignatureMatch
 from workbench.likelihood.bench import Bench, bench_of, sealed_tables
 from workbench.likelihood.noise import measured_noise
 from workbench.likelihood.nuisance import DeclaredError, InstrumentError, TolerancedInput
+from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.signatures import candidates, nearest, signatures_of
 from workbench.likelihood.whitening import whitener
 from workbench.models.model import Model
@@ -84,6 +85,7 @@ def scoreboard(bench: Bench) -> tuple[ChannelScore, ...]:
     if stack.size == bench.stack.size:
         white, noise = bench.white, bench.noise
     else:
+        stack = replace(stack, left_open=left_open(bench.model, stack))
         noise = measured_noise(stack, nominal)
         white = whitener(stack, noise)
     squares = white(stack.y - fitted) ** 2

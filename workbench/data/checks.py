@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from units import percent
 from workbench.data.column_units import factor, split_unit
 from workbench.data.repeats import matched_rows
 from workbench.data.table import Campaign, Response, Table
@@ -57,7 +58,7 @@ def _clipping(table: Table) -> list[str]:
             share = float(np.mean(r.values == edge))
             if table.rows > 20 and share > CLIPPED and np.ptp(r.values) > 0:
                 found.append(
-                    f"{table.file}: {share:.0%} of {r.name} stand at exactly {edge / r.scale:g} {r.unit}: clipped?"
+                    f"{table.file}: {percent(share)} of {r.name} stand at exactly {edge / r.scale:g} {r.unit}: clipped?"
                 )
     return found
 
@@ -75,7 +76,7 @@ def _phase_sum(table: Table) -> list[str]:
     mean = np.mean(a.values + b.values + c.values) / (np.sqrt(3) * np.mean(a.random) / np.sqrt(table.rows))
     found = []
     if spread > LOUD * u and spread > 0.005:
-        found.append(f"{table.file}: the phase voltages differ by {spread:.1%} in rms: unequal phases or gains")
+        found.append(f"{table.file}: the phase voltages differ by {percent(spread, 1)} in rms: unequal phases or gains")
     if abs(mean) > LOUD * 3:
         found.append(f"{table.file}: the sum of the phase voltages has a mean: a voltage channel has an offset")
     return found
@@ -246,7 +247,8 @@ def _same_readings(campaign: Campaign) -> list[str]:
                 if apart > UNLIKE * range_ > 0:
                     found.append(
                         f"{one.file} and {other.file} hold the same {len(shared)} readings of {name}, but their "
-                        f"{condition} differ by up to {apart / range_:.1%} of its range: one of them was changed"
+                        f"{condition} differ by up to {percent(apart / range_, 1)} of its range: one of them was "
+                        "changed"
                     )
     return found
 

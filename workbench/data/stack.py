@@ -29,12 +29,16 @@ class Channel:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """tables: with the rows that are used;  y, u: reading and declared random uncertainty, SI (n,)"""
+    """tables: with the rows that are used;  y, u: reading and declared random uncertainty, SI (n,)
+
+    left_open: what the model cannot say of the readings of a channel, one standard deviation of each, SI (n, L)
+    """
 
     tables: tuple[Table, ...]
     channels: tuple[Channel, ...]
     y: np.ndarray
     u: np.ndarray
+    left_open: np.ndarray
 
     def vector(self, answers: Sequence[Mapping[str, np.ndarray]]) -> np.ndarray:
         """Response columns of every table as one vector (n,)."""
@@ -57,7 +61,19 @@ def stacked(tables: Sequence[Table]) -> Stack:
     responses = [table.responses[c.response] for c in channels for table in [tables[c.table]]]
     y = np.concatenate([r.values for r in responses]) if responses else np.zeros(0)
     u = np.concatenate([r.random for r in responses]) if responses else np.zeros(0)
-    return Stack(tuple(tables), tuple(channels), y, u)
+    return Stack(tuple(tables), tuple(channels), y, u, np.zeros((len(y), 0)))
+
+
+def part_of(stack: Stack, masks: Sequence[np.ndarray]) -> Stack:
+    """The chosen rows (one mask a table) of a stack, what is known of them as it is in the whole."""
+    rows = rows_in(stack, masks)
+    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, masks)])
+    return replace(part, u=stack.u[rows], left_open=stack.left_open[rows])
+
+
+def rows_in(stack: Stack, masks: Sequence[np.ndarray]) -> np.ndarray:
+    """One mask a table -> one of the rows of the stack (n,)."""
+    return np.concatenate([masks[c.table] for c in stack.channels])
 
 
 def rows_of(table: Table, chosen: np.ndarray) -> Table:

@@ -3,6 +3,8 @@ with an unknown law in the place of all."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from effects.base import Effect
@@ -12,6 +14,7 @@ from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.tried import Progress, Promise, Search, Set, fit_set, label_of, start_from
 from workbench.likelihood.fit import with_parameters
 from workbench.likelihood.unknown_laws import LAWS
+from workbench.likelihood.whitening import law_error
 
 EXCHANGED = 2  # others that are tried in the place of each effect of what leads
 PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
@@ -52,19 +55,22 @@ def _instead_of_pull(search: Search, whole: Hypothesis, number: int) -> list[Pro
 def _twins(
     search: Search, whole: Hypothesis, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray, left: np.ndarray
 ) -> list[Promise]:
-    """Starts with another effect that does most nearly what a fit does beyond what is left of it (n,), nearest first;
-    with unknown laws likewise, as two effects may take the place of a law that nobody knows.
+    """Starts with another effect that does most nearly what a fit does beyond what is left of it (n,), nearest first,
+    tolerances making good what they can; with unknown laws likewise, as two effects may take the place of a law that
+    nobody knows.
 
     rest, z_rest, x: what stays of the fit
     """
     problem = whole.problem
-    target = problem.white(problem.predictor.predict(whole.fit.x, whole.effects) - left)
+    tolerances = law_error(slice(None), whole.fit.jacobian[:, : len(x)])
+    white = replace(problem.white, laws=(*problem.white.laws, tolerances))
+    target = white(problem.predictor.predict(whole.fit.x, whole.effects) - left)
     starts = []
     kept = frozenset(effect.name() for effect in rest)
     for other in search.signatures.names:
         if other in whole.names or not search.beliefs.may_join(other, kept):
             continue
-        nearest = min((s.nearest(target, problem.white) for s in search.signatures.found[other]), key=lambda n: n[0])
+        nearest = min((s.nearest(target, white) for s in search.signatures.found[other]), key=lambda n: n[0])
         if nearest[0] < ALMOST * float(np.linalg.norm(target)):
             starts.append((nearest[0], other, *nearest[1:]))
     starts.sort(key=lambda start: start[:2])

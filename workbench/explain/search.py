@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from heapq import heapify, heappop, heappush
 
 from effects.base import Effect
-from workbench.believed import MOST
+from workbench.believed import MOST, PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import cap, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
@@ -23,6 +23,7 @@ from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
+RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
 EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
 PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give a part of it besides
 
@@ -71,7 +72,25 @@ def _effects_alone(search: Search, progress: Progress) -> None:
             if names in search.fitted and names not in search.expanded:
                 expand(search, search.fitted[names], heap)
         exchange(search, leader, progress)
+        _rivals(search, heap, leader, progress)
         _best_first(search, heap, progress)
+
+
+def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress) -> None:
+    """What leads is weighed against the most promising sets that lack one of its effects: where tolerances are pulled
+    far and sizes are large, promises were too modest by up to 25 nats."""
+    for name in sorted(leader):
+        for promise in sorted(p for p in heap if name not in p.every)[:RIVALS]:
+            if promise.every not in search.fitted and promise.label not in search.failed:
+                progress("fitting " + promise.label)
+                fit_set(search, promise)
+                if len(promise.every) < MOST and search.log_posterior(promise.every) > _least(search):
+                    expand(search, search.fitted[promise.every], heap)
+
+
+def _least(search: Search) -> float:
+    """ln posterior of a fit from which on it is worth to look for more beside it."""
+    return search.log_posterior(search.ranked[0]) - PLAIN
 
 
 def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None:

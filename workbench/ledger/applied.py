@@ -24,13 +24,14 @@ from scipy.linalg import block_diag
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.data.stack import Channel, Stack, rows_of, stacked
+from workbench.data.stack import Channel, Stack, part_of, rows_in, rows_of, stacked
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.bench import CONDITION_STEP
 from workbench.likelihood.noise import Noise, measured_noise
 from workbench.likelihood.nuisance import Nuisance
+from workbench.likelihood.own_errors import left_open, numerical
 from workbench.likelihood.predictor import STEP
 from workbench.likelihood.whitening import Whitener, whitener
 from workbench.models.model import Model
@@ -144,17 +145,17 @@ class Prediction:
 def predicted(known: Known, calibrations: Sequence[Nuisance], tables: Sequence[Table]) -> Prediction:
     """What a known device should show in some tables, the instruments' own calibration found from them."""
     stack, c = stacked(tables), np.zeros(len(calibrations))
-    shapes = _numerical(known.nominal, stack)
+    shapes = numerical(known.nominal, stack)
     asked = _Asked(known.with_weights(shapes.shape[1]), tuple(calibrations))
     masks = _whole_rows(stack, np.isfinite(readings(asked.model_at(np.zeros(known.size), c), stack)))
-    part = _part(stack, masks)
+    part = part_of(stack, masks)
     around = asked.around(part, c)
     for _ in range(ROUNDS):
         c, before = around.calibrated(c), c
         around = asked.around(part, c)
         if np.abs(c - before).max(initial=0.0) < SETTLED:
             break
-    return around.prediction(c).on(stack, _kept(stack, masks))
+    return around.prediction(c).on(stack, rows_in(stack, masks))
 
 
 def _whole_rows(stack: Stack, answered: np.ndarray) -> list[np.ndarray]:
@@ -163,16 +164,6 @@ def _whole_rows(stack: Stack, answered: np.ndarray) -> list[np.ndarray]:
     for channel in stack.channels:
         masks[channel.table] &= answered[channel.rows]
     return masks
-
-
-def _kept(stack: Stack, masks: Sequence[np.ndarray]) -> np.ndarray:
-    """The masks of tables for the rows of the stack (n,)."""
-    return np.concatenate([masks[c.table] for c in stack.channels])
-
-
-def _part(stack: Stack, masks: Sequence[np.ndarray]) -> Stack:
-    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, masks)])
-    return replace(part, u=stack.u[_kept(stack, masks)])
 
 
 def _filled(kept: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -207,10 +198,11 @@ class _Asked:
         left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
         unexplained = np.repeat(left, [c.size for c in stack.channels])
         columns = np.column_stack([p, *over_c])
-        return _Around(replace(stack, u=u), base + shapes @ self.known.weights, columns, len(c), unexplained)
+        stack = replace(stack, u=u, left_open=left_open(self.known.nominal, stack))
+        return _Around(stack, base + shapes @ self.known.weights, columns, len(c), unexplained)
 
     def _shapes(self, stack: Stack) -> np.ndarray:
-        found = _numerical(self.known.nominal, stack)
+        found = numerical(self.known.nominal, stack)
         return np.column_stack([found, np.zeros((stack.size, len(self.known.weights) - found.shape[1]))])
 
 
@@ -237,11 +229,11 @@ class _Around:
 
     @cached_property
     def kept(self) -> np.ndarray:
-        return _kept(self.stack, self.rows)
+        return rows_in(self.stack, self.rows)
 
     @cached_property
     def part(self) -> Stack:
-        return _part(self.stack, self.rows)
+        return part_of(self.stack, self.rows)
 
     @cached_property
     def noise(self) -> Noise:
@@ -253,9 +245,11 @@ class _Around:
 
     @cached_property
     def noise_variance(self) -> np.ndarray:
-        """Of a reading: its own, and what its scan as a whole may be off by (n,)."""
+        """Of a reading: its own, what its scan as a whole may be off by, and what the model leaves open (n,)."""
         of_scans = [2 * c.scans**2 for c in self.noise.channels]  # an offset and a slope, each of rms 1
-        return self.white.sigma**2 * (1 + np.repeat(of_scans, [c.size for c in self.part.channels]))
+        straight = np.square(self.white.sigma / self.noise.inflation)
+        of_scans = straight * np.repeat(of_scans, [c.size for c in self.part.channels])
+        return self.white.sigma**2 + of_scans + np.square(self.part.left_open).sum(axis=1)
 
     @cached_property
     def residual(self) -> np.ndarray:
@@ -351,13 +345,3 @@ def _stacked_answers(model: Model, table: Table, channels: Sequence[Channel]) ->
 
 def _moved(table: Table, name: str, step: float) -> Table:
     return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
-
-
-def _numerical(model: Model, stack: Stack) -> np.ndarray:
-    """Shapes of the base model's own error, each with a standard normal weight shared by all tables (n, L)."""
-    shapes = [model.base.numerical(model.design, table) for table in stack.tables]
-    columns = np.zeros((stack.size, max(map(len, shapes), default=0)))
-    for channel in stack.channels:
-        for k, shape in enumerate(shapes[channel.table]):
-            columns[channel.rows, k] = shape.get(channel.response, 0.0)
-    return columns

@@ -18,7 +18,6 @@ import numpy as np
 from scipy.stats import chi2
 
 from effects.base import Effect
-from workbench.believed import SURE
 from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
@@ -33,6 +32,7 @@ from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
+NOISE_BAND = 0.95  # share of models as good as they can be whose chi2/n stays inside what noise alone makes
 START, ACCEPTED, REFUSED = "start", "accepted", "refused"
 TOGETHER = " + "  # between effects of one step
 OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent")
@@ -72,20 +72,16 @@ def try_effect(
     hypothesis = best_fit(before, cls)
     trial = model + hypothesis.effects[0]
     after = bench_of(trial, campaign, library)
-    fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
-    gain = hypothesis.log_evidence - before.null.log_evidence
-    decision, reason = decide(before, after, gain, cls.base_rate)
     sizes = estimates(hypothesis)[name]
-    doubt = contradiction(cls, sizes, campaign.tolerances)
-    step = replace(
-        step_of(after, number, decision),
+    row = replace(
+        step_of(after, number, START),
         effect=name,
         title=cls.title,
         parameters=sizes,
-        log_evidence_gain=float(gain),
-        reason=f"{reason}; {doubt}" if doubt else reason,
+        log_evidence_gain=float(hypothesis.log_evidence - before.null.log_evidence),
+        reason=contradiction(cls, sizes, campaign.tolerances),
     )
-    return Trial(before, after, replace(model, effects=fitted_again) if decision == ACCEPTED else model, step)
+    return _decided(before, after, (model, trial), row, cls.base_rate)
 
 
 def try_together(
@@ -102,22 +98,29 @@ def try_together(
         WorkbenchError: the model has no answer with them, or one of them has several forms.
     """
     before, trial = bench_of(model, campaign, library), model
-    progress(f"fitting {TOGETHER.join(row.name for row in named)}")
-    for row in named:
-        trial = trial + _sized(library[row.name], row, model)
+    progress(f"fitting {TOGETHER.join(one.name for one in named)}")
+    for one in named:
+        trial = trial + _sized(library[one.name], one, model)
     after = bench_of(trial, campaign, library)
-    fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
-    gain = min(row.log_evidence for row in named)
-    decision, reason = decide(before, after, gain, prod(library[row.name].base_rate for row in named))
-    step = replace(
-        step_of(after, number, decision),
-        effect=TOGETHER.join(row.name for row in named),
-        title=TOGETHER.join(row.title for row in named),
-        parameters={f"{row.name}.{name}": size for row in named for name, size in row.parameters.items()},
-        log_evidence_gain=gain,
-        reason=reason,
+    row = replace(
+        step_of(after, number, START),
+        effect=TOGETHER.join(one.name for one in named),
+        title=TOGETHER.join(one.title for one in named),
+        parameters={f"{one.name}.{name}": size for one in named for name, size in one.parameters.items()},
+        log_evidence_gain=min(one.log_evidence for one in named),
     )
-    return Trial(before, after, replace(model, effects=fitted_again) if decision == ACCEPTED else model, step)
+    return _decided(before, after, (model, trial), row, prod(library[one.name].base_rate for one in named))
+
+
+def _decided(before: Bench, after: Bench, models: tuple[Model, Model], row: LedgerStep, base_rate: float) -> Trial:
+    """What was tried, with the decision; models: without and with it; row: undecided, its reason what speaks against"""
+    model, trial = models
+    decision, reason = decide(before, after, row.log_evidence_gain, base_rate)
+    if decision == ACCEPTED:
+        fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
+        model = replace(model, effects=fitted_again)
+    said = "; ".join(filter(None, (reason, row.reason)))
+    return Trial(before, after, model, replace(row, decision=decision, reason=said))
 
 
 def _sized(cls: type[Effect], row: Ranked, model: Model) -> Effect:
@@ -159,8 +162,8 @@ def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[
 
 
 def noise_alone(rows: int) -> float:
-    """chi2/n of so many rows that noise alone stays below with probability ``SURE``."""
-    return float(chi2.ppf(SURE, rows)) / rows
+    """chi2/n of so many rows that noise alone stays below with probability ``NOISE_BAND``."""
+    return float(chi2.ppf(NOISE_BAND, rows)) / rows
 
 
 def _nats(odds: float) -> str:

@@ -13,12 +13,13 @@ from effects.base import Effect
 from workbench.data.campaign import columns_of_systematics
 from workbench.data.repeats import matched_rows, places_of
 from workbench.data.schema import BY_REGION
-from workbench.data.stack import Stack, rows_of, stacked, thinned
+from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised
 from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
+from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.predictor import DirectPredictor
 from workbench.likelihood.regions import sealed_region
 from workbench.likelihood.whitening import Whitener, whitener
@@ -117,7 +118,8 @@ def bench_of(
     sealed = sealed_tables(campaign)
     tables = tuple(thinned(table, most_rows) for table in sealed.tables)
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
-    stack = replace(predictor.stack, u=_with_conditions(predictor))
+    stack = predictor.stack
+    stack = replace(stack, u=_with_conditions(predictor), left_open=left_open(predictor.model, stack))
     chosen = [~table.held_out for table in tables]
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
@@ -142,7 +144,7 @@ def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndar
     whole = measured_noise(stack, predicted)
     inflation = whole.inflation.copy()
     for masks in (chosen, [~mask for mask in chosen]):
-        part, rows = _part(stack, masks), _rows(stack, masks)
+        part, rows = part_of(stack, masks), rows_in(stack, masks)
         found = with_wild_readings(whole.channels, part, predicted[rows]).inflation
         repeated = np.repeat([matched_rows(part.tables[c.table]) is not None for c in part.channels], _sizes(part))
         inflation[rows] = np.where(repeated, found, inflation[rows])
@@ -152,11 +154,6 @@ def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndar
 def _sizes(stack: Stack) -> list[int]:
     """Rows of every channel."""
     return [channel.size for channel in stack.channels]
-
-
-def _rows(stack: Stack, chosen: Sequence[np.ndarray]) -> np.ndarray:
-    """One mask a table -> one of the rows of the stack (n,)."""
-    return np.concatenate([chosen[c.table] for c in stack.channels])
 
 
 def _far(fit: Problem, null: Fit) -> bool:
@@ -193,16 +190,10 @@ def predictor_of(
 
 
 def _problem(predictor: DirectPredictor, stack: Stack, noise: Noise, chosen: Sequence[np.ndarray]) -> Problem:
-    part = _part(stack, chosen)
+    part = part_of(stack, chosen)
     white = whitener(part, noise_on_rows(noise, stack, chosen))
     dof = np.array([channel.dof for channel in noise.channels])
     return Problem(predictor.on(part), part, white, dof, predictor.start)
-
-
-def _part(stack: Stack, chosen: Sequence[np.ndarray]) -> Stack:
-    """The chosen rows (one mask a table), their u as it is in the whole."""
-    part = stacked([rows_of(table, mask) for table, mask in zip(stack.tables, chosen)])
-    return replace(part, u=stack.u[_rows(stack, chosen)])
 
 
 def _with_conditions(predictor: DirectPredictor) -> np.ndarray:

@@ -14,6 +14,7 @@ from effects.parameter import parameters_of
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
 from workbench.likelihood.nuisance import EffectParameters, Nuisance
+from workbench.likelihood.own_errors import numerical
 from workbench.models.model import Model
 
 STEP = 0.02  # of a standard normal number in a difference quotient; effects of 1e-2 sigma are far above rounding
@@ -62,12 +63,9 @@ class DirectPredictor:
     @cached_property
     def shapes(self) -> np.ndarray:
         """Of the base model's own numerical error at the device as drawn (n, L)."""
-        found = [self.model.base.numerical(self.model.design, table) for table in self.stack.tables]
-        out = np.zeros((self.stack.size, max([self.least_shapes, *map(len, found)])))
-        for channel in self.stack.channels:
-            for k, shape in enumerate(found[channel.table]):
-                out[channel.rows, k] = shape.get(channel.response, 0.0)
-        return out
+        found = numerical(self.model, self.stack)
+        missing = max(self.least_shapes - found.shape[1], 0)
+        return np.column_stack([found, np.zeros((self.stack.size, missing))])
 
     @property
     def start(self) -> np.ndarray:

@@ -78,17 +78,27 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
         sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
         rho[rows] = np.where(follows(stack.tables[channel.table]), found.rho, 0.0)
     white = Whitener(sigma, rho)
-    laws = [_of_scans(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
+    laws = [_unknown(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
     return Whitener(sigma, rho, tuple(law for law in laws if law is not None))
 
 
-def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
-    """What every scan of a channel may be off by as a whole; None where repeats show nothing of it."""
-    if not channel.size or not found.scans:
-        return None
-    scans = scans_of(stack.tables[channel.table])
-    raw = np.zeros((stack.size, 2 * len(scans)))
+def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
+    """What every scan of a channel may be off by as a whole, and what the model leaves open in it; None where there is
+    neither."""
+    raw = np.zeros((stack.size, 0))
+    for shapes in (_of_scans(stack, channel, found), stack.left_open[channel.rows]):
+        columns = np.zeros((stack.size, shapes.shape[1]))
+        columns[channel.rows] = shapes
+        raw = np.hstack([raw, columns])
+    return law_error(channel.rows, white(raw)[channel.rows]) if np.any(raw) else None
+
+
+def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise) -> np.ndarray:
+    """What every scan of a channel may be off by as a whole, an offset and a slope each (rows, 2 scans), straight
+    through its wild readings too."""
+    scans = scans_of(stack.tables[channel.table]) if channel.size and found.scans else []
+    columns = np.zeros((channel.size, 2 * len(scans)))
     for k, rows in enumerate(scans):
-        shapes = found.scans * scan_shapes(stack.u[channel.rows][rows])
-        raw[channel.rows.start + rows, 2 * k : 2 * k + 2] = shapes * white.sigma[channel.rows][rows][:, None]
-    return law_error(channel.rows, white(raw)[channel.rows])
+        u = stack.u[channel.rows][rows]
+        columns[rows, 2 * k : 2 * k + 2] = found.scans * found.scale * u[:, None] * scan_shapes(u)
+    return columns

@@ -78,6 +78,11 @@ class BaseModel:
         standard normal weight that all tables and repeats share."""
         return ()
 
+    def left_open(self, design: Any, table: Table) -> Mapping[str, np.ndarray]:
+        """What the model cannot say of the readings of a table, response -> one standard deviation of each, SI (n, L);
+        each of every response by itself."""
+        return {}
+
     def options(self, design: Any, campaign: Campaign) -> Sequence[Option]:
         """What could be measured next besides what was."""
         return ()

@@ -1,5 +1,7 @@
 """Noise that was put in is found again, and the whitener undoes exactly the covariance it is meant for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from tests.workbench.likelihood.tables import table
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
 from workbench.data.repeats import matched_rows
-from workbench.data.stack import stacked, thinned
+from workbench.data.stack import part_of, stacked, thinned
 from workbench.likelihood.bench import bench_of
 from workbench.likelihood.noise import ChannelNoise, Noise, measured_noise
 from workbench.likelihood.whitening import LawError, Whitener, whitener
@@ -129,14 +131,31 @@ def test_neighbours_that_go_together_are_no_remounting(rho):
 
 
 def test_whitening_knows_that_scans_are_off_as_a_whole():
-    """Two scans, covariance by hand: independent noise, and an offset and a slope for each."""
+    """Two scans, covariance by hand: independent noise, one reading wild, and an offset and a slope for each."""
     stack = scans(repeats=2, rows=7)
-    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0, 0.8),), np.ones(14))
+    wild = np.where(np.arange(14) == 3, 5.0, 1.0)
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0, 0.8),), wild)
     operator = whitener(stack, noise)(np.eye(14))
     t = np.linspace(-0.5, 0.5, 7)
-    one = np.eye(7) + 0.8**2 * (1 + np.outer(t, t) / np.mean(t**2))
-    covariance = 0.3**2 * np.kron(np.eye(2), one)
+    one = 0.8**2 * (1 + np.outer(t, t) / np.mean(t**2))
+    covariance = 0.3**2 * (np.diag(wild**2) + np.kron(np.eye(2), one))
     assert np.allclose(operator @ covariance @ operator.T, np.eye(14), atol=1e-10)
+
+
+def test_whitening_knows_what_the_model_leaves_open():
+    """One scan, covariance by hand: independent noise, and a wave of which the model says nothing."""
+    stack = scans(repeats=1, rows=9)
+    wave = 0.7 * np.cos(np.linspace(0, 3, 9))[:, None]
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0),), np.ones(9))
+    operator = whitener(replace(stack, left_open=wave), noise)
+    covariance = 0.3**2 * np.eye(9) + wave @ wave.T
+    assert np.allclose(operator(np.eye(9)) @ covariance @ operator(np.eye(9)).T, np.eye(9), atol=1e-10)
+
+
+def test_chosen_rows_keep_what_is_left_open_in_them():
+    stack = scans(repeats=1, rows=9)
+    stack = replace(stack, left_open=np.arange(18.0).reshape(9, 2))
+    assert np.array_equal(part_of(stack, [np.arange(9) % 2 == 0]).left_open, stack.left_open[::2])
 
 
 def resistances(lost=(), seed=0):

@@ -57,6 +57,42 @@ def test_what_a_mesh_lacks_in_one_order_its_neighbours_may_lack():
     assert list(orders.values()) == pytest.approx([LEFT * 0.01 * drawn[25] / np.sqrt(3)] * 3, rel=1e-6)
 
 
+HIGHEST = 0.8 * 120  # order that 240 readings a turn surely show
+
+
+def left_out(columns, wave):
+    """Share of a wave that no sum of columns is."""
+    return np.linalg.norm(wave - columns @ np.linalg.lstsq(columns, wave, rcond=None)[0]) / np.linalg.norm(wave)
+
+
+def opened(speed, bandwidth=None):
+    asked = table("back_emf", PHASES, angle_mech=TURN, speed=speed)
+    responses = {name: replace(r, bandwidth=bandwidth) for name, r in asked.responses.items()}
+    return bench().left_open(surrogate().nominal, replace(asked, responses=responses))
+
+
+def test_orders_that_no_recorder_surely_passes_are_open_in_any_phase():
+    columns = opened(AT["speed"])["v_b"]
+    orders = [5, *voltage_orders(surrogate())]
+    assert min(orders) < HIGHEST < max(orders)
+    for order in orders:
+        missed = left_out(columns, np.cos(order * TURN + 1.0))
+        assert missed < 1e-4 if order > HIGHEST else missed > 0.9
+
+
+def test_they_are_open_each_way_by_itself_where_the_rotor_turns_both():
+    both = np.where(np.arange(len(TURN)) % 2, 1.0, -1.0) * SPEED
+    order = max(voltage_orders(surrogate()))
+    one_way = np.cos(order * TURN + 1.0) * (both > 0)
+    assert left_out(opened(both)["v_a"], one_way) < 1e-4
+    assert opened(both)["v_a"].shape[1] == 2 * opened(AT["speed"])["v_a"].shape[1]
+
+
+def test_a_declared_bandwidth_settles_what_passes():
+    wide, narrow = (opened(AT["speed"], order * SPEED / (2 * np.pi) / 0.8) for order in (300, 30))
+    assert wide["v_a"].shape[1] == 0 and narrow["v_a"].shape[1] > opened(AT["speed"])["v_a"].shape[1]
+
+
 def test_every_table_has_its_shapes_in_the_same_places():
     voltage, cogging = shapes(), shapes(None, "cogging", ("torque",), angle_mech=TURN, direction=np.ones(len(TURN)))
     assert len(voltage) == len(cogging) and not any(a and b for a, b in zip(voltage, cogging))

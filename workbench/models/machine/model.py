@@ -43,7 +43,7 @@ from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.field import MachineField
 from workbench.models.machine.kinds import KINDS, loaded_states
-from workbench.models.machine.numerical import shapes_of
+from workbench.models.machine.numerical import left_open, shapes_of
 from workbench.models.machine.options import options
 from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
 from workbench.models.machine.surrogate import Surrogate
@@ -138,10 +138,14 @@ class MachineBench(BaseModel):
         return options(campaign.tables)
 
     def numerical(self, design: MachineAsBuilt, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
-        """What meshes and the recorder of the voltages leave open, see ``numerical.py``; of the machine as drawn."""
+        """What meshes and an averaging recorder make wrong, see ``numerical.py``; of the machine as drawn."""
         if self.about_drawing is None:
             return ()
         return shapes_of(self.about_drawing, _ON_A_MESH, table, _drawn_answers)
+
+    def left_open(self, design: MachineAsBuilt, table: Table) -> Mapping[str, np.ndarray]:
+        """Voltages that neither a recorder nor a drawing tells, see ``numerical.py``; of the machine as drawn."""
+        return left_open(self.about_drawing, table, _drawn_answers) if self.about_drawing is not None else {}
 
 
 def _drawn_answers(surrogate: Surrogate, table: Table) -> Mapping[str, np.ndarray]:

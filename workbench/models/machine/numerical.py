@@ -7,8 +7,12 @@ and its neighbours: in one order two meshes may agree by chance (at order 35 of 
 mV at 100 rad/s, where another code is 0.10 mV off).
 
 The recorder: it may average over the interval between two readings, which lowers every order n of the voltage to
-sinc(n interval / 2); and there are voltage orders near and above what it passes. How much of them it lets through and
-how late is unknown, so each comes with two shapes, in phase and a quarter period behind, as large as the model has it.
+sinc(n interval / 2).
+
+What is left open, of every channel by itself: voltage orders near and above what a recorder passes. How much of them it
+lets through and how late is unknown, they hang on corners that no drawing shows, and those above half the number of
+readings look like lower ones. So each may be there in any phase, either way the rotor turns, as large as the model has
+it.
 """
 
 from __future__ import annotations
@@ -70,16 +74,9 @@ def _left_in_orders(surrogate: Surrogate) -> dict[int, float]:
 
 
 def _recorder(surrogate: Surrogate, table: Table, ask: Ask) -> tuple[Responses, ...]:
-    orders = voltage_orders(surrogate)
     if table.kind != "back_emf":
-        return ({},) * (1 + 2 * len(orders))
-    unknown = {order: [r.name for r in table.responses.values() if order > _reach(r, table)] for order in orders}
-    near = (
-        _shape(surrogate.in_orders(_only(surrogate, order, turn)), table, ask, unknown[order], behind)
-        for order in orders
-        for turn, behind in ((1.0, False), (1j, True))
-    )
-    return ask(surrogate.in_orders(_averaging(surrogate, _spacing(table))), table), *near
+        return ({},)
+    return (ask(surrogate.in_orders(_averaging(surrogate, _spacing(table))), table),)
 
 
 def _averaging(surrogate: Surrogate, interval: float) -> np.ndarray:
@@ -109,12 +106,28 @@ def _voltage(surrogate: Surrogate) -> np.ndarray:
     return linkage * np.arange(linkage.shape[1])
 
 
-def _shape(surrogate: Surrogate, table: Table, ask: Ask, names: Sequence[str], behind: bool) -> Responses:
-    """One order in the responses that it is unknown in; a quarter period behind turns with the sense of rotation."""
-    if not names:
+# ---- what is left open -----------------------------------------------------------------------------------------------
+
+
+def left_open(surrogate: Surrogate, table: Table, ask: Ask) -> dict[str, np.ndarray]:
+    """Response -> shapes in the rows of a table, SI (n, L), one standard deviation of each; see above."""
+    if table.kind != "back_emf":
         return {}
-    found, sense = ask(surrogate, table), np.sign(table.conditions["speed"]) if behind else 1.0
-    return {name: found[name] * sense for name in names if name in found}
+    found = {order: _of_any_phase(surrogate, order, table, ask) for order in voltage_orders(surrogate)}
+    return {
+        name: np.hstack([shapes[name] for order, shapes in found.items() if order > _reach(response, table)] or [none])
+        for name, response in table.responses.items()
+        for none in [np.zeros((table.rows, 0))]
+    }
+
+
+def _of_any_phase(surrogate: Surrogate, order: int, table: Table, ask: Ask) -> Responses:
+    """One order in phase and a quarter period behind, and where the rotor turns both ways the same with opposite signs
+    (n, 2) or (n, 4)."""
+    answers = [ask(surrogate.in_orders(_only(surrogate, order, turn)), table) for turn in (1.0, 1j)]
+    sense = np.sign(table.conditions["speed"])
+    ways = [sense] if np.ptp(sense) == 0 else [sense, np.ones(table.rows)]
+    return {name: np.column_stack([a[name] * way for way in ways for a in answers]) for name in answers[0]}
 
 
 def _reach(response: Response, table: Table) -> float:
