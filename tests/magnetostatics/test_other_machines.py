@@ -235,7 +235,7 @@ CANNOT_BE_BUILT = {
     "no teeth": (V_SHAPE, "stator", {"top_width": 11e-3}, "nothing of the teeth"),
     "no shoulder": (V_SHAPE, "stator", {"slot_opening": 5.5e-3}, "no shoulder"),
     "long magnets": (V_SHAPE, "rotor", {"magnet_width": 25e-3}, "into the bridge"),
-    "wide rib": (RIBBED, "rotor", {"rib": 9e-3}, "reduce magnet_width, or tip_depth or rib"),
+    "wide rib": (RIBBED, "rotor", {"rib": 13e-3}, "reduce magnet_width, or tip_depth or rib"),
     "no rib": (RIBBED, "rotor", {"rib": 0.0}, "rib must be a positive"),
     "bridge": (V_SHAPE, "rotor", {"bridge_end": 0.2}, "bridge_start and bridge_end"),
     "hole": (V_SHAPE, "rotor", {"hole_depth": 50e-3}, "hole_depth"),
