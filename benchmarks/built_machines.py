@@ -1,8 +1,7 @@
 """Machines that somebody built, from their drawings alone: ``python -m benchmarks.built_machines``.
 
-The field of the files in ``machines/``, nothing fitted, against what was measured on them. Then a prediction for a
-machine whose measurement is not here: another rotor around the stator of the outrunner, with magnets of the remanence
-that the first rotor's voltage asks for, and a steel ring whose thickness nobody knows.
+The field of the files in ``machines/``, nothing fitted, against what was measured on them, and predictions of what has
+not been compared yet; that of another rotor around the stator of the outrunner is ``benchmarks.other_rotor``.
 Writes results/reference/benchmarks/built_machines.csv.
 """
 
@@ -14,23 +13,18 @@ from math import pi, sqrt
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import brentq
 
 from geometry.cross_section import mesh_cross_section
-from geometry.parts import ComposedMachine
-from geometry.rotors.outer_magnets import OuterMagnets
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.model import FieldModel
 from magnetostatics.torque import arkkio_torque
 from magnetostatics.turn import Supply, Turned, turned
 from pipeline.modules import PROJECT
 from study.machine_file import MachineFile, read_machine
-from units import DEGREE, MILLIMETRE, RPM
+from units import DEGREE, RPM
 
 TABLE = PROJECT / "results" / "reference" / "benchmarks" / "built_machines.csv"
 POSITIONS = 15  # of an electrical period; its fundamental is free of the orders that three phases have
-RING = (0.3, 0.5, 0.8, 1.13)  # mm, of the steel inside the cup of 1.13 mm: from a foil to all of it
-
 LOCKED = (50.0, 100.0, 150.0, 200.0, 250.0)  # A
 BEYOND = np.arange(90.0, 166.0, 7.5) * DEGREE  # electrical, where the reluctance torque helps that of the magnets
 
@@ -105,27 +99,11 @@ def ferrite() -> Iterator[Row]:
 
 
 def outrunners() -> Iterator[Row]:
-    """The measured one, and what follows for the other rotor."""
+    """With the remanence that its file assumes and with that of its seller."""
     steel, measured = read_machine("outrunner_9_12"), 0.2678
     for remanence, remark in ((1.20, "remanence assumed"), (1.45, "N52 as its seller claims")):
         drawn = 1e3 * no_load(with_remanence(steel, remanence)).fundamental
         yield Row("outrunner_9_12", "flux linkage of a phase / mWb", drawn, measured, f"{remanence:g} T, {remark}")
-
-    def beyond(remanence: float) -> float:
-        return 1e3 * no_load(with_remanence(steel, remanence)).fundamental - measured
-
-    asked = float(brentq(beyond, 0.9, 1.45, xtol=1e-3))
-    for ring in RING:
-        drawn = 1e3 * no_load(with_remanence(other_rotor(steel, ring * MILLIMETRE), asked)).fundamental
-        yield Row("outrunner_9_12, other rotor", "flux linkage of a phase / mWb", drawn, None,
-                  f"prediction: {asked:.3f} T as the first rotor asks for, steel ring of {ring:g} mm")  # fmt: skip
-
-
-def other_rotor(found: MachineFile, ring: float) -> MachineFile:
-    """12 magnets of 1.303 mm at a gap of 0.262 mm, arc 0.654, in a steel ring [m] in aluminium, around the stator."""
-    inner = found.machine.stator.rim_radius + 0.262 * MILLIMETRE
-    rotor = OuterMagnets(12, inner, 1.303 * MILLIMETRE, ring, 20.0 * MILLIMETRE, 0.654)
-    return replace(found, machine=ComposedMachine(found.machine.stator, rotor))
 
 
 def main() -> None:

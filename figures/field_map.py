@@ -88,7 +88,13 @@ def _draw_flux_lines(axes: Axes, smooth: SmoothField) -> None:
 
 
 def _finish(axes: Axes, field: WholeField, title: str) -> None:
-    reach = np.abs(field.points).max() / MILLIMETRE * 1.02
+    reach = 1.02 * _reach(field) / MILLIMETRE
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x / mm", ylabel="y / mm")
     axes.set_aspect("equal")
     axes.set_title(title, loc="left")
+
+
+def _reach(field: WholeField) -> float:
+    """Of everything but air from the axis [m]: the air around a cup is drawn as far as its corners let it."""
+    solid = _kinds(field.region)[field.region.index] >= 0
+    return float(np.hypot(*field.points[:, field.cells[:, solid]]).max())

@@ -13,7 +13,7 @@ from electrical.dq import Envelope
 from electrical.flux_map_machine import FluxMapMachine
 from electrical.performance import Performance
 from figures.style import BLACK, BLUE, FIELD_MAP, GREY, ORANGE, VERMILION, letter, new_figure, show_grid, styled
-from units import RPM
+from units import FACTORS, RPM
 
 _SAMPLES = 121
 _FIELD_LOOK: dict[str, Any] = {"color": BLUE, "label": "flux map"}
@@ -61,13 +61,16 @@ def envelope_over_speed(envelope: Envelope) -> Figure:
 
 
 def _envelopes(figure: Figure, envelopes: Iterable[tuple[Envelope, dict[str, Any]]]) -> np.ndarray:
-    axes = figure.subplots(1, 3)
-    for envelope, look in envelopes:
+    axes, drawn = figure.subplots(1, 3), tuple(envelopes)
+    unit = "kW" if max(np.nanmax(envelope.power) for envelope, _ in drawn) >= FACTORS["kW"] else "W"
+    magnetising = all(np.nanmin(envelope.i_d) >= 0 < np.nanmax(envelope.i_d) for envelope, _ in drawn)
+    for envelope, look in drawn:
         speed_rpm = envelope.speed / RPM
         axes[0].plot(speed_rpm, envelope.torque, **look)
-        axes[1].plot(speed_rpm, envelope.power / 1e3, **look)
-        axes[2].plot(speed_rpm, -envelope.i_d, **look)
-    titles = (("torque", "torque / Nm"), ("power", "power / kW"), ("field-weakening current", "$-i_d$ / A"))
+        axes[1].plot(speed_rpm, envelope.power / FACTORS[unit], **look)
+        axes[2].plot(speed_rpm, envelope.i_d if magnetising else -envelope.i_d, **look)
+    direct = ("magnetising current", "$i_d$ / A") if magnetising else ("field-weakening current", "$-i_d$ / A")
+    titles = (("torque", "torque / Nm"), ("power", f"power / {unit}"), direct)
     for axis, (heading, label) in zip(axes, titles, strict=True):
         axis.set(xlabel="rotor speed / rpm", ylabel=label)
         axis.set_title(heading, loc="left")
@@ -91,7 +94,8 @@ def _draw_currents(axes: Axes, found: Performance, current_peak: float) -> None:
     circle = -current_peak * np.sin(angle), current_peak * np.cos(angle)
     axes.plot(*circle, color=GREY, linestyle=":", label="current limit")
     axes.plot(found.mtpa_direct, found.mtpa_quadrature, color=BLACK, label="MTPA")
-    axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
+    if np.isfinite(found.mtpv_direct).any():
+        axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
     axes.plot(
         found.envelope.i_d, found.envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed"
     )

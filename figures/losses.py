@@ -56,14 +56,14 @@ def _map(
     speed_rpm, torque = losses.speed[0] / RPM, losses.torque[:, 0]
     filled = axes.contourf(speed_rpm, torque, values, levels=levels, cmap=colours, extend="min")
     lines = axes.contour(speed_rpm, torque, values, levels=levels[:-1:2], colors="white", linewidths=0.6)
-    axes.clabel(lines, fontsize=8, fmt=lambda value: f"{value:.3g}")
+    axes.clabel(lines, fontsize=8, fmt=_written)
     reached = np.isfinite(losses.total)
     axes.plot(speed_rpm, _outermost(torque, reached), color=BLACK, label="largest torque")
     if torque[0] < 0:
         axes.plot(speed_rpm, _outermost(torque[::-1], reached[::-1]), color=BLACK)
         axes.axhline(0.0, color=GREY, linewidth=0.7)
     axes.set(xlabel="rotor speed / rpm", ylabel="torque / Nm")
-    bar = figure.colorbar(filled, ax=axes, pad=0.02, ticks=levels[::2], format=lambda value, _: f"{value:.3g}")
+    bar = figure.colorbar(filled, ax=axes, pad=0.02, ticks=levels[::2], format=lambda value, _: _written(value))
     bar.set_label(label)
 
 
@@ -92,3 +92,8 @@ def _parts(axes: Axes, losses: PowerLosses) -> None:
     axes.set_ylim(bottom=1e-4 * float(np.nanmax(losses.total[row])))
     show_grid(axes)
     axes.legend(ncols=2)
+
+
+def _written(value: float) -> str:
+    """Three digits, a thousand without an exponent."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"

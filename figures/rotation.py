@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -38,20 +40,25 @@ def rotation(
     q_axis_angle_deg: float | None = None,
     current: str = "nominal",
 ) -> Figure:
-    """Torque per length by both routes, without current, and the probes in teeth and back iron.
+    """Torque per length by both routes, without current, and the probes in teeth, back iron and narrow rotor iron.
 
     table: columns ``angle_mech_deg``, ``torque_arkkio_Nm_per_m``, ``torque_maxwell_Nm_per_m``,
-        ``torque_no_current_Nm_per_m``, ``tooth_<k>_T``, ``back_iron_<k>_T``
+        ``torque_no_current_Nm_per_m``, ``tooth_<k>_T``, ``back_iron_<k>_T``,
+        those of the rotor ``<name>_<k>_T``
     null_angle_deg: rotor angle at which a magnet stands on a tooth; q_axis_angle_deg: angle of the marked field
     current: which one, in a word
     """
     table = table.sort_values("angle_mech_deg")
-    figure = new_figure(9.6)
-    axes = figure.subplots(4, 1, sharex=True, height_ratios=(1.5, 1.0, 1.2, 1.2))
+    rotor = rotor_probe_columns(table)
+    panels = (1.5, 1.0, 1.2, 1.2, *((1.2,) if rotor else ()))
+    figure = new_figure(9.6 / 4.9 * sum(panels))
+    axes = figure.subplots(len(panels), 1, sharex=True, height_ratios=panels)
     _draw_torque(axes[0], table, current)
     _draw_no_current(axes[1], table)
-    _draw_probes(axes[2], table, "tooth_", "teeth")
-    _draw_probes(axes[3], table, "back_iron_", "back iron")
+    _draw_probes(axes[2], table, _numbered(table, "tooth_"), "teeth")
+    _draw_probes(axes[3], table, _numbered(table, "back_iron_"), "back iron")
+    if rotor:
+        _draw_probes(axes[4], table, {name[:-2].replace("_", " "): name for name in rotor}, "narrow iron of the rotor")
     for axis in axes:
         _mark_angles(axis, null_angle_deg, q_axis_angle_deg)
         axis.margins(x=0.01)
@@ -66,6 +73,17 @@ def probe_columns(table: pd.DataFrame, prefix: str) -> list[str]:
     """Columns ``<prefix><k>_T`` by rising number k."""
     found = [name for name in table.columns if name.startswith(prefix) and name[len(prefix) : -2].isdigit()]
     return sorted(found, key=lambda name: int(name[len(prefix) : -2]))
+
+
+def rotor_probe_columns(table: pd.DataFrame) -> list[str]:
+    """Columns of flux densities that are neither of teeth nor of the back iron, in their order."""
+    stator = {*probe_columns(table, "tooth_"), *probe_columns(table, "back_iron_")}
+    return [name for name in table.columns if name.endswith("_T") and name not in stator]
+
+
+def _numbered(table: pd.DataFrame, prefix: str) -> dict[str, str]:
+    """Columns of the probes that begin so, by their number."""
+    return {column[len(prefix) : -2]: column for column in probe_columns(table, prefix)}
 
 
 def mean_over_period(angle: np.ndarray, values: np.ndarray) -> float:
@@ -100,11 +118,11 @@ def _draw_no_current(axes: Axes, table: pd.DataFrame) -> None:
     axes.set_title("torque per length without current (cogging)", loc="left")
 
 
-def _draw_probes(axes: Axes, table: pd.DataFrame, prefix: str, where: str) -> None:
-    columns = probe_columns(table, prefix)
-    for number, column in enumerate(columns):
+def _draw_probes(axes: Axes, table: pd.DataFrame, probes: Mapping[str, str], where: str) -> None:
+    columns = list(probes.values())
+    for number, (name, column) in enumerate(probes.items()):
         look: Look = {"color": SERIES[number % len(SERIES)], "linestyle": "-" if number < len(SERIES) else "--"}
-        axes.plot(table.angle_mech_deg, table[column], linewidth=1.2, label=column[len(prefix) : -2], **look)
+        axes.plot(table.angle_mech_deg, table[column], linewidth=1.2, label=name, **look)
     if columns:
         worst = table[columns].to_numpy().max()
         axes.axhline(worst, color=VERMILION, linewidth=0.9, linestyle=":")

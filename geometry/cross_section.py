@@ -7,7 +7,7 @@ node.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -18,22 +18,24 @@ from geometry.checks import check_machine
 from geometry.gap import GapHalf
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.mesh_size import check_mesh_size
-from geometry.parts import DrawnMachine, Rotor
+from geometry.parts import DrawnMachine, Rotor, Segment
 from geometry.plane_mesh import PlaneMesh
 from geometry.triangle_mesh import TriangleMesh
 from geometry.winding import WindingLayout, sector_symmetric
 
 _BESIDE_THE_LINE = 1e-6  # rad, small against any element
+_WITHIN = 0.9  # of the width of narrow iron of the rotor, whose round borders are meshed as chords
 
 
 @dataclass(frozen=True)
 class Probe:
     """A straight segment over which |B| is averaged (thesis Fig. 3.17): points (2, n) [m], weights (n,), shares
-    of the points in the mean (sum 1)."""
+    of the points in the mean (sum 1); iron: which subdomain it lies in."""
 
     name: str
     points: np.ndarray
     weights: np.ndarray
+    iron: str = "stator_iron"
 
 
 @dataclass(frozen=True)
@@ -181,6 +183,21 @@ class CrossSection:
             )
             for k, pair in enumerate(sides)
         )
+
+    @cached_property
+    def rotor_probes(self) -> tuple[Probe, ...]:
+        """Across narrow iron of the rotor, where it stands as drawn, all of one name by rising angle."""
+        drawn = self.machine.rotor.probes
+        return tuple(probe for name, segment in drawn.items() for probe in self._alike(name, segment))
+
+    def _alike(self, name: str, segment: Segment) -> Iterator[Probe]:
+        """In every pitch of the sector; what lies beside the axis of a pole lies there on both sides."""
+        points, weights = _segment(*segment)
+        points = _WITHIN * points + (1 - _WITHIN) * np.mean(segment, axis=0)[:, None]
+        mirrored = points * np.array([[1.0], [-1.0]])
+        sides = (points,) if np.allclose(mirrored[:, ::-1], points) else (mirrored, points)
+        places = (_turn(side, k * self.machine.rotor.pitch) for k in range(self.rotor_pitches) for side in sides)
+        return (Probe(f"{name}_{k}", place, weights, "rotor_iron") for k, place in enumerate(places))
 
 
 def mesh_cross_section(

@@ -6,8 +6,9 @@ probes and defects ask for what is declared here. Angles count from the axis of 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from math import gcd, hypot, pi
+from math import cos, gcd, hypot, pi, sin
 from typing import Annotated, Any, ClassVar, Protocol, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -20,6 +21,11 @@ Length = Annotated[float, "mm"]  # [m]; what it is stated in at the border stand
 Angle = Annotated[float, "deg"]  # [rad]
 Share = Annotated[float, ""]  # dimensionless
 Segment = tuple[tuple[float, float], tuple[float, float]]  # from one point x, y to another [m]
+
+
+def radial(inner: float, outer: float, angle: float) -> Segment:
+    """Along a ray. inner, outer: radii of its ends [m]; angle: of the ray [rad]"""
+    return (inner * cos(angle), inner * sin(angle)), (outer * cos(angle), outer * sin(angle))
 
 
 @dataclass(frozen=True)
@@ -39,9 +45,11 @@ class Part:
     """Stator or rotor, a ring of equal pitches, each symmetric about its axis.
 
     of_any_sign: names of its numbers that need not be positive
+    of_the_model: names of those that nothing is built by, only solved
     """
 
     of_any_sign: ClassVar[frozenset[str]] = frozenset()
+    of_the_model: ClassVar[frozenset[str]] = frozenset()
 
     @property
     def pitch(self) -> float:
@@ -159,6 +167,11 @@ class Rotor(Part):
     def magnet_regions(self) -> tuple[str, ...]:
         """Names of the regions of magnets in half a pitch."""
         return ("magnet", *(f"magnet_{k}" for k in range(1, self.magnets_per_pitch // 2)))[: self.magnets_per_pitch]
+
+    @property
+    def probes(self) -> Mapping[str, Segment]:
+        """Where narrow iron saturates: across what is drawn of pole 0 [m], by name; none where nothing is narrow."""
+        return {}
 
     @property
     def bore_radius(self) -> float:

@@ -1,4 +1,5 @@
-"""Half a V of buried magnets: the hole from the axis of a pole to the bridge under the surface, its magnet in it."""
+"""Half a V of buried magnets: the hole from the axis of a pole, or from a rib of iron on it, to the bridge under the
+surface, its magnet in it."""
 
 from __future__ import annotations
 
@@ -8,15 +9,16 @@ from math import pi
 import numpy as np
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Buried, Rim
+from geometry.parts import Buried, Rim, Segment, radial
 from geometry.plane_mesh import Drawing
 
 _ACROSS_BRIDGE = 3  # elements across the thinnest iron, which saturates hard
+_ACROSS_HALF_A_RIB = 2  # elements across the half that is drawn
 
 
 @dataclass(frozen=True)
 class VLayer:
-    """Lengths in m, angles in rad; the holes of a pole meet on its axis, so that no iron stands between them.
+    """The holes of a pole meet on its axis, so that no iron stands between them.
 
     name: what its dimensions begin with, empty where there is one layer
     surface: radius over the bridge [m]
@@ -47,9 +49,20 @@ class VLayer:
         return across if which == 0 else -across
 
     def corner(self, along: float, down: float) -> complex:
-        """Point x + jy [m] along the outer face of the magnet beyond the axis of the pole and down from it [m]."""
+        """Point x + jy [m]. along: the outer face of the magnet from its inner end on [m]; down: from the face [m]"""
         face = np.exp(1j * self.tilt)
         return complex(self.tip_depth + along * face + down * 1j * face)
+
+    @property
+    def probes(self) -> dict[str, Segment]:
+        """Across the bridge in its middle [m], by name."""
+        middle = (self.bridge_start + self.bridge_end) / 2
+        return {self.name + "bridge": radial(self.surface - self.bridge, self.surface, middle)}
+
+    @property
+    def inwards(self) -> str:
+        """What brings the magnets nearer to the axis when it is reduced, in words."""
+        return f"or {self.name}tip_depth"
 
     def check(self, half: float, floor: float, floor_name: str) -> None:
         """Raise GeometryError where it does not fit into half a pole [rad] above a radius or depth ``floor`` [m]."""
@@ -63,7 +76,7 @@ class VLayer:
         if end >= self.surface - self.bridge:
             raise GeometryError(
                 f"the magnets reach {in_mm(end)} from the axis, into the bridge at "
-                f"{in_mm(self.surface - self.bridge)}: reduce {n}magnet_width or {n}tip_depth, or enlarge outer_radius"
+                f"{in_mm(self.surface - self.bridge)}: reduce {n}magnet_width, {self.inwards}, or enlarge outer_radius"
             )
         if not floor < self.hole_depth < self.tip_depth:
             raise GeometryError(
@@ -114,6 +127,58 @@ class VLayer:
 
     def _named(self, *points: str) -> tuple[str, ...]:
         return tuple(self.name + point for point in points)
+
+
+@dataclass(frozen=True)
+class RibbedVLayer(VLayer):
+    """The same with a rib of iron on the axis of the pole: either half stands off it by half of the rib.
+
+    rib: of iron between the two holes of a pole [m]
+    """
+
+    rib: float
+
+    def corner(self, along: float, down: float) -> complex:
+        """Point x + jy [m]. along: the outer face of the magnet from its inner end on [m]; down: from the face [m]"""
+        return super().corner(along, down) + 1j * self.rib / 2
+
+    @property
+    def inwards(self) -> str:
+        return f"{super().inwards} or {self.name}rib"
+
+    @property
+    def probes(self) -> dict[str, Segment]:
+        """Across bridge and rib in their middles [m], by name."""
+        middle, half = (self.hole_depth + self.tip_depth) / 2, self.rib / 2
+        return super().probes | {self.name + "rib": ((middle, -half), (middle, half))}
+
+    def draw_points(self, d: Drawing, iron: float) -> None:
+        """Corners of rib, magnet and hole; iron: edge length at the magnet [m]."""
+        super().draw_points(d, iron)
+        size = min(iron, self.rib / 2 / _ACROSS_HALF_A_RIB)
+        for name, depth in (("hole", self.hole_depth), ("tip", self.tip_depth)):
+            d.place(self.name + name, depth, self.rib / 2, size)
+            d.place(f"{self.name}rib_{name}", depth, 0.0, size)
+
+    def draw_curves(self, d: Drawing) -> None:
+        """Round the magnet, from the rib to the bridge, and between the rib and the iron over and under it."""
+        super().draw_curves(d)
+        d.path(*self._named("rib_hole", "hole", "tip", "rib_tip"))
+
+    def draw_regions(self, d: Drawing, magnet: str) -> None:
+        """The magnet, named so, the two ends of the hole, and the rib, which is iron."""
+        super().draw_regions(d, magnet)
+        d.region("iron", *self._named("rib_hole", "hole", "tip", "rib_tip"))
+
+    @property
+    def outline(self) -> tuple[str, ...]:
+        """Names of its points as the iron around the rib meets them, from the axis of the pole and back over it."""
+        return (*self._named("rib_hole"), *super().outline, *self._named("rib_tip"))
+
+    @property
+    def on_axis(self) -> tuple[str, ...]:
+        """Names of its points on the axis of the pole, outwards."""
+        return self._named("rib_hole", "rib_tip")
 
 
 def draw_buried(rotor: Buried, layers: tuple[VLayer, ...], magnet_length: float, rim: Rim) -> Drawing:

@@ -1,13 +1,15 @@
-"""Mean |B| over the probe segments in teeth and back iron (thesis Fig. 3.17)."""
+"""Mean |B| over the probe segments in teeth and back iron (thesis Fig. 3.17) and across narrow iron of the rotor."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 from skfem import MeshTri
 
+from geometry.cross_section import Probe
 from geometry.errors import GeometryError
 from magnetostatics.elements import TriangleOrder
 from magnetostatics.model import FieldModel, FieldSolution
@@ -42,7 +44,7 @@ class ProbeReader:
         return replace(self, gradient_x=dx, gradient_y=dy)
 
     def read(self, solution: FieldSolution) -> dict[str, float]:
-        """Mean |B| [T] over every probe, by name (``tooth_0 ...``, ``back_iron_0 ...``)."""
+        """Mean |B| [T] over every probe, by name (``tooth_0 ...``, ``back_iron_0 ...``, ``bridge_0 ...``)."""
         local = solution.a[self.dofs]
         b = np.hypot((self.gradient_x * local).sum(0), (self.gradient_y * local).sum(0))
         means = np.bincount(self.number, weights=self.weights * b)
@@ -50,15 +52,16 @@ class ProbeReader:
 
 
 def probe_reader(model: FieldModel, known: ProbeReader | None = None) -> ProbeReader:
-    """Prepare the tooth and back-iron probes of a model; known: those of a model that shares its topology."""
-    probes = model.section.tooth_probes + model.section.back_iron_probes
+    """Prepare the probes of a model, those of the rotor last; known: those of a model that shares its topology."""
+    section = model.section
+    probes = section.tooth_probes + section.back_iron_probes + section.rotor_probes
     points = np.hstack([probe.points for probe in probes])
-    mesh = model.section.mesh
-    near = _near(mesh, points) if known is None else known.near
+    mesh = section.mesh
+    near = _nearest(model, probes) if known is None else known.near
     elements = _locate(mesh, points, near)
     if elements is None:
         if known is None:
-            raise GeometryError("a probe point lies outside the stator iron: refine the mesh")
+            raise GeometryError("a probe point lies outside the iron: refine the mesh")
         return probe_reader(model)
     corners = mesh.p[:, mesh.t[:, elements]]
     shares = _barycentric(corners, points)
@@ -69,11 +72,14 @@ def probe_reader(model: FieldModel, known: ProbeReader | None = None) -> ProbeRe
     return ProbeReader(model.elements.dofs[:, elements], dx, dy, weights, number, names, elements, near, shares)
 
 
-def _near(mesh: MeshTri, points: np.ndarray) -> np.ndarray:
-    """Indices of the elements of the stator iron that are nearest to each point [m], (2, n): (n, m)."""
-    iron = mesh.subdomains["stator_iron"]
-    _, near = cKDTree(mesh.p[:, mesh.t[:, iron]].mean(axis=1).T).query(points.T, k=_NEAREST)
-    return iron[near]
+def _nearest(model: FieldModel, probes: Sequence[Probe]) -> np.ndarray:
+    """Indices of the elements of its own iron that are nearest to each point of the probes: (n, m)."""
+    mesh, trees = model.section.mesh, {}
+    for name in {probe.iron for probe in probes}:
+        iron = mesh.subdomains[name]
+        trees[name] = iron, cKDTree(mesh.p[:, mesh.t[:, iron]].mean(axis=1).T)
+    found = ((trees[probe.iron], probe.points.T) for probe in probes)
+    return np.vstack([iron[tree.query(points, k=_NEAREST)[1]] for (iron, tree), points in found])
 
 
 def _locate(mesh: MeshTri, points: np.ndarray, near: np.ndarray) -> np.ndarray | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import partial
@@ -27,7 +28,7 @@ from figures.rotation import rotation
 from figures.whole_field import whole_field
 from geometry.moves import Move
 from geometry.outline import outline_of
-from geometry.parts import Part, part_units
+from geometry.parts import Part, Rotor, part_units
 from losses.stage import LossMap
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map_stage import FluxMap, kept_model
@@ -43,6 +44,8 @@ _OFF_LIMIT = 0.9  # of full torque and base speed: the map is read inside its li
 # Usual values where the file of a machine states none: sheet EN 10106, NdFeB 7400 to 7600 in data sheets, copper
 # IEC 60028, shaft of plain steel; stacking of sheet of 0.35 mm. Estimates for a machine that was not weighed.
 _PARTS = PartMaterials(7650.0, 7500.0, 8890.0, 7800.0, 0.95)
+_LARGE = 1e-3  # H, from which on an inductance is written in mH
+_CAPITAL = re.compile(r"(?<!^)(?=[A-Z])")  # begins the next word of a kind, OuterMagnets
 
 
 @dataclass(frozen=True)
@@ -71,9 +74,9 @@ def machine_sheet(
         Group("Rotor", tuple(_drawn(wound.machine.rotor))),
         Group("Winding", tuple(_winding(case, copper, driven))),
         Group("Torque, speed and supply", tuple(_torques(driven, flux_map, performance, turning))),
-        Group("Constants", tuple(_constants(driven, flux_map, performance))),
-        Group("Iron at full current", tuple(_iron(turning))),
-        Group("Losses", tuple(_losses(performance, losses))),
+        Group("Constants", tuple(_constants(copper, driven, flux_map, performance))),
+        Group("Iron at full current", tuple(_iron(wound.machine.rotor, turning))),
+        Group("Losses", tuple(_losses(wound.machine.rotor, performance, losses))),
         Group("Masses and inertia", tuple(_masses(masses))),
     )
     return MachineSheet(DataSheet(tuple(group for group in groups if group.rows)), masses)
@@ -200,10 +203,10 @@ def map_section(flux_map: FluxMap, performance: Performance) -> Section:
 
 def turning_section(turning: TurningMachine) -> Section:
     """What the angle does."""
+    idle = f"; without current {turning.idle.ripple:.3g} Nm" if turning.idle.ripple > 0 else ""
     text = (
-        f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak; "
-        f"without current {turning.idle.ripple:.3g} Nm. The two torque routes differ by at most "
-        f"{percent(turning.full.routes_apart, 2)}."
+        f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak"
+        f"{idle}. The two torque routes differ by at most {percent(turning.full.routes_apart, 2)}."
     )
     return Section(
         "One turn",
@@ -211,14 +214,17 @@ def turning_section(turning: TurningMachine) -> Section:
     )
 
 
-def losses_section(losses: LossMap | None) -> Section | None:
+def losses_section(losses: LossMap | None, driven: DrivenMachine) -> Section | None:
     """Loss and efficiency; none without loss data."""
     if losses is None:
         return None
+    machine = driven.wound.machine
+    magnets = "; eddy currents in the magnets" if machine.rotor.magnets_per_pitch else ""
+    cup = " A cup of solid steel loses more than this." if machine.rotor.rim_radius > machine.stator.rim_radius else ""
     stands_in = f", which stand in for {losses.steel}" if losses.law_is_of_another_grade else ""
     text = (
         f"Copper at {losses.winding_temperature:g} °C, iron of stator and rotor as laminated, by the loss data of "
-        f"{losses.law.grade}{stands_in}; eddy currents in the magnets. A cup of solid steel loses more than this. "
+        f"{losses.law.grade}{stands_in}{magnets}.{cup} "
         "Without bearings, windage and the inverter."
     )
     return Section("Losses and efficiency", (text, Picture(picture_name(LOSSES), "Electrical loss and efficiency.")))
@@ -250,11 +256,11 @@ def envelope_table(found: Performance) -> pd.DataFrame:
 
 def _drawn(part: Part) -> Iterator[Row]:
     """Every dimension that the kind of the part has."""
-    yield Row("kind", type(part).__name__, "")
+    yield Row("kind", _CAPITAL.sub(" ", type(part).__name__).lower(), "")
     units = part_units(type(part))
     for one in fields(part):  # type: ignore[arg-type]  # every part is a dataclass
         value = getattr(part, one.name)
-        if isinstance(value, int | float):
+        if isinstance(value, int | float) and one.name not in part.of_the_model:
             yield row(one.name.replace("_", " "), value, units[one.name])
 
 
@@ -289,36 +295,50 @@ def _torques(
     error = f"{current}; the mesh may put it off by {100 * flux_map.torque_error:.2f} %"
     yield row("peak torque", full.torque, "Nm", error)
     yield row("torque ripple", turning.full.ripple, "Nm", f"peak to peak, {current}")
-    yield row("cogging torque", turning.idle.ripple, "Nm", "peak to peak, without current")
+    if driven.wound.machine.rotor.magnets_per_pitch:
+        yield row("cogging torque", turning.idle.ripple, "Nm", "peak to peak, without current")
     beyond = ", beyond the largest of the file" if full.base_speed > driven.fastest else ""
     yield row("base speed", full.base_speed, "rpm", f"up to which the peak torque is given{beyond}")
-    yield row("power at base speed", full.torque * full.base_speed, "W")
+    if not beyond:
+        yield row("power at base speed", full.torque * full.base_speed, "W")
     best = int(np.nanargmax(found.envelope.power))
-    speed = f"ideal field weakening, at {found.envelope.speed[best] / RPM:.0f} rpm"
+    weakened = "ideal field weakening, " if found.envelope.speed[best] > full.base_speed else ""
+    speed = f"{weakened}at {found.envelope.speed[best] / RPM:.0f} rpm"
     yield row("largest power", float(found.envelope.power[best]), "W", speed)
     yield row("largest phase voltage", driven.limits.voltage_peak, "V", "peak, by the bus")
 
 
-def _constants(driven: DrivenMachine, flux_map: FluxMap, found: Performance) -> Iterator[Row]:
+def _constants(
+    copper: CopperTemperature, driven: DrivenMachine, flux_map: FluxMap, found: Performance
+) -> Iterator[Row]:
     machine, full = driven.wound.on_map(flux_map.data), found.full
     psi = float(machine.flux_linkage(0.0, 0.0)[0])
     if driven.wound.machine.rotor.magnets_per_pitch:
         emf = sqrt(3) * machine.pole_pairs * psi * _THOUSAND_RPM
         yield row("magnet flux linkage", psi, "mWb", "of a phase, peak, no load")
         yield row("back-EMF", emf / sqrt(2), "V", "line to line, RMS of the fundamental, at 1000 rpm")
+    current, resistance = driven.limits.current_peak, driven.wound.phase_resistance
+    at = f"at {current:.4g} A peak"
+    yield row("torque constant", full.torque / current, "Nm_per_A", f"per peak ampere, {at}")
+    constant = full.torque / (sqrt(1.5 * resistance) * current)
+    by_loss = f"torque over the root of the copper loss, {at}, {copper.value:g} °C"
+    yield Row("motor constant", constant, "Nm/√W", by_loss)
     places = {"no load": (0.0, 0.0), "full current": (full.direct, full.quadrature)}
     for name, currents in places.items():
         (l_dd, _), (_, l_qq) = machine.incremental_inductances(*currents)
-        yield row("L_d", float(l_dd), "uH", f"phase, incremental, {name}")
-        yield row("L_q", float(l_qq), "uH", f"phase, incremental, {name}")
+        unit = "mH" if max(l_dd, l_qq) >= _LARGE else "uH"
+        yield row("L_d", float(l_dd), unit, f"phase, incremental, {name}")
+        yield row("L_q", float(l_qq), unit, f"phase, incremental, {name}")
 
 
-def _iron(turning: TurningMachine) -> Iterator[Row]:
-    for probe, where in (("tooth", "across a tooth"), ("back_iron", "across the back iron")):
+def _iron(rotor: Rotor, turning: TurningMachine) -> Iterator[Row]:
+    across = {"tooth": "across a tooth", "back_iron": "across the back iron"}
+    across |= {name: "across it, in the rotor" for name in rotor.probes}
+    for probe, where in across.items():
         yield row(f"largest flux density, {probe.replace('_', ' ')}", turning.largest(probe), "T", f"mean {where}")
 
 
-def _losses(found: Performance, losses: LossMap | None) -> Iterator[Row]:
+def _losses(rotor: Rotor, found: Performance, losses: LossMap | None) -> Iterator[Row]:
     if losses is None:
         return
     map_, full = losses.losses, found.full
@@ -328,7 +348,8 @@ def _losses(found: Performance, losses: LossMap | None) -> Iterator[Row]:
     yield row("copper loss", one.copper, "W", f"{losses.winding_temperature:g} °C")
     yield row("stator iron loss", one.stator_iron, "W", f"by the loss data of {losses.law.grade}")
     yield row("rotor iron loss", one.rotor_iron, "W", "as if laminated")
-    yield row("magnet loss", one.magnet, "W", "eddy currents, estimate")
+    if rotor.magnets_per_pitch:
+        yield row("magnet loss", one.magnet, "W", "eddy currents, estimate")
     yield row("efficiency", one.efficiency, "percent", at)
     yield row("best efficiency", losses.motor.efficiency, "percent",
               f"{losses.motor.torque:.4g} Nm at {losses.motor.speed / RPM:.0f} rpm")  # fmt: skip

@@ -195,6 +195,22 @@ class SignatureMatch:
     cosine: float
 
 
+@dataclass(frozen=True)
+class Prediction:
+    """Of a quantity [unit] of a device that is not measured yet, stored before it is compared.
+
+    of: which device, in words;  low, high: interval [unit];  given: what the value supposes
+    """
+
+    of: str
+    quantity: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    given: str
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """All that ``compare`` found. Views hold one entry a channel where they can be had for it, and are empty otherwise.
@@ -223,6 +239,7 @@ class Comparison:
     checks: tuple[str, ...] = ()
     complaints: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+    predictions: tuple[Prediction, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, cos, sin
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Buried, Length, Rim, WithoutMagnets
+from geometry.parts import Buried, Length, Rim, Segment, WithoutMagnets, radial
 from geometry.plane_mesh import Drawing
 
 _ACROSS_BRIDGE = 3  # elements across the thinnest iron, which saturates hard
@@ -32,6 +33,15 @@ class FluxBarriers(WithoutMagnets, Buried):
     barrier_width: Length
     iron_width: Length
     bridge: Length
+
+    @property
+    def probes(self) -> Mapping[str, Segment]:
+        """Across the bridge at the end of every barrier, the outermost first."""
+        return {f"layer_{layer}_bridge": self._across_bridge(layer) for layer in range(self.layers)}
+
+    def _across_bridge(self, layer: int) -> Segment:
+        outer, inner = (self._end_angle(radius) for radius in self._radii(layer))
+        return radial(self._end_radius, self.outer_radius, (outer + inner) / 2)
 
     def check(self) -> None:
         last = self._radii(self.layers - 1)[1]

@@ -27,6 +27,7 @@ class OuterMagnets(MagnetOnAxis):
     arc_fraction: Share  # of the pole pitch, below 1
     magnetisation: Magnetisation = PARALLEL
     gap_outside: ClassVar[bool] = False
+    of_the_model: ClassVar[frozenset[str]] = frozenset({"air_radius"})
 
     @property
     def cup_radius(self) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import sin
 
 import numpy as np
 
 from geometry.errors import GeometryError, in_mm
-from geometry.parts import Angle, Buried, Length, Rim
+from geometry.parts import Angle, Buried, Length, Rim, Segment
 from geometry.plane_mesh import Drawing
 from geometry.v_layer import VLayer, draw_buried
 
@@ -55,6 +56,11 @@ class TwoLayerVShape(Buried):
         """
         side, layer = divmod(which, 2)
         return 0.0 * position_angle + axis + self.layers[layer].across(side)
+
+    @property
+    def probes(self) -> Mapping[str, Segment]:
+        inner, outer = self.layers
+        return inner.probes | outer.probes
 
     def check(self) -> None:
         inner, outer = self.layers

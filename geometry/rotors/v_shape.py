@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.parts import Angle, Buried, Length, Rim
+from geometry.parts import Angle, Buried, Length, Rim, Segment
 from geometry.plane_mesh import Drawing
 from geometry.v_layer import VLayer, draw_buried
 
@@ -49,6 +50,10 @@ class VShape(Buried):
         which: 0 is the clockwise one
         """
         return 0.0 * position_angle + axis + self._layer.across(which)
+
+    @property
+    def probes(self) -> Mapping[str, Segment]:
+        return self._layer.probes
 
     def check(self) -> None:
         self._layer.check(self.pitch / 2, self.shaft_radius, "shaft_radius")

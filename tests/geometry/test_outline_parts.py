@@ -17,7 +17,6 @@ from geometry.rotors.outline_rotor import OutlineRotor
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.torque import maxwell_torque
 from study.machine_file import MACHINES, read_machine
-from tests.magnetostatics import other_machines
 from tests.magnetostatics.other_machines import (
     LOAVES,
     RELUCTANCE,
@@ -39,12 +38,11 @@ def exported(tmp_path_factory):
     return path
 
 
-def test_an_exported_rotor_comes_back(exported, monkeypatch):
+def test_an_exported_rotor_comes_back(exported):
     rotor = OutlineRotor(4, read_outline(exported), RELUCTANCE.rotor.outer_radius)
     again = replace(RELUCTANCE, rotor=rotor)
     rotor.check()
     assert part_areas(again).rotor_laminations == pytest.approx(part_areas(RELUCTANCE).rotor_laminations, rel=1e-6)
-    monkeypatch.setitem(other_machines.PITCHES, again, other_machines.PITCHES[RELUCTANCE])
     torques = []
     for machine in (RELUCTANCE, again):
         model = model_of(machine, DENSITY)
@@ -60,7 +58,7 @@ RETURNING = {
 
 
 @pytest.fixture(params=RETURNING)
-def returning(request, tmp_path, monkeypatch):
+def returning(request, tmp_path):
     """A machine, its rotor from the files that are cut by, and ampere-turns of a coil."""
     machine, magnetised, current = RETURNING[request.param]
     for name, layers in laminations(outline_of(machine)).items():
@@ -68,7 +66,6 @@ def returning(request, tmp_path, monkeypatch):
     outline, magnets = (read_outline(tmp_path / f"{name}.dxf") for name in ("lamination_rotor", "magnets"))
     poles, radius = machine.rotor.poles, machine.rotor.outer_radius
     again = replace(machine, rotor=OutlineMagnets(poles, outline, radius, magnets=magnets, magnetised=magnetised))
-    monkeypatch.setitem(other_machines.PITCHES, again, other_machines.PITCHES.get(machine, 1))
     return machine, again, current
 
 

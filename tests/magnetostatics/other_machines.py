@@ -1,17 +1,20 @@
 """Machines of other kinds: two drawings that another code has solved, a motor with inset magnets, one with spokes."""
 
+from dataclasses import replace
 from math import atan2
 
 import numpy as np
 
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
+from geometry.magnetisation import HalbachMagnetisation
 from geometry.parts import ComposedMachine
 from geometry.rotors.bread_loaf_magnets import BreadLoafMagnets
 from geometry.rotors.consequent_pole import ConsequentPole
 from geometry.rotors.flux_barriers import FluxBarriers
 from geometry.rotors.inset_magnets import InsetMagnets
 from geometry.rotors.outer_magnets import OuterMagnets
+from geometry.rotors.ribbed_v_shape import RibbedVShape
 from geometry.rotors.spoke import Spoke
 from geometry.rotors.two_layer_v_shape import TwoLayerVShape
 from geometry.rotors.v_shape import VShape
@@ -44,6 +47,7 @@ V_SHAPE = ComposedMachine(
         bridge_start=atan2(*_TIP[::-1]), bridge_end=atan2(*_CORNER[::-1]),
     ),
 )  # fmt: skip
+RIBBED = ComposedMachine(V_SHAPE.stator, RibbedVShape(rib=1.2 * mm, **vars(V_SHAPE.rotor)))
 STATOR = StraightTeeth(12, 42.5 * mm, 16.2 * mm, 3.3 * mm, 5.5 * mm, 2.0 * mm, 1.4 * mm, 1.4 * mm)
 INSET = ComposedMachine(STATOR, InsetMagnets(10, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.8))
 SPOKE = ComposedMachine(STATOR, Spoke(10, 15.7 * mm, 3.0 * mm, 6.0 * mm))
@@ -63,15 +67,16 @@ TWO_LAYERS = ComposedMachine(
 )  # fmt: skip
 LOAVES = ComposedMachine(STATOR, BreadLoafMagnets(10, 15.7 * mm, 12.8 * mm, 7.6 * mm, 5.0 * mm))
 CONSEQUENT = ComposedMachine(STATOR, ConsequentPole(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 1.1, 0.08))
-PITCHES = {OUTRUNNER: 1, V_SHAPE: 6, TWO_LAYERS: 6, INSET: 1, SPOKE: 1, RELUCTANCE: 5}
+HALBACH = replace(OUTRUNNER, rotor=replace(OUTRUNNER.rotor, magnetisation=HalbachMagnetisation()))
+PITCHES = {(48, 8): 6, (24, 4): 5}  # of coils, by slots and poles; of all others one tooth
 NAMED = {
     "outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE, "reluctance": RELUCTANCE,
-    "two layers": TWO_LAYERS, "loaves": LOAVES, "consequent": CONSEQUENT,
+    "two layers": TWO_LAYERS, "loaves": LOAVES, "consequent": CONSEQUENT, "ribbed V": RIBBED, "Halbach": HALBACH,
 }  # fmt: skip
 
 
 def section_of(machine: ComposedMachine, density: MeshDensity, whole: bool = False) -> CrossSection:
-    layout = star_of_slots(machine.slots, machine.pole_pairs, 2, PITCHES.get(machine, 1))
+    layout = star_of_slots(machine.slots, machine.pole_pairs, 2, PITCHES.get((machine.slots, machine.poles), 1))
     return mesh_cross_section(machine, layout, density, whole)
 
 

@@ -26,9 +26,10 @@ def quick(monkeypatch):
 
 
 def coarse(name, folder):
-    """A shipped file on a coarse mesh, beside its curves."""
+    """A shipped machine as it is drawn, on a coarse mesh, beside its curves."""
     text = (MACHINES / f"{name}.toml").read_text(encoding="utf-8")
-    text = text[: text.index("[mesh]")].replace('"curves/', f'"{MACHINES}/curves/') + COARSE
+    drawn = text[: min(text.index("[search]"), text.index("[mesh]"))]
+    text = drawn.replace('"curves/', f'"{MACHINES}/curves/') + COARSE
     path = folder / f"{name}.toml"
     path.write_text(text, encoding="utf-8")
     return path
@@ -51,6 +52,10 @@ def test_an_outer_rotor_from_its_map_to_its_sheet(tmp_path, quick):
     rows = sheet(tmp_path / "out")
     assert value(rows, "magnet flux linkage") == pytest.approx(0.2763, rel=5e-3)  # mWb, another code, fine mesh
     assert value(rows, "magnets") == pytest.approx(41.7e-6 * 7e-3 * 7500, rel=1e-2)
+    peak, ohms = value(rows, "peak torque"), 1e-3 * value(rows, "resistance between terminals") / 2
+    assert value(rows, "torque constant") == pytest.approx(peak / 12)
+    assert value(rows, "motor constant") == pytest.approx(peak / (1.5 * ohms * 12**2) ** 0.5)
+    assert "air radius" not in {name for name, *_ in rows}, "only the model ends there"
     assert value(rows, "L_d", "no load") == pytest.approx(value(rows, "L_q", "no load"), rel=0.02)
     turn = airgap("turn", path, "--current-A", 12, "--positions", 24, "--span-deg", 10)
     said = next(line for line in turn.stdout.splitlines() if line.startswith("torque, mean"))
@@ -65,7 +70,9 @@ def test_a_reluctance_machine_runs_on_its_magnetising_current(tmp_path, quick):
     done = airgap("machine", path, "--out", tmp_path / "out", "--to", "sheet", "--jobs", 1)
     assert done.returncode == 0, done.stderr
     rows = sheet(tmp_path / "out")
-    assert "magnet flux linkage" not in {name for name, *_ in rows} and "magnets" not in {name for name, *_ in rows}
+    of_magnets = {"magnet flux linkage", "magnets", "cogging torque", "magnet loss"}
+    assert not of_magnets & {name for name, *_ in rows}
+    assert all(value(rows, f"largest flux density, layer {layer} bridge") > 1.0 for layer in range(3))
     assert value(rows, "L_d", "no load") > 4 * value(rows, "L_q", "no load")
     assert value(rows, "peak torque") > 10 and not (tmp_path / "out" / "magnets.dxf").exists()
 

@@ -102,5 +102,5 @@ def test_an_own_class_that_is_none(written, tmp_path):
 
 
 def test_a_name_that_is_no_file_lists_what_there_is():
-    with pytest.raises(StudyError, match="outrunner_9_12_free, prius_2004, synrm_48_4"):
+    with pytest.raises(StudyError, match="outrunner_9_12, prius_2004, synrm_48_4"):
         read_machine("nothing")

@@ -73,6 +73,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
         checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
         complaints=bench.complaints,
         provenance=dict(bench.campaign.file_hashes),
+        predictions=bench.campaign.predictions,
     )
 
 

@@ -21,6 +21,7 @@ from workbench.data.columns import BOOKKEEPING, Column, columns_of
 from workbench.data.conventions import with_conventions
 from workbench.data.expression import evaluate
 from workbench.data.kinds import kind_of
+from workbench.data.predictions import read_predictions
 from workbench.data.raw_table import Layout, RawTable, read_raw
 from workbench.data.schema import (
     BY_REGION,
@@ -39,6 +40,7 @@ from workbench.data.schema import (
 from workbench.data.suspicions import FEW_ROWS, suspicions
 from workbench.data.table import OPEN_CIRCUIT, Campaign, Conditions, Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
+from workbench.findings import Prediction
 
 __all__ = [
     "BOOKKEEPING", "BY_REGION", "FEW_ROWS", "FILE", "LAST_REPEAT", "NO_HOLDOUT", "columns_of_systematics",
@@ -74,6 +76,7 @@ def read_campaign(folder: str | Path) -> Campaign:
         complaints=tuple(reader.complaints),
         holdout=content.campaign.holdout,
         conventions=content.conventions,
+        predictions=reader.predictions(),
     )
     return with_conventions(campaign)
 
@@ -115,6 +118,15 @@ class _Reader:
         for part, (_, rows) in zip(parts, masks):
             self.complaints += suspicions(part, np.asarray(raw.lines)[rows])
         return parts
+
+    def predictions(self) -> tuple[Prediction, ...]:
+        """Of the file that [campaign] names; none where it names none."""
+        name = self.content.campaign.predictions
+        if name is None:
+            return ()
+        path = self._path(name)
+        self.hashes[name] = _sha256(path)
+        return read_predictions(path)
 
     def _raw(self, entry: TableEntry) -> RawTable:
         path = self._path(entry.file)

@@ -91,6 +91,9 @@ class CampaignSection(Section):
     holdout: Annotated[str, BeforeValidator(_holdout)] = Field(
         BY_REGION, description="which rows no fit may see, see below"
     )
+    predictions: Text | None = Field(
+        None, description="CSV file of what is predicted for a device that is not measured yet, shown by compare"
+    )
     title: Note = None
     date: Note = None
     operator: Note = None

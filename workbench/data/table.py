@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from workbench.errors import WorkbenchError
+from workbench.findings import Prediction
 
 OPEN_CIRCUIT = 1e6  # ohm; a shunt of this size is an open circuit
 
@@ -112,6 +113,7 @@ class Campaign:
     holdout: the rule of ``[campaign]``: "by region", "last repeat of every table", "column:NAME" or "none"; with "by
     region" no row is marked here
     conventions: the section ``[conventions]`` as read
+    predictions: for devices that are not measured yet
     """
 
     id: str
@@ -125,3 +127,4 @@ class Campaign:
     complaints: tuple[str, ...] = ()
     holdout: str = "by region"
     conventions: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    predictions: tuple[Prediction, ...] = ()

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from figures.report import Code, KeyNumber, KeyNumbers, Picture, Remark, Section, Table, write_report
-from workbench.findings import ChannelFit, Comparison, Diagnosis, LearnedAt, Ledger, LedgerStep, Ranked
+from workbench.findings import ChannelFit, Comparison, Diagnosis, LearnedAt, Ledger, LedgerStep, Prediction, Ranked
 from workbench.report import beliefs, channels, operating_range, structure
 from workbench.report.sentences import (
     NO_GAIN,
@@ -94,7 +94,7 @@ def comparison_sections(c: Comparison) -> tuple[Section, ...]:
     failing = next((fit for fit in c.fits if fit.channel == c.failing), None)
     first = () if failing is None else (_failing(failing, c),)
     views = tuple(_view(r, pictures) for r, pictures in zip(read, _pictures(c)) if r.alarming is not None)
-    return (summary, *first, *views, *_limits(c.checks, c.complaints))
+    return (summary, *first, *views, *_predicted(c.predictions), *_limits(c.checks, c.complaints))
 
 
 def _numbers(c: Comparison) -> KeyNumbers:
@@ -187,6 +187,20 @@ def _table(rows: list[dict[str, object]], caption: str, marked: tuple[int, ...] 
     """Without the columns in which nothing is known."""
     frame = pd.DataFrame(rows)
     return Table(frame.loc[:, (frame != _UNKNOWN).any()], caption, marked=marked)
+
+
+def _predicted(predictions: tuple[Prediction, ...]) -> tuple[Section, ...]:
+    """What this campaign predicts for devices that are not measured yet; no section where it predicts nothing."""
+    if not predictions:
+        return ()
+    rows = [
+        {"of": p.of, "quantity": f"{p.quantity} / {p.unit}" if p.unit else p.quantity, "value": number(p.value, 4),
+         "interval": f"{number(p.low, 4)} to {number(p.high, 4)}", "given": p.given}
+        for p in predictions
+    ]  # fmt: skip
+    words = "These were stored before they were held against any measurement."
+    table = Table(pd.DataFrame(rows), "Predictions of this campaign.")
+    return (Section("Predicted, not yet compared", (words, table)),)
 
 
 def _limits(checks: tuple[str, ...], complaints: tuple[str, ...]) -> tuple[Section, ...]:

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from figures.style import BLUE, VERMILION
-from workbench.findings import Diagnosis
+from workbench.findings import Diagnosis, Prediction
 from workbench.report import (
     beliefs,
     channels,
@@ -126,6 +126,14 @@ def test_the_signature_is_shown_where_no_effect_explains(tmp_path, diagnosis):
 def test_reasons_of_every_step_stay_visible(pages):
     assert "was refused: the data speak for (odds 10^13.0) the effect; chi²/n left out goes from" in pages["ledger"]
     assert len(re.findall(r"Step \d, [a-z ]+, was accepted: the data speak for", pages["ledger"])) == 3
+
+
+def test_predictions_stand_on_the_page_with_their_interval(tmp_path, clean):
+    told = Prediction("the other rotor", "flux linkage of a phase, peak", "mWb", 0.3166, 0.281, 0.352, "ring of 0.5 mm")
+    write_comparison_report(tmp_path / "c.html", replace(clean, predictions=(told,)))
+    html = (tmp_path / "c.html").read_text(encoding="utf-8")
+    assert "Predicted, not yet compared" in headings(html)
+    assert all(words in html for words in ("0.3166", "0.281 to 0.352", "peak / mWb", "ring of 0.5 mm"))
 
 
 def test_a_page_is_written_from_what_there_is(tmp_path, clean, diagnosis, ledger):
