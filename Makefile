@@ -53,6 +53,7 @@ BENCHMARK_SET_UP := .venv-benchmark/.set-up
 
 benchmark: $(SET_UP) $(BENCHMARK_SET_UP)
 	$(PYTHON) -m benchmarks.other_codes
+	$(PYTHON) -m benchmarks.other_kinds
 	$(PYTHON) -m benchmarks.speed
 
 blind-score: $(SET_UP)

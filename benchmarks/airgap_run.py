@@ -50,8 +50,7 @@ def corner_dofs(case: FieldCase) -> np.ndarray:
     """Degree of freedom of this project's numbering at every corner of the case's mesh (n,)."""
     mesh, angle = case.section.mesh, case.state.point.angle
     x, y = dof_locations(mesh, case.order)
-    is_rotor = np.hypot(*mesh.p[:, mesh.t].mean(axis=1)) < case.section.machine.mid_gap_radius
-    rotor = np.unique(element_dofs(mesh, case.order)[0][:, is_rotor])
+    rotor = np.unique(element_dofs(mesh, case.order)[0][:, case.section.rotor_elements])
     place = x + 1j * y
     place[rotor] *= np.exp(1j * angle)
     corners = case.mesh.points[: case.mesh.corners]

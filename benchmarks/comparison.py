@@ -90,14 +90,14 @@ def _agreement(case: FieldCase, ours: CodeResult, peer: CodeResult, fine: CodeRe
         peer.code.split(",")[0],
         peer.torque,
         ours.torque,
-        _relative(ours.torque, peer.torque),
-        _relative(ours.flux_linkage, peer.flux_linkage),
-        _relative(ours.potential, peer.potential),
-        _relative(ours.torque, fine.torque),
+        relative(ours.torque, peer.torque),
+        relative(ours.flux_linkage, peer.flux_linkage),
+        relative(ours.potential, peer.potential),
+        relative(ours.torque, fine.torque),
     )
 
 
-def _relative(ours, peers) -> float:
+def relative(ours, peers) -> float:
     """Largest difference over the largest value of the peer."""
     return float(np.max(np.abs(np.subtract(ours, peers))) / np.max(np.abs(peers)))
 

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from geometry.cross_section import CrossSection
+from geometry.parts import DrawnMachine
 from magnetostatics.elements import LINEAR
 from magnetostatics.unknowns import number_unknowns
 
@@ -27,7 +28,8 @@ class ConformingMesh:
 
     points (n, 2) [m]; triangles (m, 3), counter-clockwise, or (m, 6) with the middles of the edges 01, 12, 20 behind
     region (m,): index into region_names
-    outer, first_side, second_side (k, 2) or (k, 3): edges; second_side[i] is first_side[i] turned by one sector
+    outer, first_side, second_side (k, 2) or (k, 3): edges; on the first the potential is zero; second_side[i] is
+        first_side[i] turned by one sector
     sector_angle [rad], 2 pi for a whole machine; sign: of the potential from first_side to second_side
     """
 
@@ -64,7 +66,7 @@ def conforming_mesh(section: CrossSection, angle: float) -> ConformingMesh:
     region, names = _regions(section)
     triangles = merged[section.mesh.t.T]
     edges = _boundary_edges(triangles)
-    is_outer = _on_circle(points[edges], section.machine.stator_outer_radius)
+    is_outer = _is_outer(points[edges], section.machine)
     width = 2 * pi / section.sectors
     first, second = _sides(points, edges[~is_outer], (width - section.machine.slot_pitch) / 2, width)
     return ConformingMesh(points, triangles, region, names, edges[is_outer], first, second, width, section.sign, angle)
@@ -108,8 +110,7 @@ def _placed_points(section: CrossSection, angle: float) -> np.ndarray:
 
 
 def _rotor_triangles(section: CrossSection) -> np.ndarray:
-    centroids = section.mesh.p[:, section.mesh.t].mean(axis=1)
-    return np.flatnonzero(np.hypot(*centroids) < section.machine.mid_gap_radius)
+    return np.flatnonzero(section.rotor_elements)
 
 
 def _merge(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -143,6 +144,12 @@ def _boundary_edges(triangles: np.ndarray) -> np.ndarray:
     edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     distinct, count = np.unique(edges, axis=0, return_counts=True)
     return distinct[count == 1]
+
+
+def _is_outer(ends: np.ndarray, machine: DrawnMachine) -> np.ndarray:
+    """Whether the edges (k, 2, 2) lie on a circle where the potential is zero."""
+    circles = machine.stator.grounded_radius, machine.rotor.grounded_radius
+    return np.any([_on_circle(ends, radius) for radius in circles if radius is not None], axis=0)
 
 
 def _on_circle(ends: np.ndarray, radius: float) -> np.ndarray:

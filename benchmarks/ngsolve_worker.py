@@ -65,7 +65,7 @@ class Problem:
         others = [name for name in self.case["regions"] if name not in iron]
         law = piecewise_linear(self.case["b2"], self.case["nu"])
         form = BilinearForm(self.space, symmetric=True)
-        form += (grad(a) * grad(v) / self.case["mu_0"]).Compile() * self.over(*others)
+        form += (self.nu_beside_iron() * grad(a) * grad(v)).Compile() * self.over(*others)
         form += (law(InnerProduct(grad(a), grad(a))) * grad(a) * grad(v)).Compile() * self.over(*iron)
         return form
 
@@ -76,8 +76,15 @@ class Problem:
         b_r = self.mesh.MaterialCF({name: tuple(b) for name, b in case["remanences"].items()}, default=(0, 0))
         form = LinearForm(self.space)
         form += j * v * self.over(*case["current_densities"])
-        form += (b_r[0] * grad(v)[1] - b_r[1] * grad(v)[0]) / case["mu_0"] * self.over(*case["remanences"])
+        if case["remanences"]:
+            turned = b_r[0] * grad(v)[1] - b_r[1] * grad(v)[0]
+            form += self.nu_beside_iron() * turned * self.over(*case["remanences"])
         return form.Assemble()
+
+    def nu_beside_iron(self):
+        """1/mu_0 [m/H], in magnets over their recoil permeability."""
+        recoil = dict.fromkeys(self.case["remanences"], self.case["recoil_permeability"])
+        return 1 / (self.case["mu_0"] * self.mesh.MaterialCF(recoil, default=1))
 
     def newton(self) -> tuple[GridFunction, list[float]]:
         """Whole Newton steps from zero field, and the relative residual after each."""
@@ -95,7 +102,7 @@ class Problem:
         return a, residuals
 
     def ring_torque(self, a: GridFunction) -> float:
-        """Ring average of the stress over the stator half of the gap."""
+        """Ring average of the stress over the stator half of the gap; on a rotor outside with the other sign."""
         inner, outer = self.case["ring"]
         r_b_r, r_b_phi = x * grad(a)[1] - y * grad(a)[0], -(x * grad(a)[0] + y * grad(a)[1])
         moment = Integrate(r_b_r * r_b_phi / sqrt(x * x + y * y) * self.over("stator_gap"), self.mesh)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import cos, pi, sin, sqrt
+from math import cos, sin, sqrt
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from benchmarks.conforming_mesh import ConformingMesh, conforming_mesh, quadrati
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine, hanselman_machine
-from geometry.magnetisation import ParallelMagnetisation
 from geometry.winding import star_of_slots
 from magnetostatics.elements import LINEAR, QUADRATIC, TriangleOrder
 from magnetostatics.model import MachineMaterials, OperatingPoint
@@ -26,6 +25,7 @@ FINE_LAW = 1e-5  # relative error of the straight lines through the sampled relu
 SHORT_LAW = 1e-3  # the same, 123 points: peers search their tables point by point; torque moves by 2e-5
 _HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; iterations that overshoot it follow its last line
 _SAMPLING_GRID = 400_001
+_PARALLEL = 1e-12  # rad, between two points of a magnet
 
 
 @dataclass(frozen=True)
@@ -129,11 +129,16 @@ class FieldCase:
     @property
     def remanences(self) -> dict[str, tuple[float, float]]:
         """Remanence vector [T] of every magnet with the rotor turned, by region. Parallel magnetisation only."""
-        machine, remanence = self.section.machine, self.materials.magnet.remanence
-        if not isinstance(machine.magnetisation, ParallelMagnetisation):
-            raise ValueError(f"the comparison holds for parallel magnets, found {machine.magnetisation}")
-        angles = [self.state.point.angle + m * machine.pole_pitch + m * pi for m in range(self.section.magnets)]
-        return {f"magnet_{m}": (remanence * cos(t), remanence * sin(t)) for m, t in enumerate(angles)}
+        return {f"magnet_{m}": self._remanence(m) for m in range(self.section.magnets)}
+
+    def _remanence(self, number: int) -> tuple[float, float]:
+        section, corners = self.section, self.section.mesh.t[:, self.section.mesh.subdomains[f"magnet_{number}"]]
+        directions = section.magnetisation_angle(number, section.mesh.p[:, corners])
+        if np.ptp(directions) > _PARALLEL:
+            raise ValueError(f"the comparison holds for parallel magnets, found {section.machine.rotor}")
+        strength = section.polarity(number) * self.materials.magnet.remanence
+        turned = self.state.point.angle + float(directions.flat[0])
+        return strength * cos(turned), strength * sin(turned)
 
     @property
     def law_table(self) -> tuple[np.ndarray, np.ndarray]:
@@ -144,8 +149,8 @@ class FieldCase:
 
     @property
     def torque_ring(self) -> tuple[float, float]:
-        """Inner and outer radius [m] of the stator half of the air gap."""
-        return self.section.machine.mid_gap_radius, self.section.machine.stator_inner_radius
+        """Of the sliding circle and of the stator's rim [m], between which lies the stator half of the air gap."""
+        return self.section.machine.mid_gap_radius, self.section.machine.stator.rim_radius
 
 
 @lru_cache
