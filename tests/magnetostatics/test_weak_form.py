@@ -26,9 +26,12 @@ from magnetostatics.weak_form import WeakForm
 from materials.magnet import Magnet
 from tests.magnetostatics.other_machines import (
     CONSEQUENT,
+    HALBACH,
     INSET,
+    LOAVES,
     OUTRUNNER,
     RELUCTANCE,
+    RIBBED,
     SPOKE,
     TWO_LAYERS,
     V_SHAPE,
@@ -90,6 +93,9 @@ CASES = {
     "two layers": lambda: Case(other_kind(TWO_LAYERS), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "consequent poles": lambda: Case(other_kind(CONSEQUENT), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "inset magnets": lambda: Case(other_kind(INSET), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "loaves": lambda: Case(other_kind(LOAVES), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "ribbed V": lambda: Case(other_kind(RIBBED), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
+    "Halbach": lambda: Case(other_kind(HALBACH), PhaseCurrents(0.07, (30.0, -40.0, 10.0))),
     "spokes": lambda: Case(other_kind(SPOKE), PhaseCurrents(0.07, (300.0, -340.0, 40.0))),
     "reluctance": lambda: Case(other_kind(RELUCTANCE), PhaseCurrents(0.07, (300.0, -340.0, 40.0)), tolerance=THIN_IRON),
     "whole, with defects": lambda: Case(with_defects(), OperatingPoint(-0.36, RATED)),

@@ -43,6 +43,12 @@ def test_winding_length_and_materials():
     assert (found.materials.magnet.remanence, found.materials.magnet.recoil_permeability) == (1.24, 1.05)
 
 
+@pytest.mark.parametrize(("name", "steel"), [("v_48_8", "M400-50A"), ("szesynrm", "S235"), ("synrm_48_4", "M270-35A")])
+def test_the_steel_is_named_by_its_grade_wherever_its_curve_lies(name, steel):
+    """Loss data of M400-50A do not stand in for a curve of M400-50A."""
+    assert read_machine(name).steel == steel
+
+
 def test_the_end_turn_is_stated_or_follows_from_the_coil_pitch(tmp_path):
     text = (MACHINES / "prius_2004.toml").read_text(encoding="utf-8").replace('"curves/', f'"{MACHINES}/curves/')
     stated = tmp_path / "stated.toml"
