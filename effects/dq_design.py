@@ -5,7 +5,7 @@ Motor signs, amplitude-invariant: currents, voltages and flux linkages are peak 
     e_d = -omega psi_q,  e_q = omega psi_d,   i = i_m + g e,   v = R i + e
     g = iron_conductance + iron_hysteresis / |omega|
     psi = (psi_m + L_d i_md, L_q i_mq) + sum of flux laws of i_m
-    T_shaft = 1.5 p (psi_d i_mq - psi_q i_md) - sum of torque laws
+    T_shaft = 1.5 p (psi_d i_mq - psi_q i_md) - sum of torque laws - sum of brakes of i_m
 """
 
 from __future__ import annotations
@@ -29,6 +29,13 @@ class TorqueLaw(Protocol):
 
     def lost_torque(self, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
         """Torque lost [Nm], positive against a positive speed [rad/s], at an air-gap torque [Nm]."""
+
+
+class BrakeLaw(Protocol):
+    """A loss between the air gap and the shaft that follows from the currents."""
+
+    def lost_torque(self, speed: np.ndarray, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
+        """Torque lost [Nm], positive against a positive speed [rad/s], at magnetising currents [A]."""
 
 
 @dataclass(frozen=True)
@@ -56,12 +63,16 @@ class DqMachine:
     voltage_per_dc: float = 1.0 / sqrt(3.0)  # space vectors up to the circle that their hexagon holds
     fluxes: tuple[FluxLaw, ...] = field(default=())
     torques: tuple[TorqueLaw, ...] = field(default=())
+    brakes: tuple[BrakeLaw, ...] = field(default=())
 
     def with_flux(self, law: FluxLaw) -> DqMachine:
         return replace(self, fluxes=self.fluxes + (law,))
 
     def with_torque(self, law: TorqueLaw) -> DqMachine:
         return replace(self, torques=self.torques + (law,))
+
+    def with_brake(self, law: BrakeLaw) -> DqMachine:
+        return replace(self, brakes=self.brakes + (law,))
 
     def with_turns(self, factor: float) -> DqMachine:
         """``factor`` times the turns in the same slots: psi_m with it, inductances and resistance with its square."""

@@ -41,7 +41,8 @@ class DrawnAsBuilt(BuiltMachine):
 
     Currents, flux linkages and what follows from them are those of the equivalent star that the terminals see.
     machine: dimensions as built;  turns: of every coil [1]
-    phase_resistance: of a phase of the star at 20 degC [ohm], half of what is between two terminals
+    phase_resistance: of a phase of the star at 20 degC [ohm], half of what is between two terminals, in the mean
+    resistance_shares: of A, B and C over that mean [1]; under load all phases count as alike
     largest_current: of a phase on its bench, peak, up to which flux linkages are mapped [A]
     copper_area: of a turn [m^2], zero where the wire is not known
     """
@@ -52,6 +53,18 @@ class DrawnAsBuilt(BuiltMachine):
     phase_resistance: float = 0.0
     largest_current: float = 0.0
     copper_area: float = 0.0
+    resistance_shares: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    @property
+    def phase_resistances(self) -> tuple[float, float, float]:
+        """Of A, B and C of the star at 20 degC [ohm]."""
+        a, b, c = self.resistance_shares
+        return a * self.phase_resistance, b * self.phase_resistance, c * self.phase_resistance
+
+    def with_phase_resistances(self, a: float, b: float, c: float) -> DrawnAsBuilt:
+        """Those of the three phases [ohm]."""
+        mean = (a + b + c) / 3
+        return replace(self, phase_resistance=mean, resistance_shares=(a / mean, b / mean, c / mean))
 
     def with_airgap(self, change: float) -> DrawnAsBuilt:
         stator, rotor = self.machine.stator, self.machine.rotor

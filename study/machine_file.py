@@ -145,7 +145,6 @@ def _machine(table: _Table) -> MachineFile:
     machine = ComposedMachine(_part(table, "stator", STATORS), _part(table, "rotor", ROTORS))  # type: ignore[arg-type]
     check_machine(machine)
     winding, mesh = values["winding"], values["mesh"]
-    materials = _materials(table, values["materials"], machine.rotor.magnets_per_pitch)
     layout = star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"])
     return MachineFile(
         table.path,
@@ -156,14 +155,14 @@ def _machine(table: _Table) -> MachineFile:
         _end_turn(table, winding, machine, layout),
         _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
-        materials,
+        _materials(table, values["materials"], machine.rotor.magnets_per_pitch),
         MeshDensity(
             mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
         ),
         winding,
         values["drive"],
         (_count(table, "flux_map", values, "angles", 1), _count(table, "flux_map", values, "currents", 4)),
-        materials.stator_steel.name,  # type: ignore[attr-defined]  # the laws of curves have one
+        load_steel(values["materials"]["stator_steel"], table.path.parent).name,
         values["materials"]["loss_grade"],
         _search(table, machine, values) if VARIABLES in table.sections else None,
     )

@@ -74,6 +74,9 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
     "drawn": (
         DeviceKey("machine_file", "in quotes: a name in machines/, or the path of a file like those"),
         DeviceKey("phase_resistance_mohm", "half of that between two terminals, at 20 degC", False),
+        DeviceKey("phase_resistance_a_mohm", "of A alone, where the phases are not alike, in its place", False),
+        DeviceKey("phase_resistance_b_mohm", "of B", False),
+        DeviceKey("phase_resistance_c_mohm", "of C", False),
         DeviceKey("remanence_T", "of the magnets where it is not that of the file", False),
         DeviceKey("remanence_coefficient_percent_per_K", "relative change of the remanence; default -0.11", False),
         DeviceKey("remanence_reference_degC", "temperature at which the remanence holds; default 20", False),

@@ -19,6 +19,7 @@ from geometry.half_cell import MeshDensity
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.torque import arkkio_torque
+from magnetostatics.zero_sequence import harmonics_of_half_period
 from study.machine_file import MACHINES
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
@@ -116,6 +117,20 @@ def test_effects_do_what_they_say(outrunner):
     assert not BridgeWidth.can_act_on(design)
 
 
+def test_flux_that_leaks_at_the_ends_is_missing_at_speed_whatever_the_current(outrunner):
+    """Seven per cent of the magnets', and nothing of what currents change."""
+    bench, design = outrunner
+    drawn = replace(design, phase_resistance=0.05, largest_current=5.0)
+    leaking = EndLeakage(share=0.07).on_design(drawn)
+    at = {"speed": np.array([100.0])}
+    volts = [bench.respond(one, "no_load", at)["v_ll"][0] for one in (drawn, leaking)]
+    assert volts[1] == pytest.approx(0.93 * volts[0], rel=1e-9)
+    i_d, i_q = np.array([-2.0]), np.array([3.0])
+    lost = [answers(outrunner, drawn).mean_dq(d, q) - answers(outrunner, leaking).mean_dq(d, q)
+            for d, q in ((i_d, i_q), (0 * i_d, 0 * i_q))]  # fmt: skip
+    assert lost[0] == pytest.approx(lost[1], rel=1e-9) and lost[1][0, 0] > 0
+
+
 def test_eddies_take_the_flux_that_crosses_the_gap_and_leave_what_all_phases_share(outrunner):
     """Slots, ends and whatever the three phases have in common stay: L + 2 M does not change."""
     bench, design = outrunner
@@ -172,6 +187,29 @@ def test_the_resistance_between_lines_is_seen():
     assert bench.doubts(right) == ()
     (said,) = bench.doubts(replace(right, phase_resistance=8.9462))
     assert "between two lines" in said
+
+
+def test_phases_that_are_not_alike(outrunner):
+    """Between lines the sum of two; a tolerance moves one of them and the mean by a third of that."""
+    bench, _ = outrunner
+    device = {"machine_file": "outrunner_9_12"} | {f"phase_resistance_{x}_mohm": r for x, r in zip("abc", (68, 74, 66))}
+    design = bench.design(device)
+    warm = {"winding_T": np.array([20.0, 70.0])}
+    found = bench.respond(design, "phase_resistance", warm)
+    copper = 1 + 0.00393 * 50
+    assert found["r_ab"] == pytest.approx([0.142, 0.142 * copper], rel=1e-3)
+    assert [found[f"r_{x}"][0] for x in ("bc", "ca", "a", "c")] == pytest.approx([0.140, 0.134, 0.068, 0.066])
+    assert found["resistance"][0] == pytest.approx(0.208 / 3)
+    moved = bench.with_tolerance(design, Tolerance("phase_resistance_b", 0.05, relative=True, source=""), 1.0)
+    seen = bench.respond(moved, "phase_resistance", warm)
+    assert [seen[f"r_{x}"][0] for x in ("ab", "bc", "ca")] == pytest.approx([0.1457, 0.1437, 0.134])
+    assert seen["resistance"][0] == pytest.approx(found["resistance"][0] + 0.05 * 0.074 / 3)
+
+
+@pytest.mark.parametrize("beside", ("phase_resistance_mohm", "phase_resistance_b_mohm"))
+def test_phases_are_stated_all_or_none(beside):
+    with pytest.raises(WorkbenchError, match="give all of phase_resistance_a"):
+        DrawnBench().design({"machine_file": "outrunner_9_12", "phase_resistance_a_mohm": 70.0, beside: 70.0})
 
 
 # ---- windings in delta and with parallel paths, seen from their terminals --------------------------------------------
@@ -264,6 +302,30 @@ def test_what_goes_round_a_delta_brakes_as_its_differential_equation_says(outrun
     assert seen.circulating_loss(np.array([speed])) == pytest.approx(loss, rel=2e-3)
     brake = {name: bench.respond(one, "drag", {"speed": np.array([speed])})["torque"] for name, one in wound.items()}
     assert brake["paths"] == 0.0 and -brake["delta"] * speed == pytest.approx(loss, rel=2e-3)
+
+
+FINER = Plan(72, MeshDensity(gap_edges=432, gap_layers=1, across_iron=1.0))
+
+
+def test_load_changes_what_goes_round_a_delta(wound):
+    """Third, ninth ... order of the flux that the phases share, of the field itself at twelve positions of a sixth of a
+    period, make the loss by which the shaft lacks torque; the map has none of these currents as a node."""
+    design = replace(wound["delta"], largest_current=40.0)
+    bench = DrawnBench(FINER, cache=None).prepared(design, ())
+    seen, i_d, i_q, speed = Answers(bench.expansion, bench.anchors, design), -15.0, 30.0, 900.0
+    model, axis = bench.expansion.samples.model(design), design.drawing.layout.phase_axis + design.drawing.star_lag
+    common = []
+    for theta in pi / 3 * np.arange(12) / 12:
+        turned = theta - axis - 2 * pi / 3 * np.arange(3)
+        coils = design.turns * design.drawing.coil_currents @ (i_d * np.cos(turned) - i_q * np.sin(turned))
+        common.append(phase_flux_linkage(model.solve(PhaseCurrents(theta / 6, tuple(coils)))).mean())
+    orders, sizes = harmonics_of_half_period(design.turns * design.length * np.array(common))
+    expected = seen.loss_round_delta(np.array([speed]), orders, sizes**2)[0]
+    idle = seen.circulating_loss(np.array([speed]))[0]
+    assert expected > 100 * idle, "the voltage without current has hardly any third order"
+    at = {"i_d": np.full(2, i_d), "i_q": np.full(2, i_q), "speed": np.array([0.0, speed])}
+    still, turning = bench.respond(design, "dq_operation", at)["torque"]
+    assert (still - turning) * speed == pytest.approx(expected, rel=0.06)
 
 
 def test_three_paths_are_a_third_of_the_voltage_at_three_times_the_current(outrunner, wound):

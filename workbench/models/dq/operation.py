@@ -88,7 +88,8 @@ class Operation:
         psi_d, psi_q = self.flux_linkage(i_d, i_q)
         torque = 1.5 * self.design.pole_pairs * (psi_d * i_q - psi_q * i_d)
         lost = sum(law.lost_torque(self.speed, torque) for law in self.design.torques)
-        return torque - lost
+        braked = sum(law.lost_torque(self.speed, i_d, i_q) for law in self.design.brakes)
+        return torque - lost - braked
 
     def slopes(self, of: Callable[..., np.ndarray], i_d: np.ndarray, i_q: np.ndarray) -> Currents:
         """d/di_d and d/di_q of a function of the magnetising currents, by central differences."""

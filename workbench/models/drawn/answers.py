@@ -202,21 +202,26 @@ class Answers:
         return FrequencyTerms(*(size * float(term) for term in (total.hysteresis, total.eddy, total.excess)))
 
     def circulating_loss(self, speed: np.ndarray) -> np.ndarray:
-        """Of the current round a delta at open terminals [W] (n,), at speeds [rad/s] (n,); none in a star.
-
-        P = 3/2 R sum over n = 3, 9, 15 ... of (n w psi_0n)^2 / (R^2 + (n w L_0)^2), w electrical, of the phases of the
-        delta. Source: ``electrical.circulating``.
-        """
-        d = self.design
-        if not (d.drawing.is_delta and speed.any()):
+        """Of the current round a delta at open terminals [W] (n,), at speeds [rad/s] (n,); none in a star."""
+        if not (self.design.drawing.is_delta and speed.any()):
             return np.zeros(len(speed))
-        if not d.phase_resistance:
-            raise WorkbenchError("a delta brakes by the current that goes round it: give phase_resistance in [device]")
         orders = np.arange(3, len(self.coil_waves), 3)
-        rate = np.abs(speed)[:, None] * d.machine.pole_pairs * orders
-        resistance, inductance, paths = 3 * d.phase_resistance, self._common_inductance, self._paths
-        square = (rate * np.abs(self.coil_waves[orders]) / paths) ** 2
-        return 1.5 * resistance * (square / (resistance**2 + (rate * inductance) ** 2)).sum(axis=1)
+        squares = np.abs(self.coil_waves[orders] / self._paths) ** 2
+        return self.loss_round_delta(speed, orders, squares)
+
+    def loss_round_delta(self, speed: np.ndarray, orders: np.ndarray, squares: np.ndarray) -> np.ndarray:
+        """P = 3/2 R sum over n = 3, 9, 15 ... of (n w psi_0n)^2 / (R^2 + (n w L_0)^2) [W] (n,), w electrical, of the
+        phases of the delta; L_0 is that without current.
+
+        speed: [rad/s] (n,); orders: [1] (m,); squares: of the amplitudes psi_0n [Wb^2] (m,) or (n, m)
+        Raises WorkbenchError without a resistance. Source: ``electrical.circulating``.
+        """
+        if not self.design.phase_resistance:
+            raise WorkbenchError("a delta brakes by the current that goes round it: give phase_resistance in [device]")
+        rate = np.abs(speed)[:, None] * self.design.machine.pole_pairs * orders
+        resistance, inductance = 3 * self.design.phase_resistance, self._common_inductance
+        terms = rate**2 * squares / (resistance**2 + (rate * inductance) ** 2)
+        return np.asarray(1.5 * resistance * terms.sum(axis=1))
 
     @cached_property
     def _common_inductance(self) -> float:
@@ -234,28 +239,59 @@ class Answers:
     # ---- windings -----------------------------------------------------------------------------------------------
 
     def resistance(self, at: Columns) -> np.ndarray:
-        """Of a phase (n,) [ohm]: R_20 (1 + alpha (T - 20 degC)) at winding_T."""
+        """Of a phase in the mean of all (n,) [ohm]: R_20 (1 + alpha (T - 20 degC)) at winding_T."""
         rows = len(next(iter(at.values())))
         winding = at.get("winding_T", np.full(rows, COPPER.reference_temperature))
         warm = 1.0 + COPPER.temperature_coefficient * (winding - COPPER.reference_temperature)
         return warm * at.get("resistance_factor", 1.0) * self.design.phase_resistance
+
+    def resistances(self, at: Columns) -> np.ndarray:
+        """Of A, B and C (n, 3) [ohm]."""
+        return np.outer(self.resistance(at), self.design.resistance_shares)
 
     # ---- currents that turn with the rotor ----------------------------------------------------------------------
 
     def mean_dq(self, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
         """psi_d, psi_q (n, 2) [Wb] at currents along both axes [A] (n,): means over a part of an electrical period, of
         three positions in a sixth without sixth and twelfth orders."""
-        pairs, positions = self.design.machine.pole_pairs, 18 // self._parts
-        step = self.expansion.samples.steps // pairs / self._parts / positions
-        found = np.zeros((len(i_d), 2))
-        for k in range(positions):
-            place = round((k + 0.5) * step)
-            theta = pairs * place * self.expansion.samples.step
-            states = [self._turning_state(d, q, place) for d, q in zip(i_d, i_q, strict=True)]
-            samples = self.expansion.at_centre(states) + self.expansion.change(self.design, states)
-            phases = samples[:, 1:] @ self.design.drawing.coil_currents
-            found += np.array([park(one, theta, self._star_axis) for one in phases]) / positions
-        return self.design.turns * self.design.length * found
+        theta, coils = self._turning_linkages(i_d, i_q)
+        phases = coils @ self.design.drawing.coil_currents
+        return np.mean([[park(one, at, self._star_axis) for one in rows] for at, rows in zip(theta, phases)], axis=0)
+
+    def common_waves(self, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
+        """Complex amplitudes of what the phases of a delta have in common at ``common_orders``, per path (n,
+        orders) [Wb], at line currents along both axes [A] (n,); the others that a part of a period has left out."""
+        theta, coils = self._turning_linkages(i_d, i_q)
+        turning = np.exp(1j * np.outer(theta, self.common_orders))
+        columns = np.concatenate([turning.real, -turning.imag], axis=1)
+        both = np.linalg.lstsq(columns, coils.mean(axis=2) / self._paths, rcond=None)[0]
+        real, imaginary = both.reshape(2, len(self.common_orders), -1)
+        return (real + 1j * imaginary).T
+
+    @property
+    def common_orders(self) -> np.ndarray:
+        """Lowest orders of what all phases have in common (orders,) [1]: 3 and 9, and 6 where poles are not alike."""
+        return np.array([3, 9] if self._parts == 6 else [3, 6, 9])
+
+    def _turning_linkages(self, i_d: np.ndarray, i_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Electrical angles (positions,) [rad] over a part of a period, and flux linkages there of all coils of each
+        phase in series (positions, n, 3) [Wb] at line currents along both axes [A] (n,).
+
+        Of the magnets' part the share that leaks at the ends is missing, whatever the current. Twice as many positions
+        for a delta, of which the orders that go round it are asked.
+        """
+        positions = (36 if self.design.drawing.is_delta else 18) // self._parts
+        step = self.expansion.samples.steps / self.design.machine.pole_pairs / self._parts / positions
+        places = [round((k + 0.5) * step) for k in range(positions)]
+        coils = np.stack([self._turning_coils(np.append(i_d, 0.0), np.append(i_q, 0.0), place) for place in places])
+        coils = coils[:, :-1] - self.design.end_leakage * coils[:, -1:]
+        theta = self.design.machine.pole_pairs * self.expansion.samples.step * np.array(places)
+        return theta, self.design.turns * self.design.length * coils
+
+    def _turning_coils(self, i_d: np.ndarray, i_q: np.ndarray, place: int) -> np.ndarray:
+        """Flux linkages of coils per turn and metre at one step of the grid (n, 3) [Wb/m]."""
+        states = [self._turning_state(d, q, place) for d, q in zip(i_d, i_q, strict=True)]
+        return (self.expansion.at_centre(states) + self.expansion.change(self.design, states))[:, 1:]
 
     def turning_torque(self, angle: np.ndarray, i_q: float) -> np.ndarray:
         """At rotor angles [rad] (n,) with a current along the q axis that turns with the rotor [A] [Nm] (n,)."""

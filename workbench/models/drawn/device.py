@@ -3,6 +3,7 @@
 Needed: machine_file, in quotes: a name in ``machines/`` or the path of a file like those. If known:
 
     phase_resistance_mohm         of a phase of the equivalent star at 20 degC, half of that between two terminals
+    phase_resistance_a_mohm       and _b_, _c_: of each phase in its place, where they are not alike
     largest_current_A             of a phase, peak, that is on the bench: flux linkages are mapped up to it
     slots, poles                  of the file once more, where angles are to be checked
     remanence_T                   of the magnets where it is not that of the file
@@ -35,9 +36,11 @@ from workbench.models.device import numbers, without_unit_traps
 
 FILE = "machine_file"
 _COUNTS = ("slots", "poles")
+_PHASES = ("phase_resistance_a", "phase_resistance_b", "phase_resistance_c")
 _OPTIONAL = (
     *_COUNTS, "remanence", "phase_resistance", "largest_current", "stacking_factor", "remanence_reference",
     "remanence_coefficient", "magnet_temperature", "end_winding_inductance", "wire_diameter", "wires_in_hand",
+    *_PHASES,
 )  # fmt: skip
 _ROOM = 20.0  # degC, where makers state a remanence
 
@@ -65,7 +68,7 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
         closing.lag,
         closing.circulates,
     )
-    return DrawnAsBuilt(
+    made = DrawnAsBuilt(
         drawing,
         found.machine,
         found.turns,
@@ -78,6 +81,18 @@ def machine_of_device(device: Mapping[str, object]) -> DrawnAsBuilt:
         largest_current=values.get("largest_current", 0.0),
         copper_area=_copper(values),
     )
+    return _with_phases(made, values)
+
+
+def _with_phases(design: DrawnAsBuilt, values: Mapping[str, float]) -> DrawnAsBuilt:
+    stated = [name for name in _PHASES if name in values]
+    if not stated:
+        return design
+    if len(stated) < len(_PHASES) or "phase_resistance" in values:
+        raise WorkbenchError(
+            f"[device] gives {stated[0]}: give all of {', '.join(_PHASES)}, and no phase_resistance beside them"
+        )
+    return design.with_phase_resistances(*(values[name] for name in _PHASES))
 
 
 def _check_counts(found: MachineFile, values: Mapping[str, float]) -> None:
@@ -130,6 +145,10 @@ def with_tolerance(design: DrawnAsBuilt, tolerance: Tolerance, z: float) -> Draw
         return design.with_magnet(**{name: moved(getattr(design.magnet, name))})
     if name == "stacking_factor":  # no more steel than the length; a fit that would have more stops there
         return replace(design, stacking_factor=min(moved(design.stacking_factor), 1.0))
+    if name in _PHASES:
+        each = list(design.phase_resistances)
+        each[_PHASES.index(name)] = moved(each[_PHASES.index(name)])
+        return design.with_phase_resistances(*each)
     if name in _OWN:
         return replace(design, **{name: moved(getattr(design, name))})
     part, dimension = name.split(".")
@@ -137,7 +156,7 @@ def with_tolerance(design: DrawnAsBuilt, tolerance: Tolerance, z: float) -> Draw
 
 
 def _known(design: DrawnAsBuilt, written: str) -> str:
-    known = [*_OWN, *_ALIASES, *_OF_THE_MAGNET, "airgap", "magnet_temperature", *_dimensions(design)]
+    known = [*_OWN, *_PHASES, *_ALIASES, *_OF_THE_MAGNET, "airgap", "magnet_temperature", *_dimensions(design)]
     for name in (written, split_unit(written)[0]):
         if name in known:
             return _ALIASES.get(name, name)

@@ -88,10 +88,10 @@ def _holding_current(answers: Answers, at: Columns) -> Found:
 
 
 def _phase_resistance(answers: Answers, at: Columns) -> Found:
-    """Of a phase, and between two of them."""
-    r = answers.resistance(at)
-    lines = {f"r_{x}": 2 * r for x in ("ab", "bc", "ca")}
-    return {"resistance": r, **{f"r_{x}": r for x in PHASES}, **lines}
+    """Of each phase, their mean, and between two of them."""
+    each = answers.resistances(at)
+    lines = {f"r_{x}": each[:, k] + each[:, (k + 1) % 3] for k, x in enumerate(("ab", "bc", "ca"))}
+    return {"resistance": answers.resistance(at)} | by_phase("r", each) | lines
 
 
 def _drag(answers: Answers, at: Columns) -> Found:
@@ -153,7 +153,8 @@ def dq_machine(answers: Answers) -> DqMachine:
     left = psi - np.stack([psi_m + l_d * axis[:, None] + 0 * axis, l_q * axis + 0 * axis[:, None]], axis=2)
     law = FluxMap(*(RectBivariateSpline(axis, axis, left[:, :, k], s=0) for k in (0, 1)), largest)
     machine = DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, answers.design.phase_resistance)
-    return machine.with_flux(law).with_torque(Drag(partial(lost_torque, answers)))
+    machine = machine.with_flux(law).with_torque(Drag(partial(lost_torque, answers)))
+    return machine.with_brake(_loaded_delta(answers, axis)) if answers.design.drawing.is_delta else machine
 
 
 def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
@@ -164,6 +165,40 @@ def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
     found[:, 0, 1] = 0.0
     found = found + answers.design.end_winding_inductance * np.stack([i_d, i_q], axis=1).reshape(found.shape)
     return np.concatenate([found[:, :0:-1] * np.array([1.0, -1.0]), found], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedDelta:
+    """What load adds to the loss of the current round a delta, as a brake of the dq machine.
+
+    Between the currents of the map within 5 % of the loss, deep in saturation within 20 %.
+    waves: real and imaginary part of every order, over i_d and the size of i_q [Wb]; beyond the largest current [A]
+    they stay as they are there;  idle: squares of the amplitudes without current [Wb^2] (orders,)
+    """
+
+    answers: Answers
+    waves: tuple[tuple[RectBivariateSpline, RectBivariateSpline], ...]
+    idle: np.ndarray
+    largest: float
+
+    def lost_torque(self, speed: np.ndarray, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
+        """See ``BrakeLaw``."""
+        d, q = np.clip(i_d, -self.largest, self.largest), np.minimum(np.abs(i_q), self.largest)
+        squares = np.stack([sum(part.ev(d, q) ** 2 for part in parts) for parts in self.waves], axis=1)
+        loss = self.answers.loss_round_delta(speed, self.answers.common_orders, squares - self.idle)
+        return np.asarray(loss * np.sign(speed) / np.maximum(np.abs(speed), _STILL))
+
+
+def _loaded_delta(answers: Answers, axis: np.ndarray) -> LoadedDelta:
+    half = axis[axis >= 0]
+    i_d, i_q = (values.ravel() for values in np.meshgrid(axis, half, indexing="ij"))
+    waves = answers.common_waves(i_d, i_q).reshape(len(axis), len(half), -1)
+
+    def spline(values: np.ndarray) -> RectBivariateSpline:
+        return RectBivariateSpline(axis, half, values, s=0)
+
+    parts = tuple((spline(one.real), spline(one.imag)) for one in np.moveaxis(waves, 2, 0))
+    return LoadedDelta(answers, parts, np.abs(waves[len(axis) // 2, 0]) ** 2, float(axis[-1]))
 
 
 KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {

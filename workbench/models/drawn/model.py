@@ -19,7 +19,8 @@ but the resistance takes ``magnet_T``: the remanence follows it, row by row.
     dq_supply, dq_operation, dyno_map, no_load             as of the dq model, with the flux linkages of the field
 
 A winding in delta, or of parallel paths, is seen from its terminals: phases are those of the equivalent star, and
-``inductance`` has lines alone. Constant currents do not go round a delta; alternating ones do, and at speed they brake.
+``inductance`` has lines alone. Constant currents do not go round a delta; alternating ones do, and at speed they brake,
+under load by their third and ninth order (by their sixth, too, where north and south poles are not alike).
 
 Signs are those of the bench of machines with tooth coils (``workbench.models.machine``). All kinds of stators and
 rotors of ``geometry`` are taken; defects of single magnets, coils or slots are not, and nothing across the length but
