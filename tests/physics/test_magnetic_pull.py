@@ -9,9 +9,20 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from geometry.defects import DynamicEccentricity, StaticEccentricity
+from geometry.defects import (
+    DynamicEccentricity,
+    MagnetArc,
+    MagnetPosition,
+    SlotOpening,
+    StaticEccentricity,
+    ToothWidth,
+)
+from geometry.errors import GeometryError
+from geometry.half_cell import MeshDensity
 from magnetostatics.currents import PhaseCurrents
+from magnetostatics.newton import NewtonSettings
 from magnetostatics.torque import arkkio_torque, magnetic_pull, maxwell_torque
+from tests.magnetostatics.other_machines import NAMED, currents, model_of
 from tests.magnetostatics.reference_machine import FINE, SWEEP
 from tests.magnetostatics.whole_machine import COARSE, NINE_SLOTS, TWELVE_EIGHT, whole_model, with_defects
 from tests.physics.coenergy import coenergy
@@ -99,6 +110,39 @@ def test_virtual_work_of_an_eccentric_rotor(point):
     shift = AMOUNT * np.array([np.cos(DIRECTION), np.sin(DIRECTION)])
     pull = magnetic_pull(field(DynamicEccentricity, *shift, point, FINE))
     assert_allclose(turned(pull, -point.angle), coenergy_force(DynamicEccentricity, point, FINE), atol=0.006 * TYPICAL)
+
+
+OF_OTHERS = MeshDensity(gap_edges=360, longest_gap_edge=1.0, gap_layers=2, across_iron=1.5)
+TIGHT = NewtonSettings(tolerance=1e-10)
+OTHER_KINDS = {"outrunner": 40.0, "reluctance": 600.0, "inset": 300.0}  # ampere-turns of a coil
+
+
+@pytest.mark.parametrize("name", OTHER_KINDS)
+def test_virtual_work_of_machines_of_other_kinds(name):
+    """As above, the shift a fifth of the gap."""
+    drawn = NAMED[name]
+    base, size = model_of(drawn, OF_OTHERS, whole=True, settings=TIGHT), 0.2 * drawn.airgap
+    point = currents(base, 0.07, OTHER_KINDS[name], 0.5 if name != "reluctance" else -0.8, 1.0)
+    at, step = size * np.array([np.cos(DIRECTION), np.sin(DIRECTION)]), 0.02 * size
+
+    def solved(x, y):
+        return with_defects(base, StaticEccentricity(hypot(x, y), atan2(y, x))).solve(point)
+
+    pull, work = magnetic_pull(solved(*at)), []
+    for axis in np.eye(2):
+        ends = [coenergy(solved(*(at + sign * step * axis))) for sign in (1, -1)]
+        work.append((ends[0] - ends[1]) / (2 * step))
+    assert_allclose(pull, -np.array(work), atol=0.01 * np.hypot(*pull))
+    assert np.hypot(*pull) > 10.0
+
+
+OF_ONE_KIND = MagnetPosition(1, 0.01), MagnetArc(1, 0.01), SlotOpening(1, 1e-5), ToothWidth(1, 1e-5)
+
+
+@pytest.mark.parametrize("defect", OF_ONE_KIND, ids=lambda one: type(one).__name__)
+def test_defects_that_another_kind_has_not_are_refused(defect):
+    with pytest.raises(GeometryError, match="magnets on the surface of an inner rotor, found OutwardTeeth with Outer"):
+        with_defects(model_of(NAMED["outrunner"], OF_OTHERS, whole=True), defect)
 
 
 def test_pull_is_linear_in_a_small_eccentricity():
