@@ -11,7 +11,7 @@ S-shaped curve (initial permeability below the maximum); that is physics, not a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite
 
@@ -56,6 +56,11 @@ class Reluctivity:
     def energy_density(self, b: Values) -> np.ndarray:
         """w(B) = integral of H dB from 0 to B [J/m^3] at b [T], of its shape; even in b."""
         raise NotImplementedError
+
+    def rising(self, share: float) -> Reluctivity:
+        """The law with ``share`` [1], at least 0, of the polarisation that it takes up beyond what was measured; the
+        law itself where nothing was."""
+        return self
 
     def coenergy_density(self, b: Values) -> np.ndarray:
         """w'(B) = integral of B dH from 0 to H(B) = H B - w [J/m^3] at the flux density b [T], of its shape."""
@@ -250,6 +255,10 @@ class SplineReluctivity(Reluctivity):
     def saturation_polarisation(self) -> float:
         """Polarisation B - mu_0 H for H -> infinity [T]."""
         return self.tail.saturation_polarisation
+
+    def rising(self, share: float) -> SplineReluctivity:
+        """The law with another rise c beyond its table; where that is not one, the slope jumps at the last point."""
+        return replace(self, tail=replace(self.tail, rise=share * self.tail.rise))
 
     @property
     def last_flux_density(self) -> float:

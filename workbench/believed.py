@@ -7,7 +7,7 @@ is measured in ``likelihood.noise``, and what is asked before a convention is bl
 UNKNOWN_RATE = 0.03  # share of campaigns that show an unknown function of the conditions in a table
 LAW_RATE = 0.0025  # the same for each law of the device that no effect of the library is
 TAILS = 4.0  # degrees of freedom of Student's t of an effect's size [prior standard deviations]: far off is a surprise
-MOST = 4  # effects that may be hidden at once, and names that may stand for one: with more the data tell nothing
+MOST = 4  # effects hidden at once beside what every other bench shows; names for one: more the data cannot tell
 MISSING = 0.95  # probability that something is missing, whatever it is, from which that is said
 LIKELY = 0.5  # more likely than not: that something remains, that nothing is missing, that an unknown law is noticed
 FALSE_ALARMS = 0.02  # wanted share of campaigns in which something false is said; a name is printed from 98 % on

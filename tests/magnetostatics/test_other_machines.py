@@ -65,7 +65,7 @@ def test_two_routes_to_the_torque(name):
     assert maxwell_torque(found) == pytest.approx(arkkio_torque(found), rel=2e-3)
 
 
-ROUGH = MeshDensity(gap_edges=144, longest_gap_edge=10.0, gap_layers=1, across_iron=1.0)
+ROUGH = MeshDensity(gap_edges=192, longest_gap_edge=10.0, gap_layers=2, across_iron=1.0)
 
 
 @pytest.mark.slow

@@ -192,6 +192,40 @@ def test_saturation_polarisation_of_the_steels_is_physical():
     assert load_steel("M270-35A").saturation_polarisation == pytest.approx(2.00, abs=0.02)
 
 
+@every_law
+def test_another_rise_beyond_the_table_changes_nothing_in_it(law):
+    last = getattr(law, "last_flux_density", 3.0)
+    inside, beyond = np.linspace(0.0, last, 50), np.linspace(last, last + 0.4, 50)[1:]
+    assert_allclose(law.rising(0.3).field_strength(inside), law.field_strength(inside))
+    assert np.all(law.rising(0.3).field_strength(beyond) >= law.field_strength(beyond) * (1 - 1e-9))
+
+
+@every_spline
+def test_the_rise_beyond_the_table_goes_from_none_to_more(law):
+    last, expected = law.last_flux_density, law.saturation_polarisation
+    at_last = last - MU_0 * float(law.field_strength(last))
+    flat, more = law.rising(0.0), law.rising(2.0)
+    b = np.array([last + 0.01, last + 0.3])
+    assert np.diff(flat.field_strength(b)) == pytest.approx(np.diff(b) / MU_0)
+    assert more.saturation_polarisation == pytest.approx(at_last + 2 * (expected - at_last))
+
+
+def test_tables_cut_at_1_8_tesla_rise_up_to_twice_as_much_as_is_expected_from_there():
+    """By their own last points; what a table that ends early leaves open."""
+    shares = []
+    for name in known_steels():
+        H, B = curve(name)
+        kept = int(np.searchsorted(B, 1.8 + 1e-9))
+        if B[-1] < 1.95 or B[kept - 1] < 1.7:
+            continue
+        short = SplineReluctivity.from_points(name, H[:kept], B[:kept])
+        rise = B[-1] - float(short.flux_density(H[kept - 1])) - MU_0 * (H[-1] - H[kept - 1])
+        expected = float(short.flux_density(H[-1])) - B[kept - 1] - MU_0 * (H[-1] - H[kept - 1])
+        shares.append(rise / expected)
+    assert len(shares) >= 12
+    assert 1.0 < min(shares) and max(shares) < 1.0 + 2 * 0.6
+
+
 def test_approach_to_saturation_continues_a_known_steel():
     """Froehlich's steel is known beyond its table: a table that ends at 1.7 T gives B within 1 %
     up to three times its last field."""

@@ -7,7 +7,6 @@ from heapq import heappush
 
 import numpy as np
 
-from workbench.believed import MOST
 from workbench.explain.explore import Beliefs, Explanation, explored
 from workbench.explain.hypotheses import Beside, beside_unknown
 from workbench.explain.tried import (
@@ -50,7 +49,7 @@ def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None
     """What one effect more would gain beside an unknown function."""
     hypothesis = beside.hypothesis
     have = hypothesis.names
-    if len(have) == MOST:
+    if not search.beliefs.leaves_room(have):
         return
     added = additions(search, hypothesis, np.hstack([hypothesis.fit.jacobian, beside.columns()]))
     promised: dict[Set, tuple[Explanation, float]] = {}

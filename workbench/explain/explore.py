@@ -1,5 +1,5 @@
 """Sets of effects that explain readings, by linear algebra alone: every effect beside nothing, then every other effect
-beside each of the sets that lead, up to four at once."""
+beside each of the sets that lead, up to four at once beside what every other bench shows."""
 
 from __future__ import annotations
 
@@ -38,7 +38,17 @@ class Beliefs:
         return fsum(self.log_odds[name] for name in names)  # the same in whatever order a set has
 
     def may_join(self, name: str, names: frozenset[str]) -> bool:
-        return name not in names and not any(frozenset((name, other)) in self.excluded for other in names)
+        if name in names or any(frozenset((name, other)) in self.excluded for other in names):
+            return False
+        return self._is_usual(name) or sum(not self._is_usual(other) for other in names) < MOST
+
+    def _is_usual(self, name: str) -> bool:
+        """Whether at least every other bench shows an effect: such a one is not counted among what is hidden."""
+        return self.log_odds[name] >= 0
+
+    def leaves_room(self, names: frozenset[str]) -> bool:
+        """Whether any effect may join a set."""
+        return any(self.may_join(name, names) for name in self.log_odds)
 
 
 def beliefs_of(library: Mapping[str, type[Effect]], names: Iterator[str] | tuple[str, ...]) -> Beliefs:

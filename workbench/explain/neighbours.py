@@ -9,7 +9,6 @@ import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.believed import MOST
 from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.tried import Progress, Promise, Search, Set, fit_set, label_of, start_from
 from workbench.likelihood.fit import with_parameters
@@ -29,7 +28,7 @@ def exchange(search: Search, leader: Set, progress: Progress) -> None:
     starts = [promise for part in parts for promise in _instead_of_effects(search, whole, part)]
     if len(leader) > 1:
         starts += _instead_of_effects(search, whole, frozenset())
-    if len(leader) < MOST:
+    if search.beliefs.leaves_room(leader):
         pulled = np.flatnonzero(np.abs(whole.fit.x) > PULLED)
         starts += [promise for k in pulled for promise in _instead_of_pull(search, whole, int(k))]
     for promise in starts:

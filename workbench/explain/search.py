@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from heapq import heapify, heappop, heappush
 
 from effects.base import Effect
-from workbench.believed import MOST, PLAIN
+from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import cap, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
@@ -24,7 +24,7 @@ from workbench.likelihood.unknown_laws import LAWS
 FITS = 60  # fits of sets of effects at most
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
-EXACT = 4  # fits that are repeated exactly, where the base model answers by an expansion
+EXACT = 5  # fits that are repeated exactly, where the base model answers by an expansion
 PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give a part of it besides
 
 
@@ -84,7 +84,7 @@ def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress
             if promise.every not in search.fitted and promise.label not in search.failed:
                 progress("fitting " + promise.label)
                 fit_set(search, promise)
-                if len(promise.every) < MOST and search.log_posterior(promise.every) > _least(search):
+                if search.beliefs.leaves_room(promise.every) and search.log_posterior(promise.every) > _least(search):
                     expand(search, search.fitted[promise.every], heap)
 
 
@@ -109,7 +109,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)
-        if fit_set(search, promise) and len(promise.every) < MOST:
+        if fit_set(search, promise) and search.beliefs.leaves_room(promise.every):
             expand(search, search.fitted[promise.every], heap)
 
 
@@ -148,11 +148,15 @@ def _exactly(search: Search, progress: Progress) -> None:
 
 
 def _next_exact(search: Search) -> Set | None:
-    """What leads; then what leads without one of its effects, where it is not far behind: such an effect may have made
-    good what the expansion lacks, so that its part gains more by an exact model than the whole."""
+    """What leads; then what might lead, where what an exact model gave what is most like it is wrong by as much as it
+    is; then what leads without one of its effects, where it is not far behind: such an effect may have made good what
+    the expansion lacks, so that its part gains more by an exact model than the whole."""
     leader = search.ranked[0]
     if leader not in search.exact:
         return leader
-    parts = [n for n in search.ranked if n < leader and len(n) == len(leader) - 1 and n not in search.exact]
-    least = search.log_posterior(leader) - REACH - PART_GAINS * max(search.exact[leader], 0.0)
-    return next((n for n in parts if search.log_posterior(n) >= least), None)
+    most = search.log_posterior(leader)
+    others = [names for names in search.ranked if names not in search.exact]
+    rivals = [n for n in others if search.log_posterior(n) + abs(search.exactness(n)) > most]
+    least = most - REACH - PART_GAINS * max(search.exact[leader], 0.0)
+    parts = [n for n in others if n < leader and len(n) == len(leader) - 1 and search.log_posterior(n) >= least]
+    return next(iter(rivals + parts), None)

@@ -15,7 +15,6 @@ import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.believed import MOST
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
 from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from
@@ -231,7 +230,7 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     have = hypothesis.names
     search.expanded.add(have)
     added = additions(search, hypothesis, hypothesis.fit.jacobian)
-    sets = explored(added.names, added.readings, search.beliefs, have, min(len(have) + 2, MOST))
+    sets = explored(added.names, added.readings, search.beliefs, have, len(have) + 2)
     promised: dict[Set, tuple[Explanation, float]] = {}
     for every, found in ((have | found.names, found) for found in sets.values() if found.names):
         if every in search.fitted:

@@ -1,5 +1,7 @@
 """Sets of effects by linear algebra against trying every one of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,13 +72,9 @@ def test_effects_of_the_background_count_among_the_most_and_exclude_too():
     random = np.random.default_rng(3)
     names = names_of(random.standard_normal((30, 5)))
     have = frozenset(("a", "b", "c"))
-    found, _ = explained(
-        names,
-        random.standard_normal(30),
-        beliefs=beliefs(names, excluded=[("a", "e2")]),
-        already=have,
-        most=MOST,
-    )
+    believed = beliefs(names, excluded=[("a", "e2")])
+    believed = replace(believed, log_odds={**believed.log_odds, **dict.fromkeys(have, -4.0)})
+    found, _ = explained(names, random.standard_normal(30), beliefs=believed, already=have, most=MOST)
     assert max(map(len, found)) == 1 and frozenset(("e2",)) not in found and len(found) == 5
 
 
@@ -88,3 +86,18 @@ def test_gains_that_are_known_are_not_worked_out_again():
     plain, _ = explained(names, residual, most=2)
     known, _ = explained(names, residual, most=2, first=first)
     assert {n: e.gain for n, e in known.items()} == pytest.approx({n: e.gain for n, e in plain.items()})
+
+
+def test_what_every_other_bench_shows_is_not_counted():
+    """Five at once where one of them is usual; not five unusual ones."""
+    random = np.random.default_rng(8)
+    shapes = 2.0 * random.standard_normal((80, 8))
+    names = names_of(shapes)
+    rare = beliefs(names)
+    usual = replace(rare, log_odds={**rare.log_odds, "e6": 0.0})
+    residual = 1.3 * shapes[:, [0, 1, 3, 5, 6]].sum(axis=1) + random.standard_normal(80)
+    found, _ = explained(names, residual, most=5, beam=(1, 8, 6, 4, 2), beliefs=usual)
+    assert leader(found, usual) == {"e0", "e1", "e3", "e5", "e6"}
+    assert max(map(len, explained(names, residual, most=5, beam=(1, 8, 6, 4, 2), beliefs=rare)[0])) == MOST
+    assert usual.leaves_room(frozenset(("e0", "e1", "e3", "e5")))
+    assert not usual.leaves_room(frozenset(("e0", "e1", "e3", "e5", "e6")))

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.workbench.models.machine_case import STATES, builder, drawn, surrogate
+from tests.workbench.models.machine_case import COARSE, STATES, builder, drawn, surrogate
 from workbench.errors import WorkbenchError
+from workbench.models.machine.coordinates import smooth_coordinates
+from workbench.models.machine.expansion import loaded_slopes
+from workbench.models.machine.field import LoadedState, MachineField
 from workbench.models.machine.spectra import averaged, coefficients, evaluated, slope
 from workbench.models.machine.terms import hermite, through
 
@@ -131,3 +134,16 @@ def test_turns_current_and_angle_beside_a_solved_state():
 def test_far_from_every_solved_state_is_refused():
     with pytest.raises(WorkbenchError, match="far from every solved state"):
         surrogate().with_current(drawn(), np.array([0.5]), np.array([[40.0, -20.0, -20.0]]))
+
+
+def test_steel_beyond_its_table_is_followed_with_current():
+    """Where teeth are saturated beyond 1.8 T, the end of this grade's table; less than no rise is none."""
+    nominal = replace(drawn(), steel="M270-35A")
+    fields = MachineField(nominal, COARSE)
+    states = [LoadedState(state.angle, (400.0, -200.0, -200.0)) for state in STATES[:2]]
+    rise = next(c for c in smooth_coordinates(nominal) if c.path == ("rise_beyond_table",))
+    slope = loaded_slopes(fields, states, [rise])[rise.name]
+    up, down = (fields.loaded(rise.changed(nominal, change), states) for change in (0.02, -0.02))
+    assert np.abs(slope).max() > 0
+    assert_allclose((up - down) / 0.04, slope, atol=2e-3 * np.abs(slope).max())
+    assert_allclose(*(fields.loaded(replace(nominal, rise_beyond_table=share), states) for share in (0.0, -1.0)))

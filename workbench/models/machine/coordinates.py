@@ -79,6 +79,7 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
         Coordinate(("machine", "slot_opening"), 1e-7, (-0.2 * opening, 0.2 * opening)),
         Coordinate(("field_scale",), 1e-4, (0.6, 1.6)),
         Coordinate(("saturation_scale",), 1e-4, (-0.08, 0.05)),
+        Coordinate(("rise_beyond_table",), 1e-4, (-0.9, 1.0)),
         Coordinate(("stacking_factor",), 1e-4, (-0.1, -0.04)),
         Coordinate(("edge_damage",), 1e-4, (0.5,)),
         Coordinate(("radial_share",), 1e-4, (-0.4, 0.4)),

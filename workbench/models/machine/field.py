@@ -265,7 +265,7 @@ def defects_of(design: MachineAsBuilt) -> tuple[Defect, ...]:
 
 def materials_of(design: MachineAsBuilt, grade: Reluctivity) -> MachineMaterials:
     """Steel and magnets of a design."""
-    law = grade
+    law = grade.rising(max(design.rise_beyond_table, 0.0))  # no steel is flatter than vacuum
     if design.field_scale != 1.0:
         law = hardened(law, design.field_scale)
     if design.saturation_scale != 1.0:
