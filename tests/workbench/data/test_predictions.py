@@ -47,3 +47,15 @@ def test_the_prediction_for_the_other_rotor_is_an_interval_over_all_explanations
         assert row.low == min(one.low for one in some) and row.high == max(one.high for one in some)
     for thin, thick in zip(each, each[1:]):
         assert thick.value > thin.value or thick.given.endswith("0.3 mm"), "a thicker ring carries more flux"
+
+
+def test_the_prediction_for_the_locked_rotor_is_an_interval_over_all_explanations():
+    """Three explanations of the voltage at five currents, behind the interval over them; more current, more torque."""
+    rows = read_campaign(OUTRUNNER.with_name("prius-2004-field")).predictions
+    each = [rows[k : k + 4] for k in range(0, len(rows), 4)]
+    assert len(each) == 5
+    for whole, *some in each:
+        assert whole.low == min(one.low for one in some) and whole.high == max(one.high for one in some)
+        assumed, *weaker = (one.value for one in some)
+        assert assumed > max(weaker), "less flux of the magnets, less torque"
+    assert sorted(whole.low for whole, *_ in each) == [whole.low for whole, *_ in each]

@@ -131,6 +131,21 @@ def test_flux_that_leaks_at_the_ends_is_missing_at_speed_whatever_the_current(ou
     assert lost[0] == pytest.approx(lost[1], rel=1e-9) and lost[1][0, 0] > 0
 
 
+def test_reluctance_torque_does_not_leak_at_the_ends(outrunner):
+    """Lost is a share of what voltage and current make, and of cogging its square; locked and turning alike."""
+    bench, design = outrunner
+    leaking = EndLeakage(share=0.1).on_design(design)
+    angle, lines = np.array([5 * bench.expansion.samples.step]), np.array([[3.0, -5.0, 2.0]])
+    drawn, less = answers(outrunner), answers(outrunner, leaking)
+    lost = drawn.torque(angle, lines) - less.torque(angle, lines)
+    cogging = drawn.torque(angle, 0 * lines)
+    voltage_per_speed = drawn.linkage_slopes(angle)
+    assert lost == pytest.approx(0.1 * (voltage_per_speed * lines).sum() + 0.19 * cogging, rel=1e-9)
+    assert less.torque(angle, 0 * lines) == pytest.approx(0.81 * cogging, rel=1e-9)
+    turned = 6 * angle[0] - design.drawing.layout.phase_axis - 2 * pi / 3 * np.arange(3)
+    assert less.turning_torque(angle, 4.0) == pytest.approx(less.torque(angle, -4.0 * np.sin(turned)[None]), rel=1e-6)
+
+
 def test_eddies_take_the_flux_that_crosses_the_gap_and_leave_what_all_phases_share(outrunner):
     """Slots, ends and whatever the three phases have in common stay: L + 2 M does not change."""
     bench, design = outrunner

@@ -69,17 +69,21 @@ class Answers:
     # ---- at rotor angles and constant currents ------------------------------------------------------------------
 
     def torque(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
-        """At angles [rad] (n,) and line currents [A] (n, 3) [Nm]; see ``BuiltMachine`` for the leakage."""
-        return self._with_leakage(
-            self._samples(angle, self._in_coils(currents))[:, 0], lambda: self._samples(angle, 0 * currents)[:, 0]
-        )
+        """At angles [rad] (n,) and line currents [A] (n, 3) [Nm]."""
+        return self._without_leakage(self._samples(angle, self._in_coils(currents))[:, 0], angle, currents)
 
-    def _with_leakage(self, both: np.ndarray, alone: Callable[[], np.ndarray]) -> np.ndarray:
-        """Torque [Nm] (n,) from that per length with and without current [Nm/m] (n,)."""
-        if not self.design.end_leakage:
-            return self.design.length * both
-        none = alone()
-        return self.design.length * (self.kept * (both - none) + self.kept**2 * none)
+    def _without_leakage(self, both: np.ndarray, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        """Torque [Nm] (n,) from that per length of the plane field [Nm/m] (n,) at angles (n,) and line currents (n, 3).
+
+        What leaks at the ends is missing from the magnets' linkages and so from i . d psi/d angle, and squared from
+        cogging; what currents do to each other, the reluctance torque, stays.
+        """
+        whole, share = self.design.length * both, self.design.end_leakage
+        if not share:
+            return whole
+        cogging = self.design.length * self._samples(angle, 0 * currents)[:, 0]
+        of_magnets = (self.linkage_slopes(angle) * currents).sum(axis=1) / self.kept
+        return whole - share * of_magnets - (1 - self.kept**2) * cogging
 
     def linkage_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """Flux linkages of the phases of the star against those without current [Wb] (n, 3); the end winding adds
@@ -298,13 +302,18 @@ class Answers:
         at = partial(self._turning_state, 0.0, i_q)
         both = self._between(angle, at, 1, self.expansion.at_centre)
         change = self._between(angle, at, _APART, lambda states: self.expansion.change(self.design, states))
-        return self._with_leakage((both + change)[:, 0], lambda: self._samples(angle, np.zeros((len(angle), 3)))[:, 0])
+        lines = self._turning_lines(0.0, i_q, self.design.machine.pole_pairs * angle[:, None])
+        return self._without_leakage((both + change)[:, 0], angle, lines)
+
+    def _turning_lines(self, i_d: float, i_q: float, theta: np.ndarray | float) -> np.ndarray:
+        """Line currents [A] (..., 3) of such along both axes at electrical angles (..., 1) [rad]."""
+        turned = theta - self._star_axis - 2 * pi / 3 * np.arange(3)
+        return i_d * np.cos(turned) - i_q * np.sin(turned)
 
     def _turning_state(self, i_d: float, i_q: float, step: int) -> State:
         """With line currents [A] along both axes at a step of the grid."""
         theta = self.design.machine.pole_pairs * step * self.expansion.samples.step
-        turned = theta - self._star_axis - 2 * pi / 3 * np.arange(3)
-        lines = i_d * np.cos(turned) - i_q * np.sin(turned)
+        lines = self._turning_lines(i_d, i_q, theta)
         return State(step, _triple(np.round(self.design.turns * self._in_coils(lines), 6)))
 
     @property
