@@ -137,7 +137,7 @@ def _has_paled(search: Search, promise: Promise) -> bool:
 def _exactly(search: Search, progress: Progress) -> None:
     """What leads again with a base model that is exact where it ended. Others are believed to gain as much by that as
     the exact one that is most like them; what leads then is made exact, too."""
-    for _ in range(EXACT if search.bench.model.base.is_expansion else 0):
+    while search.bench.model.base.is_expansion and len(search.exact) <= EXACT:  # nothing at all is exact, too
         names = _next_exact(search)
         if names is None:
             break

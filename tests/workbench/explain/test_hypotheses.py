@@ -396,6 +396,18 @@ def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
     assert search.exactness(frozenset(("wave5",))) == 0.0 and search.exactness(none) == 0.0
 
 
+@pytest.mark.parametrize(("gain", "behind", "is_next"), [(-8, 5, True), (8, 5, True), (-8, 20, False), (4, 5, False)])
+def test_what_an_exact_model_might_bring_to_the_lead_is_made_exact_next(tmp_path, gain, behind, is_next):
+    """What is behind by less than an exact model moved what is most like it."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    first, other = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave3",))
+    second = replace(first, log_evidence=first.log_evidence - behind - gain)
+    search = searching(bench, {frozenset(): null_of(bench), first.names: first, other: second})
+    assert search_module._next_exact(search) == (first.names if behind + gain > 0 else other)
+    search.exact = dict.fromkeys((frozenset(), first.names), float(gain))
+    assert search_module._next_exact(search) == (other if is_next else None)
+
+
 def test_probabilities_of_a_search_add_up_to_one(bench):
     found = searched(bench, LIBRARY).posterior
     assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)

@@ -185,7 +185,9 @@ def test_keys_of_the_device():
 def test_what_is_uncertain_in_every_machine():
     """Each moves its own input: the phases by 0.4 %, the ends by what half circles of a coil's width have."""
     own = {t.name: t for t in own_tolerances(drawn())}
-    assert set(own) == {"cogging_of_mesh", "resistance_a", "resistance_b", "resistance_c", "end_winding_inductance"}
+    phases = {"resistance_a", "resistance_b", "resistance_c"}
+    assert set(own) == phases | {"cogging_of_mesh", "end_winding_inductance", "rise_beyond_table"}
+    assert with_tolerance(drawn(), own["rise_beyond_table"], -1.0).rise_beyond_table == pytest.approx(0.4)
     moved = with_tolerance(drawn(), own["resistance_b"], 2.0)
     assert_allclose(moved.phase_resistance, [12.6e-3, 12.6e-3 * 1.008, 12.6e-3])
     ends = with_tolerance(drawn(), own["end_winding_inductance"], 1.0).end_winding_inductance
