@@ -171,7 +171,8 @@ def _map(answers: Answers, axis: np.ndarray) -> np.ndarray:
 class LoadedDelta:
     """What load adds to the loss of the current round a delta, as a brake of the dq machine.
 
-    Between the currents of the map within 10 % of the loss where that is well above idle, deep in saturation within 30 %.
+    Between the currents of the map within 10 % of the loss where that is well above idle, within 30 % deep in
+    saturation.
     waves: real and imaginary part of every order, over i_d and the size of i_q [Wb]; beyond the largest current [A]
     they stay as they are there;  idle: squares of the amplitudes without current [Wb^2] (orders,)
     """
