@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import COARSE, STATES, builder, drawn, surrogate
+from units import DEGREE
 from workbench.errors import WorkbenchError
 from workbench.models.machine.coordinates import smooth_coordinates
 from workbench.models.machine.expansion import loaded_slopes
@@ -115,11 +116,12 @@ def test_cubics_between_nodes():
     assert_allclose(hermite(nodes[2:3], 0.7), ([1.0], [0.7]))
 
 
-def test_turns_current_and_angle_beside_a_solved_state():
-    """Half a degree, 3 % more current, one phase 2 A off and half a turn missing, against its own field solution."""
+@pytest.mark.parametrize("turn", [0.5 * DEGREE, 1.2 * DEGREE])
+def test_turns_current_and_angle_beside_a_solved_state(turn):
+    """Turned on, 3 % more current, one phase 2 A off and half a turn missing, against its own field solution."""
     fields = builder().fields.loaded
     design = drawn().without_turns(0, 0.5)
-    angle, currents = STATES[0].angle + 0.0087, (41.2, -20.6, -18.6)
+    angle, currents = STATES[0].angle + turn, (41.2, -20.6, -18.6)
     state = replace(STATES[0], angle=angle, currents=currents)
     sample = fields.loaded(design, [state])[0]
     phases = [

@@ -29,7 +29,7 @@ from workbench.models.machine.expansion import (
 from workbench.models.machine.field import LoadedState, MachineField, read
 from workbench.models.machine.spectra import coefficients
 
-_ANGLE_STEP = 0.6 * DEGREE  # to both sides of a loaded state, for two derivatives; cogging turns over in 3 degrees
+ANGLE_STEPS = 0.75 * DEGREE * np.array([-2, -1, 1, 2])  # from a loaded state, to follow what its currents add
 _SCALE_STEP = 0.04  # of its currents
 
 Arrays = dict[str, np.ndarray]
@@ -166,12 +166,11 @@ class LoadedBeside(Piece):
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         here = fields.loaded.loaded(fields.nominal, states)
-        found = {"base": here}
-        for name, step, moved in (("angle", _ANGLE_STEP, _turned), ("scale", _SCALE_STEP, _scaled)):
-            ends = [self._at(fields.loaded, states, [moved(s, sign * step) for s in states]) for sign in (1, -1)]
-            first, second = (ends[0] - ends[1]) / (2 * step), (ends[0] - 2 * here + ends[1]) / step**2
-            found[name] = np.stack([first, second], axis=1)
-        return found
+        turned = [self._at(fields.loaded, states, [_turned(s, step) for s in states]) - here for step in ANGLE_STEPS]
+        sides = ([_scaled(s, sign * _SCALE_STEP) for s in states] for sign in (1, -1))
+        up, down = (self._at(fields.loaded, states, side) for side in sides)
+        scale = [(up - down) / (2 * _SCALE_STEP), (up - 2 * here + down) / _SCALE_STEP**2]
+        return {"base": here, "angle": np.stack(turned, axis=1), "scale": np.stack(scale, axis=1)}
 
     def _at(self, field: MachineField, states: States, beside: Sequence[LoadedState]) -> np.ndarray:
         """Samples at states beside others, each started from there."""

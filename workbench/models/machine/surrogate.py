@@ -2,9 +2,9 @@
 
     S(p) = S_0 + sum of the terms of ``terms.py`` at the coordinates p of ``coordinates.py``
 
-Without current S are Fourier coefficients over the revolution; with current S belongs to one state, and is expanded in
-its rotor angle and currents as well. S_0 is of a fine mesh, the rest of coarser ones. About another design, with S_0
-from field solutions there, the rest is the difference of the expansion between the two.
+Without current S are Fourier coefficients over the revolution; with current S belongs to one state, and what its
+currents add is expanded in its rotor angle and currents as well. S_0 is of a fine mesh, the rest of coarser ones. About
+another design, with S_0 from field solutions there, the rest is the difference of the expansion between the two.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from units import DEGREE
 from workbench.errors import WorkbenchError
 from workbench.models.machine.coordinates import Coordinate, all_coordinates
 from workbench.models.machine.field import LoadedState
+from workbench.models.machine.pieces import ANGLE_STEPS
+from workbench.models.machine.spectra import averaged, evaluated
 from workbench.models.machine.terms import Changes, Terms, loaded_terms_of, terms_of
 
 _REMEMBERED = 16  # designs
@@ -33,7 +35,8 @@ class LoadedSamples:
     """Samples of loaded states and how they change; s states, c coils.
 
     states: angles and currents (s, 4);  base: on the fine mesh, coarse: on that of the changes (s, 1 + c)
-    angle, scale: first and second derivative by rotor angle [rad] and by a common factor of the currents (2, s, 1 + c)
+    angle: change at ``ANGLE_STEPS`` of what the currents add to the machine without (4, s, 1 + c)
+    scale: first and second derivative by a common factor of the currents (2, s, 1 + c)
     coils: per ampere-turn in every coil (s, c, 1 + c)
     """
 
@@ -168,9 +171,10 @@ class Surrogate:
         power = (centre**2).sum(1)
         scale = np.where(power > 0, (currents * centre).sum(1) / np.where(power > 0, power, 1.0) - 1.0, 0.0)
         sample = states.base[which]
-        for derivatives, x in ((states.angle, apart), (states.scale, scale)):
-            sample = sample + derivatives[0][which] * x[:, None] + derivatives[1][which] * x[:, None] ** 2 / 2
-        sample = sample + states.angle[1][which] * design.skew**2 / 24  # mean of a parabola over the skew
+        sample = sample + states.scale[0][which] * scale[:, None] + states.scale[1][which] * scale[:, None] ** 2 / 2
+        sample = sample + np.einsum("nk,knq->nq", turned_by(apart, design.skew), states.angle[:, which])
+        without = evaluated(averaged(self.no_load, design.skew), angle)
+        sample = sample + (without - evaluated(self.no_load, states.states[which, 0])).T
         solved = self._ampere_turns(self._centre.turns, centre * (1 + scale)[:, None])
         rest = self._ampere_turns(design.turns, currents) - solved
         sample = sample + np.einsum("nc,ncq->nq", rest, states.coils[which])
@@ -242,8 +246,22 @@ def _samples(found: Mapping, states: tuple[LoadedState, ...]) -> LoadedSamples:
     here, coils = found["loaded"], found["loaded coils"]
     places = np.array([(state.angle, *state.currents) for state in states])
     per_coil = np.stack([coils[f"slope coil[{k}]"] for k in range(len(coils))], axis=1)
-    angle, scale = here["angle"].swapaxes(0, 1), here["scale"].swapaxes(0, 1)
+    angle = here["angle"].swapaxes(0, 1) - _turned(found["no load"]["base"], places[:, 0])
+    scale = here["scale"].swapaxes(0, 1)
     return LoadedSamples(places, found["loaded fine"]["fine"], here["base"], angle, scale, per_coil)
+
+
+def _turned(no_load: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Change at ``ANGLE_STEPS`` without current (4, n, rows)."""
+    return np.stack([(evaluated(no_load, angles + step) - evaluated(no_load, angles)).T for step in ANGLE_STEPS])
+
+
+def turned_by(x: np.ndarray, skew: float) -> np.ndarray:
+    """Weights (n, 4) of the changes at ``ANGLE_STEPS`` in that at angles x [rad] (n,): of the polynomial through them
+    and through zero; over a skew [rad] the mean of its parabola."""
+    powers = np.arange(1, len(ANGLE_STEPS) + 1)
+    coefficients = np.linalg.inv(np.power.outer(ANGLE_STEPS, powers))
+    return np.power.outer(x, powers) @ coefficients + coefficients[1] * skew**2 / 12
 
 
 def _at_angles(angles: np.ndarray, orders: int) -> Callable[[np.ndarray], np.ndarray]:
