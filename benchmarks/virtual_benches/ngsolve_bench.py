@@ -306,7 +306,7 @@ def hide(group: str, seed: int, which: str) -> tuple[Bench, Answer]:
     seen = {name: case.seen(name, effects) for name in effects}
     outside = next(iter(machine.outside), strange)
     if strange:
-        reading, seen[strange] = case.sized(strange, log_uniform(OUTSIDE, rng))
+        reading, seen[strange] = case.sized(strange, log_uniform(OUTSIDE, rng), eye.readable)
     elif outside:
         seen[outside] = case.strange()
     reading = _Case(eye, machine, reading).with_a_small_one(which, outside, rng)
@@ -404,19 +404,19 @@ class _Case:
             )
         return min(kept)
 
-    def sized(self, words: str, chi2: float) -> tuple[Reading, float]:
-        """The reading with a strange law of that visibility beside every effect of the instruments."""
+    def sized(self, words: str, chi2: float, free: np.ndarray | None = None) -> tuple[Reading, float]:
+        """The reading with a strange law of that visibility beside tolerances and ``free`` of any size."""
         name, size = STRANGE[words]
         for _ in range(8):
             changed = replace(self.reading, **{name: size})
-            got = max(self.eye.chi2(self.read(changed) - self.read(), self.eye.readable), 1e-9)
+            got = max(self.eye.chi2(self.read(changed) - self.read(), free), 1e-9)
             if abs(np.log(got / chi2)) < 0.2:
                 break
             size *= float(np.clip(np.sqrt(chi2 / got), 0.02, 50.0))
         return changed, got
 
     def with_a_small_one(self, which: str, outside: str, rng: np.random.Generator) -> Reading:
-        """With one more strange law that is too small to be seen."""
+        """With one more strange law that is too small to be seen, were it taken for an effect of the library or not."""
         laws = [words for words in STRANGE if (words in TUNING_STRANGE) == (which == "tune") and words != outside]
         changed, got = self.sized(str(rng.choice(laws)), log_uniform(SMALL, rng))
         return changed if got < 2 * SMALL[1] else self.reading

@@ -10,6 +10,7 @@ import pytest
 from benchmarks.virtual_benches import ngsolve_bench, truths
 from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_hidden import EFFECTS, OUTSIDE, Solved, drawn, sensitivities
+from benchmarks.virtual_benches.hiding import SMALL
 from benchmarks.virtual_benches.ngsolve_bench import Eye, Reading, evaluated, readings_of, truth
 from benchmarks.virtual_benches.truths import DEGREE, DRAWINGS, TWELVE_TEN, AsBuilt, coil_turns, revolution, window
 from geometry.half_cell import MeshDensity
@@ -114,3 +115,16 @@ def test_what_is_declared_cannot_be_seen_and_friction_can():
     assert eye.chi2(eye.plain(Reading(voltage_gain=0.002)) - base) < 1.1, "one standard deviation"
     assert eye.chi2(eye.tolerances[:, 0]) < 1.1
     assert eye.chi2(eye.plain(Reading(bearing_friction=0.01)) - base) > 1000
+
+
+@pytest.mark.skipif(not ALL_SOLVED, reason="not all machines are solved: python -m benchmarks.ngsolve_truths")
+@pytest.mark.parametrize("law", sorted(ngsolve_bench.STRANGE))
+def test_a_law_that_is_too_small_to_be_seen_is_so_under_every_name(law, monkeypatch):
+    """Friction pressed on by the load is all but a gain of the torque: neither may be seen."""
+    monkeypatch.setattr(ngsolve_bench, "STRANGE", {law: ngsolve_bench.STRANGE[law]})
+    monkeypatch.setattr(ngsolve_bench, "TUNING_STRANGE", {law})
+    eye = Eye(TWELVE_TEN, Noise(1.0, 0.2, 0.1, 0.5, remount=0.5))
+    sound = Solved(DRAWING, "12-10", AsBuilt(), {}, {}, {})
+    case = ngsolve_bench._Case(eye, sound, Reading())
+    changed = case.read(case.with_a_small_one("tune", "", np.random.default_rng(1))) - case.read()
+    assert 0 < eye.chi2(changed) < 2 * SMALL[1]
