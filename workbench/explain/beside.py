@@ -35,10 +35,11 @@ def weigh_unknown(search: Search, progress: Progress) -> None:
         return
     heap: list[Promise] = []
     _effects_beside(search, search.beside[frozenset()], heap)
-    leader = max(search.beside, key=lambda n: search.beside[n].log_evidence + search.beliefs.log_prior(n))
+    posterior = lambda n: search.log_evidence_beside(n, search.beside[n]) + search.beliefs.log_prior(n)  # noqa: E731
+    leader = max(search.beside, key=posterior)
     if leader:
         _effects_beside(search, search.beside[leader], heap)
-    best = lambda: max(b.log_evidence + search.beliefs.log_prior(n) for n, b in search.beside.items())  # noqa: E731
+    best = lambda: max(posterior(n) for n in search.beside)  # noqa: E731
     for number, promise in enumerate(sorted(heap)[:MOST_BESIDE]):
         if number < BESIDE or -promise.order >= best() - REACH:
             _fit_beside(search, promise)

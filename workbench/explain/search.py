@@ -13,7 +13,7 @@ from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import cap, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
-from workbench.explain.hypotheses import Hypothesis, exact, null_of
+from workbench.explain.hypotheses import Hypothesis, beside_unknown, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
 from workbench.likelihood.bench import Bench
@@ -22,6 +22,7 @@ from workbench.likelihood.unknown import shapes_of
 from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
+PATIENCE = 8  # fits of an expansion, after which an unknown function is weighed: those of other models take no time
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
 EXACT = 5  # fits that are repeated exactly, where the base model answers by an expansion
@@ -35,8 +36,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     beliefs = beliefs_of(every, signatures.names)
     shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
-    _effects_alone(search, progress)
-    _exactly(search, progress)
+    _alone(search, progress)
     cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]), search.exactness)
     weigh_unknown(search, progress)
     _exactly(search, progress)
@@ -58,14 +58,25 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
     return search.fitted[heap[0].every]
 
 
+def _alone(search: Search, progress: Progress) -> None:
+    """Sets of effects; once more where an unknown function had ended the search, but not beside a model that is
+    exact."""
+    while True:
+        _effects_alone(search, progress)
+        ended = search.is_beaten
+        _exactly(search, progress)
+        if not ended or search.is_beaten:
+            break
+
+
 def _effects_alone(search: Search, progress: Progress) -> None:
     """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
-    until that changes nothing."""
+    until that changes nothing, or an unknown function is better by far."""
     heap: list[Promise] = []
     expand(search, search.fitted[frozenset()], heap)
     _best_first(search, heap, progress)
     settled: set[Set] = set()
-    while (leader := search.ranked[0]) not in settled:
+    while (leader := search.ranked[0]) not in settled and not search.is_beaten:
         settled.add(leader)
         less_one(search, progress)
         for names in (leader - {name} for name in sorted(leader)):
@@ -104,13 +115,26 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None
         if (smaller := _smaller(search, promise, heap)) is not None:
             heappush(heap, promise)
             promise = smaller
-        within = -promise.order >= search.log_posterior(search.ranked[0]) - REACH
-        if not within and len(search.fitted) > LEAST_FITS:
+        if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
+            _weigh_leader(search, progress)
+        best = max(search.log_posterior(search.ranked[0]), search.least)
+        if -promise.order < best - REACH and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)
         if fit_set(search, promise) and search.beliefs.leaves_room(promise.every):
             expand(search, search.fitted[promise.every], heap)
+
+
+def _weigh_leader(search: Search, progress: Progress) -> None:
+    """An unknown function beside what leads. No set that promises less is fitted: of a machine that has what no effect
+    is, dozens explain a little more than others."""
+    progress("an unknown function")
+    leader = search.ranked[0]
+    found = beside_unknown(search.fitted[leader], search.shapes)
+    if found is not None:
+        prior = search.beliefs.log_prior(leader) + search.beliefs.log_unknown
+        search.least = search.log_evidence_beside(leader, found) + prior
 
 
 def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise | None:
@@ -145,6 +169,9 @@ def _exactly(search: Search, progress: Progress) -> None:
         before = search.fitted[names].log_evidence
         search.fitted[names] = exact(search.fitted[names])
         search.exact[names] = search.fitted[names].log_evidence - before
+        if search.is_beaten:
+            _weigh_leader(search, progress)
+            break
 
 
 def _next_exact(search: Search) -> Set | None:

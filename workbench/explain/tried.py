@@ -7,7 +7,8 @@ laws.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from heapq import heapify
 from math import exp, log
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
 from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from
@@ -89,6 +91,7 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
+    least: ln posterior of an unknown function beside what led, where the search was long
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     """
 
@@ -104,6 +107,7 @@ class Search:
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
+    least: float = -np.inf
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
 
     def log_evidence(self, names: Set) -> float:
@@ -111,14 +115,37 @@ class Search:
         return self.fitted[names].log_evidence + self.forms.get(names, 0.0) + self.exactness(names)
 
     def exactness(self, names: Set) -> float:
-        """What an exact base model would give a set that has none: as much as the exact one that is most like it."""
+        """What an exact base model would give a set that has none: as much as the exact one that is most like it in
+        effects that the expansion is concerned with."""
         if names in self.exact:
             return 0.0
-        return self.exact[min(self.exact, key=lambda e: (-len(e & names), len(e ^ names), sorted(e)))]
+        mine = names & self.of_expansion
+        unlike = lambda e: (-len(e & mine), len(e & self.of_expansion ^ mine), len(e ^ names), sorted(e))  # noqa: E731
+        return self.exact[min(self.exact, key=unlike)]
+
+    @cached_property
+    def of_expansion(self) -> Set:
+        """Effects that change the device in what the base model is expanded in."""
+        return frozenset(name for name, forms in self.signatures.found.items() if self._moves(forms[0].effect))
+
+    def _moves(self, effect: Effect) -> bool:
+        model = self.bench.model
+        changed = replace(model, effects=(effect.at(np.ones(len(parameters_of(effect)))),)).design_as_built
+        return not model.base.is_alike(model.design, changed)
+
+    def log_evidence_beside(self, names: Set, beside: Beside) -> float:
+        """Of a set beside an unknown function, all its forms together [nats]. An unknown function makes good what an
+        expansion lacks: an exact model gives nothing more, but may take."""
+        return beside.log_evidence + self.forms.get(names, 0.0) + min(self.exactness(names), 0.0)
 
     def log_posterior(self, names: Set) -> float:
         """Up to what all share [nats]."""
         return self.log_evidence(names) + self.beliefs.log_prior(names)
+
+    @property
+    def is_beaten(self) -> bool:
+        """Whether an unknown function is so much better than all that was fitted that it would be seen plainly."""
+        return self.least > self.log_posterior(self.ranked[0]) + PLAIN
 
     @property
     def ranked(self) -> list[Set]:
@@ -157,7 +184,7 @@ class Search:
         """Probabilities of everything that was fitted or guessed."""
         guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
         alone = guessed | {names: self.log_evidence(names) for names in self.fitted}
-        beside = {n: b.log_evidence + self.forms.get(n, 0.0) + self.exactness(n) for n, b in self.beside.items()}
+        beside = {n: self.log_evidence_beside(n, b) for n, b in self.beside.items()}
         return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
 
 

@@ -73,6 +73,10 @@ class BaseModel:
         """The model, exact at another design."""
         return self
 
+    def is_alike(self, design: Any, other: Any) -> bool:
+        """Whether two designs differ in nothing that an expansion is of."""
+        return bool(design == other)
+
     def numerical(self, design: Any, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
         """Shapes of the model's own numerical error in the rows of a table, response -> SI (n,); each comes with a
         standard normal weight that all tables and repeats share."""

@@ -388,12 +388,79 @@ def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects_what
 
 
 def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
+    """Alike in what moves the device: wave 4, 5 and 6 are of the instruments."""
     bench = sure_of_noise(tmp_path)
-    none, pair = frozenset(), frozenset(("wave2", "wave3"))
+    none, pair = frozenset(), frozenset(("wave2", "wave3", "wave6"))
     search = searching(bench, {none: null_of(bench)})
+    search.of_expansion = frozenset(("wave2", "wave3"))
     search.exact[pair] = 50.0
     assert search.exactness(frozenset(("wave2", "wave4"))) == 50.0 and search.exactness(pair) == 0.0
     assert search.exactness(frozenset(("wave5",))) == 0.0 and search.exactness(none) == 0.0
+    assert search.exactness(frozenset(("wave6",))) == 0.0, "the same instrument beside an unmoved device"
+
+
+def test_an_expansion_is_concerned_with_what_moves_the_device(bench):
+    signatures = signatures_of(bench, [cls() for cls in LIBRARY.values()])
+    search = Search(bench, signatures, beliefs_of(LIBRARY, signatures.names), (), {frozenset(): null_of(bench)})
+    assert search.of_expansion == {"soft_spring"} < set(signatures.found)
+
+
+@pytest.mark.parametrize("exactness", [40.0, -40.0])
+def test_an_unknown_function_makes_good_what_an_expansion_lacks(bench, exactness):
+    search = searching(bench, {frozenset(): null_of(bench)})
+    search.of_expansion = one = frozenset(("wave2",))
+    search.exact[one | {"wave5"}] = exactness
+    shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    found = beside_unknown(search.fitted[frozenset()], shapes)
+    assert search.log_evidence_beside(one, found) == found.log_evidence + min(exactness, 0.0)
+
+
+def expanded(bench):
+    """The bench with a model that answers by an expansion, which is exact where it is used."""
+    model = replace(bench.model, base=Expansion())
+    return replace(bench, model=model)
+
+
+def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, monkeypatch):
+    """A wave that none of the others can imitate, each of which promises much."""
+    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x)))
+    search = searching(bench, {frozenset(): null_of(bench)})
+    search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    monkeypatch.setattr(search_module, "PATIENCE", 2)
+    heap = [
+        Promise(-order, f"wave{k}", frozenset((f"wave{k}",)), (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
+        for k, order in ((2, 9e3), (3, -1e3), (4, -1e3), (5, -1e3), (6, -1e3))
+    ]
+    search.guessed = {promise.every: -promise.order for promise in heap}
+    search_module._best_first(search, heap, lambda words: None)
+    assert search.is_beaten and search.least > search.log_posterior(search.ranked[0]) + 10
+    assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
+
+
+def test_nothing_ends_a_search_that_finds_what_is_there(tmp_path, monkeypatch):
+    monkeypatch.setattr(search_module, "PATIENCE", 1)
+    hidden = lambda x: sum(0.25 * np.cos(300 * k * x) for k in (2, 5, 7))  # noqa: E731
+    search = searched(expanded(sure_of_noise(tmp_path, extra=hidden)), WAVES)
+    assert search.ranked[0] == {"wave2", "wave5", "wave7"} and not search.is_beaten
+
+
+def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_path, monkeypatch):
+    bench = sure_of_noise(tmp_path)
+    search = searching(bench, {frozenset(): null_of(bench)})
+    done = []
+
+    def alone(search, progress):
+        done.append("effects")
+        search.least = np.inf if len(done) == 1 else -np.inf
+
+    def exactly(search, progress):
+        done.append("exact")
+        search.least = -np.inf
+
+    monkeypatch.setattr(search_module, "_effects_alone", alone)
+    monkeypatch.setattr(search_module, "_exactly", exactly)
+    search_module._alone(search, lambda words: None)
+    assert done == ["effects", "exact", "effects", "exact"]
 
 
 @pytest.mark.parametrize(("gain", "behind", "is_next"), [(-8, 5, True), (8, 5, True), (-8, 20, False), (4, 5, False)])

@@ -54,6 +54,11 @@ def test_tolerances():
         BENCH.with_tolerance(drawn(), Tolerance("colour", 1.0, relative=False), 1.0)
 
 
+def test_machines_are_alike_whose_fields_are():
+    bench, friction = prepared(), replace(drawn(), dry_friction=0.01)
+    assert bench.is_alike(drawn(), friction) and not bench.is_alike(drawn(), drawn().with_magnet(remanence=1.2))
+
+
 def test_voltage_is_the_slope_of_the_flux_linkage_and_turns_with_the_speed():
     forward = prepared().respond(drawn(), "back_emf", {"angle_mech": ANGLES, "speed": np.full(50, 100.0)})
     back = prepared().respond(drawn(), "back_emf", {"angle_mech": ANGLES, "speed": np.full(50, -100.0)})

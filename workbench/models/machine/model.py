@@ -133,6 +133,10 @@ class MachineBench(BaseModel):
         """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing."""
         return replace(self, surrogate=self.builder.about(self.about_drawing, design))
 
+    def is_alike(self, design: MachineAsBuilt, other: MachineAsBuilt) -> bool:
+        """Whether the fields of two machines are the same: friction, losses and resistances may differ."""
+        return np.array_equal(self.about_drawing.position(design), self.about_drawing.position(other))
+
     def options(self, design: MachineAsBuilt, campaign: Campaign) -> list[Option]:
         """What could be measured next, see ``workbench.explain.recommend``."""
         return options(campaign.tables)
