@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from benchmarks.virtual_benches import ngsolve_bench, truths
+from benchmarks.virtual_benches.hiding import SMALL
 from benchmarks.virtual_benches.instruments import Noise
 from benchmarks.virtual_benches.machine_hidden import EFFECTS, OUTSIDE, Solved, drawn, sensitivities
-from benchmarks.virtual_benches.hiding import SMALL
 from benchmarks.virtual_benches.ngsolve_bench import Eye, Reading, evaluated, readings_of, truth
 from benchmarks.virtual_benches.truths import DEGREE, DRAWINGS, TWELVE_TEN, AsBuilt, coil_turns, revolution, window
 from geometry.half_cell import MeshDensity
