@@ -117,7 +117,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None
             promise = smaller
         if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
             _weigh_leader(search, progress)
-        best = max(search.log_posterior(search.ranked[0]), search.least)
+        best = max(search.log_posterior(search.ranked[0]), search.beside_leader)
         if -promise.order < best - REACH and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
@@ -134,7 +134,7 @@ def _weigh_leader(search: Search, progress: Progress) -> None:
     found = beside_unknown(search.fitted[leader], search.shapes)
     if found is not None:
         prior = search.beliefs.log_prior(leader) + search.beliefs.log_unknown
-        search.least = search.log_evidence_beside(leader, found) + prior
+        search.beside_leader = search.log_evidence_beside(leader, found) + prior
 
 
 def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise | None:

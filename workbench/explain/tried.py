@@ -91,7 +91,7 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
-    least: ln posterior of an unknown function beside what led, where the search was long
+    beside_leader: ln posterior of an unknown function beside what led, where the search was long
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     """
 
@@ -107,7 +107,7 @@ class Search:
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
-    least: float = -np.inf
+    beside_leader: float = -np.inf
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
 
     def log_evidence(self, names: Set) -> float:
@@ -145,7 +145,7 @@ class Search:
     @property
     def is_beaten(self) -> bool:
         """Whether an unknown function is so much better than all that was fitted that it would be seen plainly."""
-        return self.least > self.log_posterior(self.ranked[0]) + PLAIN
+        return self.beside_leader > self.log_posterior(self.ranked[0]) + PLAIN
 
     @property
     def ranked(self) -> list[Set]:

@@ -433,7 +433,7 @@ def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, mo
     ]
     search.guessed = {promise.every: -promise.order for promise in heap}
     search_module._best_first(search, heap, lambda words: None)
-    assert search.is_beaten and search.least > search.log_posterior(search.ranked[0]) + 10
+    assert search.is_beaten and search.beside_leader > search.log_posterior(search.ranked[0]) + 10
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
 
 
@@ -451,11 +451,11 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
 
     def alone(search, progress):
         done.append("effects")
-        search.least = np.inf if len(done) == 1 else -np.inf
+        search.beside_leader = np.inf if len(done) == 1 else -np.inf
 
     def exactly(search, progress):
         done.append("exact")
-        search.least = -np.inf
+        search.beside_leader = -np.inf
 
     monkeypatch.setattr(search_module, "_effects_alone", alone)
     monkeypatch.setattr(search_module, "_exactly", exactly)
