@@ -177,12 +177,14 @@ def _exactly(search: Search, progress: Progress) -> None:
 def _next_exact(search: Search) -> Set | None:
     """What leads; then what might lead, where what an exact model gave what is most like it is wrong by as much as it
     is; then what leads without one of its effects, where it is not far behind: such an effect may have made good what
-    the expansion lacks, so that its part gains more by an exact model than the whole."""
+    the expansion lacks, so that its part gains more by an exact model than the whole. Sets with the same effects in the
+    field gain alike."""
     leader = search.ranked[0]
     if leader not in search.exact:
         return leader
     most = search.log_posterior(leader)
-    others = [names for names in search.ranked if names not in search.exact]
+    known = {names & search.of_expansion for names in search.exact if names}
+    others = [names for names in search.ranked if names & search.of_expansion not in known]
     rivals = [n for n in others if search.log_posterior(n) + abs(search.exactness(n)) > most]
     least = most - REACH - PART_GAINS * max(search.exact[leader], 0.0)
     parts = [n for n in others if n < leader and len(n) == len(leader) - 1 and search.log_posterior(n) >= least]

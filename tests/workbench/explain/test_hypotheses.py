@@ -470,9 +470,12 @@ def test_what_an_exact_model_might_bring_to_the_lead_is_made_exact_next(tmp_path
     first, other = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave3",))
     second = replace(first, log_evidence=first.log_evidence - behind - gain)
     search = searching(bench, {frozenset(): null_of(bench), first.names: first, other: second})
+    search.of_expansion = first.names | other
     assert search_module._next_exact(search) == (first.names if behind + gain > 0 else other)
     search.exact = dict.fromkeys((frozenset(), first.names), float(gain))
     assert search_module._next_exact(search) == (other if is_next else None)
+    search.of_expansion = frozenset()
+    assert search_module._next_exact(search) is None, "both leave the field as it is: an exact one gives them the same"
 
 
 def test_probabilities_of_a_search_add_up_to_one(bench):
