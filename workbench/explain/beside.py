@@ -21,7 +21,7 @@ from workbench.explain.tried import (
 )
 
 BESIDE = 4  # sets that are looked at beside an unknown function
-MOST_BESIDE = 16  # effects at most that are fitted beside one
+MOST_BESIDE = 16  # effects at most that are fitted beside one; BESIDE where it is far better than any without
 
 
 def weigh_unknown(search: Search, progress: Progress) -> None:
@@ -40,7 +40,7 @@ def weigh_unknown(search: Search, progress: Progress) -> None:
     if leader:
         _effects_beside(search, search.beside[leader], heap)
     best = lambda: max(posterior(n) for n in search.beside)  # noqa: E731
-    for number, promise in enumerate(sorted(heap)[:MOST_BESIDE]):
+    for number, promise in enumerate(sorted(heap)[: BESIDE if search.is_beaten else MOST_BESIDE]):
         if number < BESIDE or -promise.order >= best() - REACH:
             _fit_beside(search, promise)
     cap(search.guessed_beside, search.beliefs, best())
