@@ -117,7 +117,7 @@ class Search:
     def exactness(self, names: Set) -> float:
         """What an exact base model would give a set that has none: as much as the exact one that is most like it in
         effects that the expansion is concerned with."""
-        if names in self.exact:
+        if names in self.exact or len(self.exact) == 1:  # nothing but the null is
             return 0.0
         mine = names & self.of_expansion
         unlike = lambda e: (-len(e & mine), len(e & self.of_expansion ^ mine), len(e ^ names), sorted(e))  # noqa: E731
@@ -130,7 +130,10 @@ class Search:
 
     def _moves(self, effect: Effect) -> bool:
         model = self.bench.model
-        changed = replace(model, effects=(effect.at(np.ones(len(parameters_of(effect)))),)).design_as_built
+        try:
+            changed = replace(model, effects=(effect.at(np.ones(len(parameters_of(effect)))),)).design_as_built
+        except WorkbenchError:  # what cannot be built is not the same
+            return True
         return not model.base.is_alike(model.design, changed)
 
     def log_evidence_beside(self, names: Set, beside: Beside) -> float:

@@ -74,8 +74,8 @@ class BaseModel:
         return self
 
     def is_alike(self, design: Any, other: Any) -> bool:
-        """Whether two designs differ in nothing that an expansion is of."""
-        return bool(design == other)
+        """Whether two designs differ in nothing that an expansion is of; one that was touched does."""
+        return design is other
 
     def numerical(self, design: Any, table: Table) -> tuple[Mapping[str, np.ndarray], ...]:
         """Shapes of the model's own numerical error in the rows of a table, response -> SI (n,); each comes with a
