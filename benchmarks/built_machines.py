@@ -62,11 +62,14 @@ def with_remanence(found: MachineFile, remanence: float) -> MachineFile:
 
 def prius() -> Iterator[Row]:
     """Line voltage at 1000 rpm."""
-    found = read_machine("prius_2004")
-    speed = 1000 * RPM * found.machine.pole_pairs
-    drawn = sqrt(3 / 2) * speed * no_load(found).fundamental
+    drawn = line_voltage(read_machine("prius_2004"))
     yield Row("prius_2004", "line voltage at 1000 rpm, rms / V", drawn, measured_line_voltage(),
               "steel, remanence and bridge assumed; another code has the same voltage of this drawing")  # fmt: skip
+
+
+def line_voltage(found: MachineFile) -> float:
+    """Of a drawing at 1000 rpm, RMS [V]."""
+    return sqrt(3 / 2) * 1000 * RPM * found.machine.pole_pairs * no_load(found).fundamental
 
 
 def measured_line_voltage() -> float:

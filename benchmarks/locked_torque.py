@@ -22,7 +22,14 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import brentq
 
-from benchmarks.built_machines import BEYOND, LOCKED, locked_torque, measured_line_voltage, no_load, with_remanence
+from benchmarks.built_machines import (
+    BEYOND,
+    LOCKED,
+    line_voltage,
+    locked_torque,
+    measured_line_voltage,
+    with_remanence,
+)
 from geometry.cross_section import mesh_cross_section
 from geometry.rotors.v_shape import VShape
 from magnetostatics.currents import PhaseCurrents
@@ -30,7 +37,7 @@ from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import FieldModel
 from pipeline.modules import PROJECT
 from study.machine_file import MachineFile, read_machine
-from units import DEGREE, MILLIMETRE, RPM
+from units import DEGREE, MILLIMETRE
 
 TABLE = PROJECT / "measurements" / "prius-2004-field" / "predictions.csv"
 # Standard uncertainties as the campaign declares them: of the value, and of the gap.
@@ -69,11 +76,6 @@ def _of_magnets(found: MachineFile, model: FieldModel, current: float, beyond: f
         ends.append(phase_flux_linkage(model.solve(PhaseCurrents(angle, (0.0, 0.0, 0.0)))))
     slopes = found.turns * found.active_length * (ends[1] - ends[0]) * found.machine.pole_pairs / (2 * STEP)
     return float(slopes @ np.array([current, -current / 2, -current / 2]))
-
-
-def line_voltage(found: MachineFile) -> float:
-    """At 1000 rpm, RMS [V]."""
-    return sqrt(1.5) * 1000 * RPM * found.machine.pole_pairs * no_load(found).fundamental
 
 
 def explanations(found: MachineFile) -> Iterator[Explanation]:

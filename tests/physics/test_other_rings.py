@@ -71,5 +71,3 @@ def test_harmonics_of_the_flux_density_in_the_gap(drawn, pattern):
     solution = solved(machine, angle)
     exact = np.array([exact_harmonic(machine, int(k), angle) for k in orders])
     assert_allclose([radial_harmonic(solution, k) for k in orders], exact, atol=3e-4 * abs(exact[0]))
-
-

@@ -36,7 +36,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     beliefs = beliefs_of(every, signatures.names)
     shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
-    _alone(search, progress)
+    _until_exact(search, progress)
     cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]), search.exactness)
     weigh_unknown(search, progress)
     _exactly(search, progress)
@@ -58,7 +58,7 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
     return search.fitted[heap[0].every]
 
 
-def _alone(search: Search, progress: Progress) -> None:
+def _until_exact(search: Search, progress: Progress) -> None:
     """Sets of effects; once more where an unknown function had ended the search, but not beside a model that is
     exact."""
     while True:

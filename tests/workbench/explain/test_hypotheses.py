@@ -459,7 +459,7 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
 
     monkeypatch.setattr(search_module, "_effects_alone", alone)
     monkeypatch.setattr(search_module, "_exactly", exactly)
-    search_module._alone(search, lambda words: None)
+    search_module._until_exact(search, lambda words: None)
     assert done == ["effects", "exact", "effects", "exact"]
 
 
