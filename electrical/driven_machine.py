@@ -18,9 +18,22 @@ class DrivenMachine:
     fastest: float
 
 
+@dataclass(frozen=True)
+class BegunMachine:
+    """The machine whose field is mapped: wound as its file states it, or with one bar a coil where its winding is yet
+    to be chosen. Only its ampere-turns count."""
+
+    driven: DrivenMachine
+
+
 def driven_machine(winding: WindingOutcome, inputs: WindingInputs) -> DrivenMachine:
     """The machine with the winding that was chosen."""
     return DrivenMachine(winding.wound, winding.limits, inputs.limits.maximum_speed)
+
+
+def driven_as_begun(begun: BegunMachine) -> DrivenMachine:
+    """The machine with the winding of its file."""
+    return begun.driven
 
 
 @dataclass(frozen=True)

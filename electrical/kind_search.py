@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
-from electrical.driven_machine import DrivenMachine
+from electrical.driven_machine import BegunMachine, DrivenMachine
 from geometry.areas import part_areas
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
@@ -183,8 +183,20 @@ def machine_of(driven: DrivenMachine, moves: Sequence[Move], amounts: Sequence[f
     return changed
 
 
-def driven_as_found(stated: StatedDesign, found: KindOutcome) -> DrivenMachine:
-    """The best machine with the turns of the stated one and wire that fills its slots as far."""
+def begun_as_found(stated: StatedDesign, found: KindOutcome) -> BegunMachine:
+    """The best machine with the turns and the current of the stated one and wire that fills its slots as far."""
+    return BegunMachine(_found(stated, found))
+
+
+def begun_as_found_to_be_wound(stated: StatedDesign, found: KindOutcome) -> BegunMachine:
+    """The best machine with the current density of the stated one: its current grows with the copper."""
+    driven = _found(stated, found)
+    grown = driven.wound.copper_area / stated.driven.wound.copper_area
+    limits = replace(driven.limits, current_peak=grown * driven.limits.current_peak)
+    return BegunMachine(replace(driven, limits=limits))
+
+
+def _found(stated: StatedDesign, found: KindOutcome) -> DrivenMachine:
     driven, wound = stated.driven, stated.driven.wound
     machine = machine_of(driven, found.search.moves, found.best.amounts)
     wider = sqrt(part_areas(machine).half_slot / part_areas(wound.machine).half_slot)
@@ -195,9 +207,9 @@ def driven_as_found(stated: StatedDesign, found: KindOutcome) -> DrivenMachine:
     return replace(driven, wound=replace(wound, machine=machine, design=replace(wound.design, wire=sized)))
 
 
-def driven_as_stated(stated: StatedDesign) -> DrivenMachine:
+def begun_as_stated(stated: StatedDesign) -> BegunMachine:
     """The machine of the file itself."""
-    return stated.driven
+    return BegunMachine(stated.driven)
 
 
 def _solved(stated: StatedDesign, moves: Sequence[Move], amounts: Sequence[float], angle: float) -> KindDesign:

@@ -15,7 +15,15 @@ from math import inf, isfinite, pi, sqrt
 import numpy as np
 
 from electrical.circulating import ZeroSequence
-from electrical.dq import DqMachine, DriveLimits, corner_speed, maximum_power, mtpa_currents
+from electrical.dq import (
+    DqMachine,
+    DriveLimits,
+    Values,
+    corner_speed,
+    maximum_power,
+    mtpa_currents,
+    torque_speed_envelope,
+)
 from electrical.final_length import FinalLength
 from electrical.resistance import phase_resistance
 from electrical.synchronous_machine import SynchronousMachine
@@ -109,6 +117,29 @@ class WindingLimits:
         """Packing factor up to which a winding counts as feasible."""
         return self.packing_limit * (1 + self.packing_tolerance)
 
+    def ampere_turns(self, copper: Values, turns: Values) -> Values:
+        """Peak of one coil that a winding is valued at [A], sqrt(2) J A (3.77).
+
+        copper: section of a coil side [m^2]; turns: of the equivalent star
+        """
+        return self.density_ampere_turns(copper)
+
+    def density_ampere_turns(self, copper: Values) -> Values:
+        """Peak of one coil that the current density allows [A]; copper: section of a coil side [m^2]."""
+        return sqrt(2) * self.overload_current_density * copper
+
+
+@dataclass(frozen=True)
+class LimitsWithDrive(WindingLimits):
+    """The same where the drive is given too: a winding that could carry more than its line current carries that."""
+
+    def ampere_turns(self, copper: Values, turns: Values) -> Values:
+        """Peak of one coil [A], that of the current density or of the line current, whichever is less.
+
+        copper: section of a coil side [m^2]; turns: of the equivalent star
+        """
+        return np.minimum(self.density_ampere_turns(copper), sqrt(2) * self.phase_current_rms * turns)
+
 
 @dataclass(frozen=True)
 class WindingRequirement:
@@ -131,7 +162,8 @@ class Winding:
     current_rms: float  # [A], line
     current_peak: float  # [A], line
     phase_resistance: float  # ohm
-    inductance_d: float  # H, phase, apparent with the overload current on the q axis and a quarter of it against d
+    inductance_d: float  # H, phase, apparent with the overload current on the q axis and a quarter of it against d,
+    # along d where a map has no other side
     inductance_q: float  # H, phase, apparent at the overload current on the q axis
     torque_constant: float  # [Nm/A], per peak ampere at the overload current on the q axis
     no_load_torque_constant: float  # [Nm/A], per peak ampere at vanishing current
@@ -229,8 +261,8 @@ def evaluate_windings(
     designs: tuple[WindingDesign, ...],
     lengths: tuple[FinalLength, ...],
 ) -> tuple[Winding, ...]:
-    """Values each design at its length and the overload current density, without its maximum power and without what
-    circulates.
+    """Values each design at its length and the ampere-turns that the limits allow it, without its maximum power and
+    without what circulates.
 
     N I_peak = sqrt(2) J A_w N_h N_t (3.77); the machine of one turn and one metre sees N I_peak, V / (N l) and
     R / (N^2 l), with R from eq. 3.82, V = V_DC / sqrt(3) and N the turns of the equivalent star; torque times l.
@@ -256,14 +288,44 @@ def with_maximum_power(
     )
 
 
+def torque_at_speed(
+    machine: PerTurnMachine,
+    limits: WindingLimits,
+    windings: tuple[Winding, ...],
+    speed: Values,
+    share: Values = 1.0,
+) -> np.ndarray:
+    """Largest torque of each winding [Nm] (n,), the field weakened where it must be; 0 where no current is within the
+    voltage.
+
+    speed: mechanical [rad/s], one or (n,); share: of the full current of each, dimensionless, one or (n,)
+    """
+    lengths = np.array([one.active_length for one in windings])
+    scaled = _scaled(machine, limits, tuple(one.design for one in windings), lengths)
+    drive = replace(scaled.drive, current_peak=share * scaled.drive.current_peak)
+    return lengths * np.nan_to_num(torque_speed_envelope(scaled.family, drive, speed).torque)
+
+
+def speed_at_current(
+    machine: PerTurnMachine, limits: WindingLimits, windings: tuple[Winding, ...], ampere_turns: float
+) -> np.ndarray:
+    """Mechanical speed up to which each winding carries some ampere-turns at their best angle [rad/s] (n,).
+
+    ampere_turns: of one coil, peak [A]
+    """
+    lengths = np.array([one.active_length for one in windings])
+    scaled = _scaled(machine, limits, tuple(one.design for one in windings), lengths)
+    return np.asarray(corner_speed(scaled.family, scaled.drive, *mtpa_currents(machine.dq, ampere_turns)))
+
+
 def with_circulation(
-    machine: PerTurnMachine, zero: ZeroSequence, windings: tuple[Winding, ...], density: float, speed: float
+    machine: PerTurnMachine, zero: ZeroSequence, windings: tuple[Winding, ...], density: Values, speed: float
 ) -> tuple[Winding, ...]:
     """The same windings with the share that the current round the triangle of each adds to its copper loss: deltas.
 
-    At the best current of a density in the copper, RMS [A/m^2], and a mechanical speed [rad/s].
+    At the best current of a density in the copper, RMS [A/m^2], one or (windings,), and a mechanical speed [rad/s].
     """
-    ampere_turns = np.array([sqrt(2) * density * one.design.copper_area for one in windings])
+    ampere_turns = sqrt(2) * density * np.array([one.design.copper_area for one in windings])
     turns, length, resistance = np.array(
         [(one.design.equivalent_turns, one.active_length, one.phase_resistance) for one in windings]
     ).T
@@ -342,7 +404,7 @@ def _scaled(
         coils_in_series=machine.coils_in_series,
         resistivity=resistivity,
     )
-    ampere_turns = sqrt(2) * limits.overload_current_density * copper
+    ampere_turns = limits.ampere_turns(copper, turns)
     drive = DriveLimits.from_dc_bus(ampere_turns, limits.dc_voltage / (turns * length))
     family = machine.dq.with_resistance(resistance / (turns**2 * length))
     return _Scaled(designs, turns, length, resistance, family, drive)
@@ -354,7 +416,8 @@ def _columns(machine: PerTurnMachine, scaled: _Scaled) -> dict[str, np.ndarray]:
     best = mtpa_currents(family, ampere_turns)
     torque, base = length * family.torque(*best), corner_speed(family, scaled.drive, *best)
     psi_d, psi_q = family.flux_linkage(np.zeros_like(ampere_turns), ampere_turns)
-    weakened = family.flux_linkage(-WEAKENING * ampere_turns, ampere_turns)[0]
+    aside = np.where(family.direct_range(ampere_turns)[0] < 0, -WEAKENING, WEAKENING)  # a map has one side or both
+    weakened = family.flux_linkage(aside * ampere_turns, ampere_turns)[0]
     no_load = family.flux_linkage(0.0, 0.0)[0]
     constant, inductance = 1.5 * family.pole_pairs * turns * length, turns**2 * length / ampere_turns
     current = ampere_turns / turns
@@ -366,7 +429,7 @@ def _columns(machine: PerTurnMachine, scaled: _Scaled) -> dict[str, np.ndarray]:
         "current_rms": current / sqrt(2),
         "current_peak": current,
         "phase_resistance": scaled.resistance,
-        "inductance_d": (psi_d - weakened) / WEAKENING * inductance,
+        "inductance_d": (weakened - psi_d) / aside * inductance,
         "inductance_q": psi_q * inductance,
         "torque_constant": constant * psi_d,
         "no_load_torque_constant": constant * no_load,
@@ -410,18 +473,19 @@ def _best_that_meets(windings: tuple[Winding, ...], requirement: WindingRequirem
 
 def _power_for_length(winding: Winding) -> tuple[float, ...]:
     """The larger, the better, where nothing meets the requirement."""
-    return (_rounded(winding.power_at_base_speed / winding.needed_length), *(-value for value in _merit(winding)))
+    return (rounded(winding.power_at_base_speed / winding.needed_length), *(-value for value in _merit(winding)))
 
 
 def _merit(winding: Winding) -> tuple[float, ...]:
     """The smaller, the better; currents are one where only rounding parts them."""
     connection = winding.design.connection
     ranks = (-winding.design.copper_area, connection.paths, connection.closing.line_over_phase_current)
-    return (_rounded(winding.current_rms), *(_rounded(rank) for rank in ranks), winding.strands)
+    return (rounded(winding.current_rms), *(rounded(rank) for rank in ranks), winding.strands)
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.9g}")
+def rounded(value: float, digits: int = 9) -> float:
+    """To significant digits: what differs by rounding alone becomes one; value: of any unit, as the result."""
+    return float(f"{value:.{digits}g}")
 
 
 def _best_of_a_kind(windings: list[Winding], limits: WindingLimits, requirement: WindingRequirement) -> Winding:

@@ -146,8 +146,8 @@ def winding_stage(
     possible.
     """
     requirement = WindingRequirement(demand.base_speed, demand.power, torque=0.0)
-    machine = per_turn_machine(flux_map, matched)
-    connections = possible_connections(layout_of(flux_map, matched), inputs)
+    machine = per_turn_machine(flux_map, machine_end_turn(matched.machine, flux_map.coil_pitch))
+    connections = possible_connections(layout_of(flux_map, matched), inputs.paths, inputs.closings)
     designs = full_designs(machine.coil_side_area, inputs.wires, connections, inputs.limits)
     needed = Lengths(machine, flux_map.torque_error, demand, inputs, continuous).of(designs)
     windings = evaluate_windings(machine, inputs.limits, designs, needed)
@@ -162,13 +162,13 @@ def rated_speed(winding: WindingOutcome, limits: WindingLimits) -> float:
     return min(winding.chosen.base_speed, limits.maximum_speed)
 
 
-def per_turn_machine(flux_map: FluxMap, matched: MatchedMachine) -> PerTurnMachine:
-    """The machine of a map before its winding is chosen."""
+def per_turn_machine(flux_map: FluxMap, end_turn_length: float) -> PerTurnMachine:
+    """The machine of a map before its winding is chosen; end_turn_length: [m]."""
     return PerTurnMachine(
         dq=FluxMapMachine.from_per_turn(flux_map.data, turns=1, active_length=1.0, resistance=0.0),
         coils_in_series=flux_map.coils_in_series,
         coil_side_area=flux_map.coil_side_area,
-        end_turn_length=machine_end_turn(matched.machine, flux_map.coil_pitch),
+        end_turn_length=end_turn_length,
     )
 
 
@@ -179,18 +179,20 @@ def layout_of(flux_map: FluxMap, matched: MatchedMachine) -> WindingLayout:
     return star_of_slots(machine.slots, machine.pole_pairs, layers, flux_map.coil_pitch)
 
 
-def possible_connections(layout: WindingLayout, inputs: WindingInputs) -> tuple[WindingConnection, ...]:
-    """Those that the study allows and the star of slots makes possible.
+def possible_connections(
+    layout: WindingLayout, paths: tuple[int, ...], closings: tuple[Star | Delta, ...]
+) -> tuple[WindingConnection, ...]:
+    """Those that are allowed and that the star of slots makes possible; paths: allowed numbers of parallel ones.
 
     Raises WindingError where none of the numbers of paths is possible.
     """
-    numbers = [number for number in inputs.paths if number in layout.path_numbers]
+    numbers = [number for number in paths if number in layout.path_numbers]
     if not numbers:
         raise WindingError(
-            f"none of winding_selection.parallel_paths = {list(inputs.paths)} is possible: {layout.slots} slots and "
+            f"none of winding_selection.parallel_paths = {list(paths)} is possible: {layout.slots} slots and "
             f"{2 * layout.pole_pairs} poles have equal paths for {list(layout.path_numbers)} only; allow one of these"
         )
-    return tuple(WindingConnection(number, closing) for closing in inputs.closings for number in numbers)
+    return tuple(WindingConnection(number, closing) for closing in closings for number in numbers)
 
 
 @dataclass(frozen=True, eq=False)

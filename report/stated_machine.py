@@ -15,6 +15,8 @@ from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
 from electrical.driven_machine import CopperTemperature, DrivenMachine
 from electrical.kind_search import KindDesign, KindOutcome
 from electrical.performance import Performance
+from electrical.point_winding_stage import Candidates, PointWinding
+from electrical.point_windings import needed_density
 from electrical.turning_stage import TurningMachine, full_supply
 from electrical.wound_machine import WoundMachine
 from export.dxf import laminations, write_dxf
@@ -64,8 +66,11 @@ def machine_sheet(
     performance: Performance,
     turning: TurningMachine,
     losses: LossMap | None,
+    winding: PointWinding | None,
+    candidates: Candidates | None,
 ) -> MachineSheet:
-    """Every group of rows. losses: None where the file names no loss grade"""
+    """Every group of rows. losses: None where the file names no loss grade; winding, candidates: None where the file
+    states the winding"""
     wound = driven.wound
     bars = CopperBars(wound.copper_area, 6 * wound.coils_in_series, wound.end_turn_length)
     masses = part_masses(wound.machine, wound.active_length, bars, _PARTS)
@@ -73,6 +78,7 @@ def machine_sheet(
         Group("Stator", tuple(_drawn(wound.machine.stator))),
         Group("Rotor", tuple(_drawn(wound.machine.rotor))),
         Group("Winding", tuple(_winding(case, copper, driven))),
+        Group("Operating points", tuple(_points(winding, candidates))),
         Group("Torque, speed and supply", tuple(_torques(driven, flux_map, performance, turning))),
         Group("Constants", tuple(_constants(copper, driven, flux_map, performance))),
         Group("Iron at full current", tuple(_iron(wound.machine.rotor, turning))),
@@ -87,8 +93,8 @@ def search_files(found: KindOutcome) -> Iterator[File]:
     yield table_file(DESIGNS, designs_table(found))
 
 
-def search_section(found: KindOutcome | None) -> Section | None:
-    """What the dimensions became; none where nothing may vary."""
+def search_section(found: KindOutcome | None, candidates: Candidates | None) -> Section | None:
+    """What the dimensions became; none where nothing may vary. candidates: None where the file states the winding"""
     if found is None:
         return None
     best, drawn = found.best, found.drawn
@@ -99,8 +105,10 @@ def search_section(found: KindOutcome | None) -> Section | None:
         f"Nm; {best.tooth:.3g} T in the teeth and {best.back_iron:.3g} T in the back iron, where "
         f"{found.search.limit:g} T is allowed (as drawn {drawn.tooth:.3g} and {drawn.back_iron:.3g} T), at a current "
         f"angle of {best.current_angle / DEGREE:.0f}°; at the angle of the largest torque, which the sheet is for, the "
-        "iron may be further saturated. Wire fills the slots as far as it did, of a diameter that need not be sold."
-    )
+        "iron may be further saturated. "
+        + ("Wire fills the slots as far as it did, of a diameter that need not be sold." if candidates is None else
+           "Copper was to fill the slots as far as it may; what is wound into them is chosen below.")
+    )  # fmt: skip
     rows = [
         {"variable": move.name, "moves": ", ".join(".".join(one) for one in move.dimensions),
          "change": move.amount(amount), "from": move.amount(move.low), "to": move.amount(move.high),
@@ -286,6 +294,18 @@ def _end_winding_inductance(wound: WoundMachine) -> Row:
         return row(name, wound.end_turn_inductance, "uH", "of a phase, estimate; not in the flux map")
     except ValueError as unknown:
         return Row(name, "not known", "", str(unknown))
+
+
+def _points(winding: PointWinding | None, candidates: Candidates | None) -> Iterator[Row]:
+    """What the winding was chosen for."""
+    if winding is None or candidates is None:
+        return
+    chosen = winding.chosen
+    for point, torque in zip(candidates.inputs.points, chosen.torques, strict=True):
+        yield row(f"largest torque at {point.speed / RPM:g} rpm", torque, "Nm", f"asked are {point.torque:g} Nm")
+    yield row("line current", chosen.needed_current, "A", "peak, least with which every point is reached")
+    yield row("current density", needed_density(chosen), "A_per_mm2", "RMS, at that current")
+    yield row("copper loss", chosen.copper_loss, "W", "at that current")
 
 
 def _torques(

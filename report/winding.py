@@ -97,18 +97,19 @@ def winding_row(winding: Winding, chosen: bool) -> dict[str, object]:
     """One winding in drawing units."""
     values = drawn(winding, (*_CURRENT, *_ELECTRICAL, *_FIELD_WEAKENING))
     row = {name: np.nan if value is None else value for name, value in values.items()}
-    return {**_design_row(winding), "chosen": chosen, **row, "circulating_share": winding.circulating_share}
+    return {**design_row(winding), "chosen": chosen, **row, "circulating_share": winding.circulating_share}
 
 
 def alternatives_table(found: WindingOutcome) -> pd.DataFrame:
     """The best of each gauge and connection, and what was said of it."""
     return pd.DataFrame([
-        {**_design_row(one.winding), **drawn(one.winding, (*_CURRENT, *_COMPARED)), "verdict": one.verdict}
+        {**design_row(one.winding), **drawn(one.winding, (*_CURRENT, *_COMPARED)), "verdict": one.verdict}
         for one in found.alternatives
     ])  # fmt: skip
 
 
-def _design_row(winding: Winding) -> dict[str, object]:
+def design_row(winding: Winding) -> dict[str, object]:
+    """Gauge, connection, turns and wires in hand."""
     design = winding.design
     connection = {"connection": design.connection.closing.name, "paths": design.connection.paths}
     wire = {"wire_mm": design.wire.copper_diameter / MILLIMETRE}

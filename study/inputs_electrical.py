@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from electrical.braking_stage import CopperHeat
-from electrical.winding_connection import CLOSINGS
+from electrical.winding_connection import CLOSINGS, Delta, Star
 from electrical.winding_selection import WindingLimits
 from electrical.winding_stage import WindingInputs
 from electrical.wire import Wire
@@ -15,7 +15,7 @@ from materials.conductor import Conductor
 from materials.enamelled_wire import gauge
 from materials.insulation import InsulationClass, insulation_class
 from study.magnet_choice import magnet_resistivity
-from study.schema import Study
+from study.schema import Study, WindingChoiceSection
 
 COLD = 20.0  # degC
 CLASS = "F"  # of the insulation, where the study names none: usual for enamelled wire in small machines (estimate)
@@ -38,11 +38,10 @@ def flux_map_grid(study: Study) -> FluxMapGrid:
 
 def winding_inputs(study: Study) -> WindingInputs:
     """Wires, connections, limits and length of the winding."""
-    section = study.winding_selection
     return WindingInputs(
         wires=wires(study),
-        paths=section.parallel_paths or PATHS,
-        closings=tuple(CLOSINGS[name] for name in section.connections or CONNECTIONS),
+        paths=allowed_paths(study.winding_selection),
+        closings=allowed_closings(study.winding_selection),
         limits=winding_limits(study),
         insulation=winding_class(study),
         nominal_density=study.sweep.si.j_nominal_rms,
@@ -67,7 +66,15 @@ def wires(study: Study) -> tuple[Wire, ...]:
 
     Raises MaterialError for a diameter that is not sold.
     """
-    section, resistivity = study.winding_selection.si, winding_resistivity(study)
+    return allowed_wires(study.winding_selection, winding_resistivity(study))
+
+
+def allowed_wires(choice: WindingChoiceSection, resistivity: float) -> tuple[Wire, ...]:
+    """The gauges that a file allows, thinnest first; resistivity: of their copper [ohm m].
+
+    Raises MaterialError for a diameter that is not sold.
+    """
+    section = choice.si
     sizes = [gauge(diameter, section.enamel_grade) for diameter in sorted(set(section.wire_diameters))]
     return tuple(Wire(one.copper_diameter, one.outer_diameter, resistivity) for one in sizes)
 
@@ -92,12 +99,31 @@ def winding_limits(study: Study) -> WindingLimits:
         overload_current_density=study.sweep.si.j_overload_rms,
         dc_voltage=section.dc_bus_voltage,
         maximum_speed=section.speed_max,
-        insulated_fill=INSULATED_FILL if section.insulated_fill_max is None else section.insulated_fill_max,
-        circulating_share=(
-            CIRCULATING_SHARE if section.delta_circulating_loss_max is None else section.delta_circulating_loss_max
-        ),
+        insulated_fill=insulated_fill(study.winding_selection),
+        circulating_share=circulating_share(study.winding_selection),
         phase_current_rms=section.phase_current_max_rms,
     )
+
+
+def insulated_fill(choice: WindingChoiceSection) -> float:
+    """Largest share of a coil side that the wires fill with their enamel, dimensionless."""
+    return INSULATED_FILL if choice.insulated_fill_max is None else choice.insulated_fill_max
+
+
+def circulating_share(choice: WindingChoiceSection) -> float:
+    """Largest loss by the current round a delta over the copper loss, dimensionless."""
+    stated = choice.delta_circulating_loss_max
+    return CIRCULATING_SHARE if stated is None else stated
+
+
+def allowed_paths(choice: WindingChoiceSection) -> tuple[int, ...]:
+    """Numbers of parallel paths, dimensionless."""
+    return choice.parallel_paths or PATHS
+
+
+def allowed_closings(choice: WindingChoiceSection) -> tuple[Star | Delta, ...]:
+    """Star, delta or both."""
+    return tuple(CLOSINGS[name] for name in choice.connections or CONNECTIONS)
 
 
 def winding_resistivity(study: Study) -> float:

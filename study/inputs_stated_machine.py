@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi, sqrt
 
 from electrical.dq import DriveLimits
-from electrical.driven_machine import CopperTemperature, DrivenMachine
+from electrical.driven_machine import BegunMachine, CopperTemperature, DrivenMachine
 from electrical.kind_search import KindSearch, StatedDesign
+from electrical.point_winding_stage import PointWindingInputs
+from electrical.point_windings import OperatingPoint
+from electrical.winding_connection import SERIES_STAR
 from electrical.winding_design import WindingDesign
+from electrical.winding_selection import LimitsWithDrive
 from electrical.wire import Wire
 from electrical.wound_machine import WoundMachine
 from geometry.areas import part_areas
@@ -19,6 +24,13 @@ from magnetostatics.flux_map_stage import FluxMapGrid
 from magnetostatics.model import MachineMaterials
 from materials.conductor import COPPER
 from materials.enamelled_wire import any_gauge
+from study.inputs_electrical import (
+    allowed_closings,
+    allowed_paths,
+    allowed_wires,
+    circulating_share,
+    insulated_fill,
+)
 from study.machine_file import MachineFile
 
 _GRADE = 1  # of the enamel
@@ -44,7 +56,7 @@ def stated_design(read: MachineFile) -> StatedDesign:
         read.machine, layout.coils_in_series, layout.coil_pitch, design, read.active_length, read.end_turn
     )
     driven = DrivenMachine(wound, limits, read.number("drive", "speed_max_rpm"))
-    return StatedDesign(field_case(solving(read), driven), driven)
+    return StatedDesign(field_case(solving(read), BegunMachine(driven)), driven)
 
 
 def kind_search(read: MachineFile) -> KindSearch:
@@ -56,13 +68,61 @@ def kind_search(read: MachineFile) -> KindSearch:
 def wire(read: MachineFile) -> Wire:
     """Of the winding, its copper at the temperature that the file states."""
     size = any_gauge(read.number("winding", "wire_diameter_mm"), _GRADE)
-    resistivity = float(COPPER.resistivity(read.number("drive", "winding_temperature_degC")))
-    return Wire(size.copper_diameter, size.outer_diameter, resistivity)
+    return Wire(size.copper_diameter, size.outer_diameter, resistivity(read))
 
 
-def stated_machine(driven: DrivenMachine) -> MatchedMachine:
+def resistivity(read: MachineFile) -> float:
+    """Of the copper at the temperature that the file states [ohm m]."""
+    return float(COPPER.resistivity(read.number("drive", "winding_temperature_degC")))
+
+
+def design_to_be_wound(read: MachineFile) -> StatedDesign:
+    """The machine with one bar a coil, which fills the slot as far as copper may and carries what it may.
+
+    Raises StudyError for what is left out, MaterialError for a wire that is not sold.
+    """
+    limits, layout = winding_inputs(read).limits, read.layout
+    area = limits.largest_packing * 2 * read.machine.slots * part_areas(read.machine).half_slot
+    bar = _bar(area / (6 * layout.coils_in_series), resistivity(read))
+    wound = WoundMachine(
+        read.machine, layout.coils_in_series, layout.coil_pitch, bar, read.active_length, read.end_turn
+    )
+    full = DriveLimits.from_dc_bus(limits.density_ampere_turns(bar.copper_area), limits.dc_voltage)
+    driven = DrivenMachine(wound, full, limits.maximum_speed)
+    return StatedDesign(field_case(solving(read), BegunMachine(driven)), driven)
+
+
+def _bar(area: float, resistivity: float) -> WindingDesign:
+    """One turn; area: of its copper [m^2], resistivity [ohm m]."""
+    diameter = sqrt(4 * area / pi)
+    return WindingDesign(1, 1, Wire(diameter, diameter, resistivity), SERIES_STAR)
+
+
+def winding_inputs(read: MachineFile) -> PointWindingInputs:
+    """What may be wound into a machine and what for. Raises StudyError and MaterialError as ``design_to_be_wound``."""
+    selection = read.selection
+    assert selection is not None  # the graph asks only then
+    return PointWindingInputs(
+        wires=allowed_wires(selection, resistivity(read)),
+        paths=allowed_paths(selection),
+        closings=allowed_closings(selection),
+        limits=LimitsWithDrive(
+            packing_limit=selection.packing_factor,
+            packing_tolerance=selection.packing_tolerance,
+            overload_current_density=selection.si.j_overload_rms,
+            dc_voltage=read.number("drive", "dc_bus_voltage_V"),
+            maximum_speed=read.number("drive", "speed_max_rpm"),
+            insulated_fill=insulated_fill(selection),
+            circulating_share=circulating_share(selection),
+            phase_current_rms=read.number("drive", "line_current_peak_A") / sqrt(2),
+        ),
+        points=tuple(OperatingPoint(one.si.torque, one.si.speed) for one in read.points),
+    )
+
+
+def stated_machine(begun: BegunMachine) -> MatchedMachine:
     """The cross-section."""
-    return MatchedMachine(driven.wound.machine)
+    return MatchedMachine(begun.driven.wound.machine)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,18 +144,18 @@ def solving(read: MachineFile) -> Solving:
     return Solving(read.layout.layers, read.layout.coil_pitch, read.map_points, read.materials, read.density)
 
 
-def field_case(read: Solving, driven: DrivenMachine) -> FieldCase:
+def field_case(read: Solving, begun: BegunMachine) -> FieldCase:
     """Materials, winding and mesh; the nominal current density is half of that at full current."""
-    packing, density = copper_share(driven), overload_density(driven)
+    packing, density = copper_share(begun.driven), overload_density(begun.driven)
     return FieldCase(
         read.materials, read.layers, read.coil_pitch, packing, read.density, read.density,
         nominal_density=density / 2, overload_density=density,
     )  # fmt: skip
 
 
-def flux_map_grid(read: Solving, driven: DrivenMachine) -> FluxMapGrid:
+def flux_map_grid(read: Solving, begun: BegunMachine) -> FluxMapGrid:
     """Up to the full current."""
-    return FluxMapGrid(copper_share(driven), overload_density(driven), *read.map_points)
+    return FluxMapGrid(copper_share(begun.driven), overload_density(begun.driven), *read.map_points)
 
 
 def copper_share(driven: DrivenMachine) -> float:

@@ -28,6 +28,14 @@ from materials.errors import MaterialError
 from materials.library import load_steel
 from materials.magnet import Magnet
 from study.errors import StudyError
+from study.machine_winding import (
+    POINTS,
+    SELECTION,
+    MachineWindingSelection,
+    OperatingPointSection,
+    read_points,
+    read_selection,
+)
 from study.toml_file import read_table
 from units import to_si
 
@@ -53,12 +61,13 @@ _OTHERS: dict[str, dict[str, Any]] = {
 class MachineFile:
     """A machine as it is drawn and wound, and what stands beside it in the file.
 
-    turns: of every coil, dimensionless; active_length [m]
+    active_length: [m]
     end_turn: how the coils go round the ends
     conductors, supply: what is stated of the wires and of the drive, by key with unit; None where a key is left out
     map_points: angles over 60 electrical degrees and currents along an axis of the flux map
     steel: grade of the stator; loss_grade: whose loss data stand for it, None without
     search: what may vary of the machine, None where nothing may
+    selection: what its winding is chosen from, None where it is stated; points: that it is chosen for
     """
 
     path: Path
@@ -67,7 +76,6 @@ class MachineFile:
     layout: WindingLayout
     connection: WindingConnection
     end_turn: EndTurn
-    turns: float
     active_length: float
     materials: MachineMaterials
     density: MeshDensity
@@ -77,6 +85,14 @@ class MachineFile:
     steel: str
     loss_grade: str | None
     search: KindSearch | None
+    selection: MachineWindingSelection | None
+    points: tuple[OperatingPointSection, ...]
+
+    @property
+    def turns(self) -> float:
+        """Of every coil, dimensionless. Raises StudyError where they are left out, as they may be where they are to be
+        chosen."""
+        return self.number("winding", "turns_per_coil")
 
     @property
     def equivalent_turns(self) -> float:
@@ -140,12 +156,16 @@ class _Table:
 
 
 def _machine(table: _Table) -> MachineFile:
-    _check_names(table, "the file", "section", table.sections, (*_OTHERS, VARIABLES, "stator", "rotor"))
+    known = (*_OTHERS, VARIABLES, SELECTION, POINTS, "stator", "rotor")
+    _check_names(table, "the file", "section", table.sections, known)
     values = {name: _values(table, name) for name in _OTHERS}
     machine = ComposedMachine(_part(table, "stator", STATORS), _part(table, "rotor", ROTORS))  # type: ignore[arg-type]
     check_machine(machine)
     winding, mesh = values["winding"], values["mesh"]
     layout = star_of_slots(machine.slots, machine.pole_pairs, winding["layers"], winding["coil_pitch"])
+    selection = read_selection(table.path, table.sections)
+    if selection is None:
+        _number(table, "winding", "turns_per_coil", winding["turns_per_coil"])
     return MachineFile(
         table.path,
         values["machine"]["title"],
@@ -153,7 +173,6 @@ def _machine(table: _Table) -> MachineFile:
         layout,
         _connection(table, winding),
         _end_turn(table, winding, machine, layout),
-        _number(table, "winding", "turns_per_coil", winding["turns_per_coil"]),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
         _materials(table, values["materials"], machine.rotor.magnets_per_pitch),
         MeshDensity(
@@ -165,6 +184,8 @@ def _machine(table: _Table) -> MachineFile:
         load_steel(values["materials"]["stator_steel"], table.path.parent).name,
         values["materials"]["loss_grade"],
         _search(table, machine, values) if VARIABLES in table.sections else None,
+        selection,
+        () if selection is None else read_points(table.path, table.sections),
     )
 
 

@@ -655,18 +655,14 @@ class PrintedMachineSection(Section):
     half_slot_area_mm2: Annotated[float, Quantity("stated half-slot area", 0.01, 1e5)]
 
 
-class WindingSelectionSection(Section):
-    """Wires, supply and limits from which turns, strands and connection are chosen (thesis eqs 3.119-3.120)."""
+class WindingChoiceSection(Section):
+    """What may be wound, whatever the supply (thesis eqs 3.119-3.120)."""
 
     wire_diameters_mm: Annotated[
         tuple[float, ...], Listed, Field(min_length=1), Quantity("copper diameters of the allowed wires", 0.1, 2)
     ]
     enamel_grade: Annotated[int, Quantity("grade of the enamel, IEC 60317-0-1", 1, 2)]
     packing_tolerance: Annotated[float, Quantity("accepted excess over the packing factor, relative", 0, 0.3)]
-    dc_bus_voltage_V: Annotated[float, Quantity("voltage of the DC bus", 1, 2000)]
-    phase_current_max_rms_A: Annotated[float, Quantity("RMS phase current that the power electronics allow", 0.1, 1e4)]
-    speed_max_rpm: Annotated[float, Quantity("largest speed of the torque-speed map", 10, 2e5)]
-    winding_temperature_degC: Annotated[float, Quantity("temperature of the winding", -50, 300)]
     # optional: what else may be chosen, and what holds it back; defaults in ``study.inputs_electrical``
     parallel_paths: Annotated[
         tuple[int, ...] | None, Listed, Field(min_length=1), Quantity("allowed numbers of parallel paths", 1, 100)
@@ -678,12 +674,21 @@ class WindingSelectionSection(Section):
     delta_circulating_loss_max: Annotated[
         float | None, Quantity("loss by the current round a delta over the copper loss", 0, 1)
     ] = None
-    insulation_class: Literal["A", "E", "B", "F", "H", "N"] | None = None
 
     @field_validator("wire_diameters_mm", "parallel_paths", "connections", mode="after")
     @classmethod
     def _named_once(cls, values: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
         return None if values is None else _each_once(values)
+
+
+class WindingSelectionSection(WindingChoiceSection):
+    """Wires, supply and limits from which turns, strands and connection of a study's machine are chosen."""
+
+    dc_bus_voltage_V: Annotated[float, Quantity("voltage of the DC bus", 1, 2000)]
+    phase_current_max_rms_A: Annotated[float, Quantity("RMS phase current that the power electronics allow", 0.1, 1e4)]
+    speed_max_rpm: Annotated[float, Quantity("largest speed of the torque-speed map", 10, 2e5)]
+    winding_temperature_degC: Annotated[float, Quantity("temperature of the winding", -50, 300)]
+    insulation_class: Literal["A", "E", "B", "F", "H", "N"] | None = None
 
 
 class ThermalSection(Section):

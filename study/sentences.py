@@ -65,7 +65,7 @@ def _missing(loc: Location) -> str:
     if len(loc) == 1:
         return f"section [{loc[0]}] is missing; take it over from {_TEMPLATE}"
     section, key = _names(loc)
-    return f"{section}.{key} is missing; add it under [{section}]: {_expected(section, key)}"
+    return f"{section}.{key} is missing; add it under [{section}]: {expected(section_class(section), key)}"
 
 
 def _own(loc: Location, found: object, said: str) -> str:
@@ -80,7 +80,7 @@ def _wrong_kind(loc: Location, found: object) -> str:
         return f"{loc[0]} = {shown(found)} stands where the section [{loc[0]}] is expected; make it a table"
     section, key = _names(loc)
     hint = ", without quotes and without a unit" if isinstance(found, str) and re.match(r"\s*[-+.\d]", found) else ""
-    return f"{_dotted(loc)} = {shown(found)} is not accepted; give {_expected(section, key)}{hint}"
+    return f"{_dotted(loc)} = {shown(found)} is not accepted; give {expected(section_class(section), key)}{hint}"
 
 
 def _names(loc: Location) -> tuple[str, str]:
@@ -94,9 +94,8 @@ def _dotted(loc: Location) -> str:
     return f"{section}.{key}{position}"
 
 
-def _expected(section: str, key: str) -> str:
-    """What a key takes, in words."""
-    cls = section_class(section)
+def expected(cls: type[Section], key: str) -> str:
+    """What a key of a section takes, in words."""
     field, quantity = cls.model_fields[key], cls.quantity(key)
     if quantity is not None:
         return f"{_kind(field.annotation)} ({quantity.meaning}, {quantity.allowed(key)})"

@@ -156,7 +156,7 @@ def test_a_torque_for_good_that_no_length_gives_leaves_the_length_to_the_peak(fo
 
 
 def test_a_stated_density_gives_its_torque_at_the_length_for_it():
-    density, machine = INPUTS.nominal_density, per_turn_machine(MAP, MATCHED).dq
+    density, machine = INPUTS.nominal_density, per_turn_machine(MAP, end_turn_length=1.0).dq
     need = LengthByDensity(machine, 3.0, density)
     found = winding_stage(MAP, MATCHED, DEMAND, INPUTS, need)
     wound = replace(found.wound, active_length=need.length(found.wound.design))
