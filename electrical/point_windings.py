@@ -18,7 +18,7 @@ from electrical.winding_selection import (
     PerTurnMachine,
     Winding,
     WindingError,
-    rounded,
+    merit,
     speed_at_current,
     torque_at_speed,
 )
@@ -26,7 +26,8 @@ from units import RPM, percent
 
 # Relative; losses this close compete by their current. Estimate, as ``winding_selection.AS_SHORT``.
 AS_LITTLE_LOSS = 0.05
-_BISECTIONS = 24  # of a current: a share of 6e-8
+_BISECTIONS = 16  # of a current with weakened field: 1.5e-5 of the full one
+_HALVINGS = 40  # of the ampere-turns of a torque: to round-off
 _SAME = 1e-9  # relative; a torque this close below what is asked meets it
 _VISIBLE = 1e-3  # relative; what is closer is called the same
 VOLTAGE, LINE_CURRENT, DENSITY, CIRCULATION = "voltage", "line current", "current density", "current round the delta"
@@ -120,12 +121,15 @@ class PointValuer:
         slow = speed_at_current(self.machine, self.limits, windings, least) <= point.speed
         shares = np.minimum(least / full, 1.0)
         some = tuple(one for one, yes in zip(windings, slow, strict=True) if yes)
-        shares[slow] = self._weakened_shares(some, point.speed, wanted) if some else 1.0
+        if some:
+            shares[slow] = self._weakened_shares(some, shares[slow], point.speed, wanted)
         return shares
 
-    def _weakened_shares(self, windings: tuple[Winding, ...], speed: float, torque: float) -> np.ndarray:
-        """Dimensionless (windings,), of windings that reach the torque [Nm] at a speed [rad/s]."""
-        low, high = np.zeros(len(windings)), np.ones(len(windings))
+    def _weakened_shares(
+        self, windings: tuple[Winding, ...], low: np.ndarray, speed: float, torque: float
+    ) -> np.ndarray:
+        """Dimensionless (windings,), ``low`` or more; windings that reach the torque [Nm] at the speed [rad/s]."""
+        high = np.ones(len(windings))
         for _ in range(_BISECTIONS):
             share = (low + high) / 2
             enough = torque_at_speed(self.machine, self.limits, windings, speed, share) >= torque
@@ -158,7 +162,7 @@ class PointValuer:
 def least_ampere_turns(machine: DqMachine, torque: float, most: float) -> float:
     """Peak of one coil that gives a torque per metre [Nm/m] at the best angle [A]; most: that gives it, too [A]."""
     low, high = 0.0, most
-    for _ in range(_BISECTIONS):
+    for _ in range(_HALVINGS):
         middle = (low + high) / 2
         enough = float(machine.torque(*mtpa_currents(machine, middle))) >= torque
         low, high = (low, middle) if enough else (middle, high)
@@ -219,10 +223,7 @@ def none_will_do(candidates: tuple[Candidate, ...], points: tuple[OperatingPoint
 
 
 def _merit(one: Candidate) -> tuple[float, ...]:
-    """The smaller, the better; currents are one where only rounding parts them."""
-    design = one.winding.design
-    ranks = (-design.copper_area, design.connection.paths, design.connection.closing.line_over_phase_current)
-    return (rounded(one.needed_current, 6), *(rounded(rank) for rank in ranks), design.strands)
+    return merit(one.winding.design, one.needed_current)
 
 
 def needed_density(one: Candidate) -> float:

@@ -473,19 +473,25 @@ def _best_that_meets(windings: tuple[Winding, ...], requirement: WindingRequirem
 
 def _power_for_length(winding: Winding) -> tuple[float, ...]:
     """The larger, the better, where nothing meets the requirement."""
-    return (rounded(winding.power_at_base_speed / winding.needed_length), *(-value for value in _merit(winding)))
+    return (_rounded(winding.power_at_base_speed / winding.needed_length), *(-value for value in _merit(winding)))
 
 
 def _merit(winding: Winding) -> tuple[float, ...]:
-    """The smaller, the better; currents are one where only rounding parts them."""
-    connection = winding.design.connection
-    ranks = (-winding.design.copper_area, connection.paths, connection.closing.line_over_phase_current)
-    return (rounded(winding.current_rms), *(rounded(rank) for rank in ranks), winding.strands)
+    return merit(winding.design, winding.current_rms)
 
 
-def rounded(value: float, digits: int = 9) -> float:
-    """To significant digits: what differs by rounding alone becomes one; value: of any unit, as the result."""
-    return float(f"{value:.{digits}g}")
+def merit(design: WindingDesign, current: float) -> tuple[float, ...]:
+    """The smaller, the better: current, then the fullest copper, fewest paths, star before delta, fewest wires.
+
+    current: of a line [A], of whatever measure; two are one where only rounding parts them
+    """
+    connection = design.connection
+    ranks = (-design.copper_area, connection.paths, connection.closing.line_over_phase_current)
+    return (_rounded(current), *(_rounded(rank) for rank in ranks), design.strands)
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.9g}")
 
 
 def _best_of_a_kind(windings: list[Winding], limits: WindingLimits, requirement: WindingRequirement) -> Winding:

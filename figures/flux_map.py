@@ -62,7 +62,7 @@ def envelope_over_speed(envelope: Envelope) -> Figure:
 
 def _envelopes(figure: Figure, envelopes: Iterable[tuple[Envelope, dict[str, Any]]]) -> np.ndarray:
     axes, drawn = figure.subplots(1, 3), tuple(envelopes)
-    unit = "kW" if max(np.nanmax(envelope.power) for envelope, _ in drawn) >= FACTORS["kW"] else "W"
+    unit = power_unit(envelope for envelope, _ in drawn)
     magnetising = all(np.nanmin(envelope.i_d) >= 0 < np.nanmax(envelope.i_d) for envelope, _ in drawn)
     for envelope, look in drawn:
         speed_rpm = envelope.speed / RPM
@@ -79,6 +79,11 @@ def _envelopes(figure: Figure, envelopes: Iterable[tuple[Envelope, dict[str, Any
     letter(axes)
     show_grid(*axes)
     return axes
+
+
+def power_unit(envelopes: Iterable[Envelope]) -> str:
+    """In which the largest power is a readable number."""
+    return "kW" if max(np.nanmax(envelope.power) for envelope in envelopes) >= FACTORS["kW"] else "W"
 
 
 def _map(figure: Figure, axes: Axes, i_d: np.ndarray, i_q: np.ndarray, values: np.ndarray, label: str) -> None:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from drivetrain.output import Output, in_unit, labelled
 from electrical.dq import DriveLimits, Envelope, OperatingMap
+from figures.flux_map import power_unit
 from figures.style import BLACK, FIELD_MAP, GREY, SERIES, VERMILION, letter, new_figure, show_grid, styled
 from units import FACTORS, RPM
 
@@ -44,15 +45,16 @@ def torque_speed(envelopes: dict[str, Envelope], chosen: str, required: tuple[Re
     """
     figure = new_figure(4.4)
     axes = figure.subplots(1, 2)
+    unit = power_unit(envelopes.values())
     for number, (name, envelope) in enumerate(envelopes.items()):
         look: dict[str, Any] = {"color": SERIES[number % len(SERIES)]}
         look["linestyle"] = _LINES[number // len(SERIES) % len(_LINES)]
         look |= {"linewidth": 3.0 if name == chosen else 1.3, "label": name + (" (chosen)" if name == chosen else "")}
         axes[0].plot(envelope.speed / RPM, envelope.torque, **look)
-        axes[1].plot(envelope.speed / RPM, envelope.power / 1e3, **look)
+        axes[1].plot(envelope.speed / RPM, envelope.power / FACTORS[unit], **look)
     for point in required:
-        _mark(axes, point)
-    for axis, (title, label) in zip(axes, (("torque", "torque / Nm"), ("power", "power / kW")), strict=True):
+        _mark(axes, point, unit)
+    for axis, (title, label) in zip(axes, (("torque", "torque / Nm"), ("power", f"power / {unit}")), strict=True):
         axis.set(xlabel="rotor speed / rpm", ylabel=label)
         axis.set_title(f"largest {title}", loc="left")
         axis.set_xlim(left=0.0)
@@ -102,10 +104,10 @@ def force_velocity(
     return figure
 
 
-def _mark(axes: Iterable[Axes], point: RequiredPoint) -> None:
+def _mark(axes: Iterable[Axes], point: RequiredPoint, unit: str) -> None:
     look: dict[str, Any] = {"marker": "X", "markersize": 10, "linestyle": "", "color": VERMILION}
     look["markeredgecolor"] = "white"
-    for axis, value in zip(axes, (point.torque, point.torque * point.speed / 1e3), strict=True):
+    for axis, value in zip(axes, (point.torque, point.torque * point.speed / FACTORS[unit]), strict=True):
         axis.plot(point.speed / RPM, value, label=point.name, zorder=5, **look)
 
 

@@ -71,16 +71,16 @@ def section(candidates: Candidates | None, found: PointWinding | None) -> Sectio
     alternatives = Table(
         candidates_table(candidates, kinds, chosen).drop(columns=["insulated_fill"]),
         "What would be wound of each gauge and connection and why it was chosen or not; where all are refused, the one "
-        f"that comes nearest. {_LEGEND}",
+        f"that comes nearest. In {ALTERNATIVES} too.",
         marked=tuple(k for k, one in enumerate(kinds) if one == chosen),
     )
-    text = " ".join((*_asked(candidates), *_counted(candidates)))
+    text = " ".join((*_asked(candidates), *_counted(candidates), _LEGEND))
     return Section("Winding", (text, *_choice(candidates, found), alternatives))
 
 
 _LEGEND = (
-    "Currents are of a line, peak: the full one that copper or drive allows, and the least with which every point is "
-    "reached, with its RMS density in the copper and its copper loss; torques are the largest at the speed, less what "
+    "Below, the current is the full one that copper or drive allows, the needed one the least with which every point "
+    "is reached, with its RMS density in the copper and its copper loss; torques at a speed are the largest, less what "
     "the mesh may have put on top."
 )
 
@@ -99,8 +99,8 @@ def _choice(candidates: Candidates, found: PointWinding | None) -> tuple[Part, .
         ),
         Table(
             table.drop(columns=["wire_mm", "connection", "paths", "insulated_fill"]),
-            f"{_kind(found.chosen)}: for each number of turns the most wires in hand that fit. {_LEGEND} Every full "
-            f"slot is in {TABLE}.",
+            f"{_kind(found.chosen)}: for each number of turns the most wires in hand that fit. "
+            f"{_refused(found, candidates)}Every winding is in {TABLE}.",
             marked=tuple(k for k, one in enumerate(near) if one == found.chosen),
         ),
     )  # fmt: skip
@@ -116,6 +116,21 @@ def reason(found: PointWinding, candidates: Candidates) -> str:
         f"{one.needed_current:.4g} A peak at {needed_density(one) / AMPERE_PER_SQUARE_MILLIMETRE:.3g} A/mm² RMS; its "
         f"full current is {one.winding.current_peak:.4g} A peak. {_margins(one, candidates.inputs.points)}"
     )
+
+
+def _refused(found: PointWinding, candidates: Candidates) -> str:
+    """Which numbers of turns of the chosen gauge and connection each limit refuses."""
+    alike = [one for one in candidates.valued if one.winding.design.is_like(found.chosen.winding.design)]
+    turns = {by: [int(one.winding.turns) for one in alike if one.refused_by == by] for by in counts(tuple(alike))}
+    said = [f"{ranges(some)} by {by}" for by, some in turns.items()]
+    return f"Turns that are refused: {', '.join(said)}. " if said else ""
+
+
+def ranges(numbers: list[int]) -> str:
+    """``1 to 5, 8`` of rising whole numbers."""
+    begins = [n for n in numbers if n - 1 not in numbers]
+    ends = [n for n in numbers if n + 1 not in numbers]
+    return " and ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in zip(begins, ends, strict=True))
 
 
 def _margins(one: Candidate, points: tuple[OperatingPoint, ...]) -> str:
