@@ -72,7 +72,8 @@ def _read(cls: type[_S], stated: object, path: Path, where: str) -> _S:
     try:
         return cls.model_validate(stated)
     except ValidationError as error:
-        raise StudyError(f"{path}: {where} {_sentence(cls, error.errors()[0])}.") from None
+        unknown_first = sorted(error.errors(), key=lambda one: one["type"] != "extra_forbidden")  # a slip leaves a gap
+        raise StudyError(f"{path}: {where} {_sentence(cls, unknown_first[0])}.") from None
 
 
 def _sentence(cls: type[Section], problem: ErrorDetails) -> str:

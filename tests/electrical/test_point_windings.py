@@ -53,9 +53,9 @@ def candidates_of(designs, points=POINTS, limits=LIMITS):
 
 
 def largest_torque(design, current, speed, voltage=48.0):
-    """Within the line current, peak, and the bus, by brute force, on a grid of 900 amplitudes and 1801 angles [Nm]."""
+    """Within the line current, peak, and the bus, by brute force, on a grid of 600 amplitudes and 1801 angles [Nm]."""
     turns, copper = design.equivalent_turns, design.turns * design.strands * WIRE.area
-    amplitude = np.linspace(0, current, 900)[:, None]
+    amplitude = np.linspace(0, current, 600)[:, None]
     i_d, i_q = -amplitude * np.sin(GAMMA), amplitude * np.cos(GAMMA)
     psi_d, psi_q = (turns * LENGTH * one for one in Saturating().flux_linkage(turns * i_d, turns * i_q))
     ohms = 2 * (LENGTH + END_TURN) * design.wire.resistivity * 4 * turns**2 / copper
@@ -75,7 +75,7 @@ def of(valued, *turns):
 
 
 def test_every_torque_is_what_brute_force_finds(valued):
-    for one in of(valued, 2, 7, 9, 12, 19, 25):
+    for one in of(valued, 2, 9, 19, 25):
         design = one.winding.design
         copper = design.turns * design.strands * WIRE.area
         full = sqrt(2) * min(70.0, OVERLOAD * copper / design.turns)
@@ -87,7 +87,7 @@ def test_the_needed_current_is_the_least(valued):
     """Three per mille less misses a point, as much more reaches all."""
     reaching = [one for one in valued if not one.refused_by]
     assert len(reaching) > 5
-    for one in reaching[::3]:
+    for one in reaching[::5]:
         for share, enough in ((0.997, False), (1.003, True)):
             torques = [largest_torque(one.winding.design, share * one.needed_current, p.speed) for p in POINTS]
             assert all((1 - ERROR) * t >= p.torque for t, p in zip(torques, POINTS, strict=True)) is enough
