@@ -26,7 +26,7 @@ from units import RPM, percent
 
 # Relative; losses this close compete by their current. Estimate, as ``winding_selection.AS_SHORT``.
 AS_LITTLE_LOSS = 0.05
-_BISECTIONS = 16  # of a current with weakened field: 1.5e-5 of the full one
+_BISECTIONS = 12  # of a current with weakened field: 2.4e-4 of the full one, less than the map is off by
 _HALVINGS = 40  # of the ampere-turns of a torque: to round-off
 _SAME = 1e-9  # relative; a torque this close below what is asked meets it
 _VISIBLE = 1e-3  # relative; what is closer is called the same
