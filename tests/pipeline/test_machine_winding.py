@@ -2,8 +2,10 @@
 
 import csv
 import re
+import tomllib
 from dataclasses import replace
 from math import atan2, hypot, pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,10 +20,12 @@ from magnetostatics.flux_map_stage import FluxMap
 from magnetostatics.turn import Supply, turned
 from pipeline.graph import Stage
 from pipeline.machine_stages import graph_of_machine
+from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.run import Run
 from report.stated_machine import MachineSheet
 from study.machine_file import MACHINES, read_machine
+from study.machine_winding import read_points, read_selection
 from tests.command_line import airgap
 
 MAP = """
@@ -237,6 +241,13 @@ def test_one_sentence_about_what_is_wrong(tmp_path, found, old, new, words):
     done = airgap("machine", path, "--out", kept, "--to", "candidates", "--jobs", 1)
     (said,) = [line for line in done.stderr.splitlines() if words in line]
     assert done.returncode != 0 and said.count(". ") == 0
+
+
+def test_the_example_of_the_readme_is_one():
+    text = (PROJECT / "README.md").read_text(encoding="utf-8")
+    stated = tomllib.loads(re.search(r"```toml\n(\[winding_selection\].*?)```", text, re.DOTALL)[1])
+    assert read_selection(Path("README.md"), stated).parallel_paths == (1, 2, 4)
+    assert [one.torque_Nm for one in read_points(Path("README.md"), stated)] == [250.0, 50.0]
 
 
 def test_turns_that_are_to_be_chosen_are_missed_where_a_winding_is_needed(tmp_path):
