@@ -13,7 +13,7 @@ from workbench.models.machine.answers import Answers
 from workbench.models.machine.numerical import LEFT, voltage_orders
 
 PHASES = ("v_a", "v_b", "v_c")
-TURNS = [np.arange(0, 2 * np.pi, step) for step in np.deg2rad([0.9, 1.0])]  # all orders beside each other
+TURNS = [np.arange(0, 20 * np.pi, 2 * np.pi / n) for n in (100.3, 60.3)]  # no order looks like another one
 SPEED = 100.0  # rad/s
 AT = {"angle_mech": TURN, "speed": np.full(len(TURN), SPEED)}
 
