@@ -70,6 +70,8 @@ class MachineAsBuilt(BuiltMachine):
     shorted_turns, shorted_coil: turns that are closed on themselves, and the coil that they belong to
     undeclared_iron_loss: loss of a stack without a declared law over that of a usual sheet [1]
     cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine
+    recorder_loss: share of the voltage far above half the rate of readings that a recorder keeps back [1]; no property
+        of the machine either
     rise_beyond_table: polarisation that the steel takes up beyond the end of its table over what is expected there [1]
     """
 
@@ -95,6 +97,7 @@ class MachineAsBuilt(BuiltMachine):
     shorted_coil: int = 0
     undeclared_iron_loss: float = 0.0
     cogging_of_mesh: float = 1.0
+    recorder_loss: float = 0.0
     rise_beyond_table: float = 1.0
 
     @classmethod

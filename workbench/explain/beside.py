@@ -27,23 +27,28 @@ MOST_BESIDE = 16  # effects at most that are fitted beside one; BESIDE where it 
 def weigh_unknown(search: Search, progress: Progress) -> None:
     """Unknown functions beside nothing and beside the leaders, and effects beside the best of these."""
     progress("unknown functions")
-    for names in dict.fromkeys([*search.ranked[:BESIDE], frozenset()]):
-        found = beside_unknown(search.fitted[names], search.shapes)
-        if found is not None:
-            search.beside[names] = found
+    most = BESIDE if search.is_beaten else MOST_BESIDE
+    for names in [*search.ranked[:BESIDE], frozenset()]:
+        weigh(search, names)
     if not search.beside:
         return
     heap: list[Promise] = []
     _effects_beside(search, search.beside[frozenset()], heap)
-    posterior = lambda n: search.log_evidence_beside(n, search.beside[n]) + search.beliefs.log_prior(n)  # noqa: E731
-    leader = max(search.beside, key=posterior)
+    leader = max(search.beside, key=search.log_posterior_beside)
     if leader:
         _effects_beside(search, search.beside[leader], heap)
-    best = lambda: max(posterior(n) for n in search.beside)  # noqa: E731
-    for number, promise in enumerate(sorted(heap)[: BESIDE if search.is_beaten else MOST_BESIDE]):
+    best = lambda: search.best_beside - search.beliefs.log_unknown  # noqa: E731
+    for number, promise in enumerate(sorted(heap)[:most]):
         if number < BESIDE or -promise.order >= best() - REACH:
             _fit_beside(search, promise)
     cap(search.guessed_beside, search.beliefs, best())
+
+
+def weigh(search: Search, names: Set) -> None:
+    """An unknown function beside a set that was fitted, where that was not looked at yet."""
+    found = None if names in search.beside else beside_unknown(search.fitted[names], search.shapes)
+    if found is not None:
+        search.beside[names] = found
 
 
 def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None:
@@ -70,11 +75,8 @@ def _fit_beside(search: Search, promise: Promise) -> None:
     if every in search.beside:
         return
     search.guessed_beside.pop(every, None)
-    found = None
     if every in search.fitted or fit_set(search, promise):
-        found = beside_unknown(search.fitted[every], search.shapes)
-    if found is not None:
-        search.beside[every] = found
+        weigh(search, every)
 
 
 def cap(

@@ -11,9 +11,9 @@ from heapq import heapify, heappop, heappush
 from effects.base import Effect
 from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
-from workbench.explain.beside import cap, weigh_unknown
+from workbench.explain.beside import cap, weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
-from workbench.explain.hypotheses import Hypothesis, beside_unknown, exact, null_of
+from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
 from workbench.likelihood.bench import Bench
@@ -105,6 +105,8 @@ def _least(search: Search) -> float:
 
 
 def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None:
+    """No set is fitted that promises less than the best one, an unknown function beside what leads among them: of a
+    machine that has what no effect is, dozens explain a little more than others."""
     while heap and len(search.fitted) <= FITS:
         promise = heappop(heap)
         if promise.every in search.fitted or label_of(promise.every) in search.failed:
@@ -116,25 +118,15 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None
             heappush(heap, promise)
             promise = smaller
         if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
-            _weigh_leader(search, progress)
-        best = max(search.log_posterior(search.ranked[0]), search.beside_leader)
+            progress("an unknown function")
+            weigh(search, search.ranked[0])
+        best = max(search.log_posterior(search.ranked[0]), search.best_beside)
         if -promise.order < best - REACH and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)
         if fit_set(search, promise) and search.beliefs.leaves_room(promise.every):
             expand(search, search.fitted[promise.every], heap)
-
-
-def _weigh_leader(search: Search, progress: Progress) -> None:
-    """An unknown function beside what leads. No set that promises less is fitted: of a machine that has what no effect
-    is, dozens explain a little more than others."""
-    progress("an unknown function")
-    leader = search.ranked[0]
-    found = beside_unknown(search.fitted[leader], search.shapes)
-    if found is not None:
-        prior = search.beliefs.log_prior(leader) + search.beliefs.log_unknown
-        search.beside_leader = search.log_evidence_beside(leader, found) + prior
 
 
 def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise | None:
@@ -169,8 +161,9 @@ def _exactly(search: Search, progress: Progress) -> None:
         before = search.fitted[names].log_evidence
         search.fitted[names] = exact(search.fitted[names])
         search.exact[names] = search.fitted[names].log_evidence - before
+        if search.beside.pop(names, None) is not None:
+            weigh(search, names)
         if search.is_beaten:
-            _weigh_leader(search, progress)
             break
 
 

@@ -91,7 +91,6 @@ class Search:
     guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
     guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
-    beside_leader: ln posterior of an unknown function beside what led, where the search was long
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     """
 
@@ -107,7 +106,6 @@ class Search:
     guessed_beside: dict[Set, float] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
-    beside_leader: float = -np.inf
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
 
     def log_evidence(self, names: Set) -> float:
@@ -136,10 +134,19 @@ class Search:
             return True
         return not model.base.is_alike(model.design, changed)
 
-    def log_evidence_beside(self, names: Set, beside: Beside) -> float:
+    def log_evidence_beside(self, names: Set) -> float:
         """Of a set beside an unknown function, all its forms together [nats]. An unknown function makes good what an
         expansion lacks: an exact model gives nothing more, but may take."""
-        return beside.log_evidence + self.forms.get(names, 0.0) + min(self.exactness(names), 0.0)
+        return self.beside[names].log_evidence + self.forms.get(names, 0.0) + min(self.exactness(names), 0.0)
+
+    def log_posterior_beside(self, names: Set) -> float:
+        """Of that, up to what all share and to what it takes to believe in an unknown function [nats]."""
+        return self.log_evidence_beside(names) + self.beliefs.log_prior(names)
+
+    @property
+    def best_beside(self) -> float:
+        """ln posterior of the best set beside an unknown function, of those that were weighed so far [nats]."""
+        return max(map(self.log_posterior_beside, self.beside), default=-np.inf) + self.beliefs.log_unknown
 
     def log_posterior(self, names: Set) -> float:
         """Up to what all share [nats]."""
@@ -148,7 +155,7 @@ class Search:
     @property
     def is_beaten(self) -> bool:
         """Whether an unknown function is so much better than all that was fitted that it would be seen plainly."""
-        return self.beside_leader > self.log_posterior(self.ranked[0]) + PLAIN
+        return self.best_beside > self.log_posterior(self.ranked[0]) + PLAIN
 
     @property
     def ranked(self) -> list[Set]:
@@ -187,7 +194,7 @@ class Search:
         """Probabilities of everything that was fitted or guessed."""
         guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
         alone = guessed | {names: self.log_evidence(names) for names in self.fitted}
-        beside = {n: self.log_evidence_beside(n, b) for n, b in self.beside.items()}
+        beside = {names: self.log_evidence_beside(names) for names in self.beside}
         return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
 
 
@@ -223,6 +230,7 @@ def fit_set(search: Search, promise: Promise) -> bool:
         return True
     search.fitted[every] = found
     search.exact.pop(every, None)
+    search.beside.pop(every, None)
     search.forms[every] = promise.forms
     _lower(search, every, max(guess - search.log_evidence(every), 0.0))
     return True

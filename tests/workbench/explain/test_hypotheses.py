@@ -15,6 +15,7 @@ from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, wri
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
+from workbench.explain.beside import weigh
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
 from workbench.explain.neighbours import exchange, less_one
@@ -411,8 +412,26 @@ def test_an_unknown_function_makes_good_what_an_expansion_lacks(bench, exactness
     search.of_expansion = one = frozenset(("wave2",))
     search.exact[one | {"wave5"}] = exactness
     shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
-    found = beside_unknown(search.fitted[frozenset()], shapes)
-    assert search.log_evidence_beside(one, found) == found.log_evidence + min(exactness, 0.0)
+    search.beside[one] = found = beside_unknown(search.fitted[frozenset()], shapes)
+    assert search.log_evidence_beside(one) == found.log_evidence + min(exactness, 0.0)
+
+
+def test_a_set_beside_an_unknown_function_is_weighed_anew_where_its_fit_changed(tmp_path):
+    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 0.4 * np.cos(600 * x) + 0.2 * np.sin(900 * x)))
+    wave = frozenset(("wave2",))
+    promise = Promise(0.0, "wave2", wave, (WAVES["wave2"](),), bench.null.x, np.ones(1), 0.0)
+    search = searching(bench, {frozenset(): null_of(bench)})
+    search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    fit_set(search, promise)
+    weigh(search, wave)
+    first, best = search.beside[wave], search.best_beside
+    weigh(search, wave)
+    assert search.beside[wave] is first
+    assert best == first.log_evidence + search.beliefs.log_prior(wave) + search.beliefs.log_unknown
+    search_module._exactly(search, lambda words: None)
+    assert wave in search.exact and search.beside[wave] is not first
+    fit_set(search, replace(promise, forms=1e3))
+    assert not search.beside
 
 
 def expanded(bench):
@@ -433,7 +452,7 @@ def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, mo
     ]
     search.guessed = {promise.every: -promise.order for promise in heap}
     search_module._best_first(search, heap, lambda words: None)
-    assert search.is_beaten and search.beside_leader > search.log_posterior(search.ranked[0]) + 10
+    assert search.is_beaten and search.best_beside > search.log_posterior(search.ranked[0]) + 10
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
 
 
@@ -448,17 +467,9 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
     bench = sure_of_noise(tmp_path)
     search = searching(bench, {frozenset(): null_of(bench)})
     done = []
-
-    def alone(search, progress):
-        done.append("effects")
-        search.beside_leader = np.inf if len(done) == 1 else -np.inf
-
-    def exactly(search, progress):
-        done.append("exact")
-        search.beside_leader = -np.inf
-
-    monkeypatch.setattr(search_module, "_effects_alone", alone)
-    monkeypatch.setattr(search_module, "_exactly", exactly)
+    monkeypatch.setattr(Search, "best_beside", property(lambda self: np.inf if len(done) == 1 else -np.inf))
+    monkeypatch.setattr(search_module, "_effects_alone", lambda *asked: done.append("effects"))
+    monkeypatch.setattr(search_module, "_exactly", lambda *asked: done.append("exact"))
     search_module._until_exact(search, lambda words: None)
     assert done == ["effects", "exact", "effects", "exact"]
 

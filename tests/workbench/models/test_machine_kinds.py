@@ -186,7 +186,9 @@ def test_what_is_uncertain_in_every_machine():
     """Each moves its own input: the phases by 0.4 %, the ends by what half circles of a coil's width have."""
     own = {t.name: t for t in own_tolerances(drawn())}
     phases = {"resistance_a", "resistance_b", "resistance_c"}
-    assert set(own) == phases | {"cogging_of_mesh", "end_winding_inductance", "rise_beyond_table"}
+    model = {"cogging_of_mesh", "recorder_loss", "rise_beyond_table"}
+    assert set(own) == phases | model | {"end_winding_inductance"}
+    assert with_tolerance(drawn(), own["recorder_loss"], 2.0).recorder_loss == pytest.approx(1.0)
     assert with_tolerance(drawn(), own["rise_beyond_table"], -1.0).rise_beyond_table == pytest.approx(0.4)
     moved = with_tolerance(drawn(), own["resistance_b"], 2.0)
     assert_allclose(moved.phase_resistance, [12.6e-3, 12.6e-3 * 1.008, 12.6e-3])

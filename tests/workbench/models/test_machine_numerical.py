@@ -4,13 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.effects.contract import table
 from tests.effects.machine_bench import TURN, bench
 from tests.workbench.models.machine_case import surrogate
+from workbench.models.machine.answers import Answers
 from workbench.models.machine.numerical import LEFT, voltage_orders
 
 PHASES = ("v_a", "v_b", "v_c")
+TURNS = [np.arange(0, 20 * np.pi, 2 * np.pi / n) for n in (100.3, 60.3)]  # no order looks like another one
 SPEED = 100.0  # rad/s
 AT = {"angle_mech": TURN, "speed": np.full(len(TURN), SPEED)}
 
@@ -96,3 +99,18 @@ def test_a_declared_bandwidth_settles_what_passes():
 def test_every_table_has_its_shapes_in_the_same_places():
     voltage, cogging = shapes(), shapes(None, "cogging", ("torque",), angle_mech=TURN, direction=np.ones(len(TURN)))
     assert len(voltage) == len(cogging) and not any(a and b for a, b in zip(voltage, cogging))
+
+
+def test_a_recorder_may_keep_back_what_lies_far_above_half_the_rate_of_readings():
+    """1 - loss x^6 / (1 + x^6) of the order x times half the readings a revolution."""
+    orders = np.array([5, *voltage_orders(surrogate())])
+    lossy, drawn = (
+        [Answers(surrogate(), replace(surrogate().nominal, recorder_loss=loss)).flux_slopes(at)[0] for at in TURNS]
+        for loss in (0.8, 0.0)
+    )
+    for at, less, full in zip(TURNS, lossy, drawn):
+        waves = np.cos(np.outer(at, orders)), np.sin(np.outer(at, orders))
+        amplitudes = [np.hypot(*np.split(np.linalg.lstsq(np.hstack(waves), v, rcond=None)[0], 2)) for v in (less, full)]
+        x = (orders * (at[1] - at[0]) / np.pi) ** 6
+        seen = amplitudes[1] > 1e-3 * amplitudes[1].max()
+        assert_allclose((amplitudes[0] / amplitudes[1])[seen], (1 - 0.8 * x / (1 + x))[seen], rtol=0.02)

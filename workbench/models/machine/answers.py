@@ -11,7 +11,7 @@ import numpy as np
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
 from materials.conductor import COPPER
-from workbench.models.machine.spectra import averaged, evaluated, slope
+from workbench.models.machine.spectra import averaged, evaluated, half_rate, slope
 from workbench.models.machine.surrogate import Surrogate
 
 LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
@@ -34,7 +34,7 @@ class Answers:
         d, drawn = self.design, self.surrogate.nominal
         names = ("phase_resistance", "lead_resistance", "end_winding_inductance", "dry_friction", "viscous_friction")
         names += ("windage", "iron_loss", "iron_loss_factor", "undeclared_iron_loss", "cogging_of_mesh", "end_leakage")
-        names += ("rotor_turn", "segment_angles", "shorted_turns", "shorted_coil")
+        names += ("rotor_turn", "segment_angles", "shorted_turns", "shorted_coil", "recorder_loss")
         stepped = (angle * sqrt(n**2 - 1) for n, angle in enumerate(d.segment_angles, 2))
         return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, *stepped))
 
@@ -67,8 +67,15 @@ class Answers:
         return self.design.length * self.kept**2 * evaluated(self.spectrum[:1], self._on_the_rotor(angle))[0]
 
     def flux_slopes(self, angle: np.ndarray) -> np.ndarray:
-        """d psi / d angle of the phases [Wb] (3, n)."""
-        return self.design.length * self.kept * evaluated(slope(self.spectrum[1:]), self._on_the_rotor(angle))
+        """d psi / d angle of the phases [Wb] (3, n), as a recorder shows them."""
+        slopes = slope(self.spectrum[1:]) * self._passed(half_rate(angle))
+        return self.design.length * self.kept * evaluated(slopes, self._on_the_rotor(angle))
+
+    def _passed(self, half: float) -> np.ndarray:
+        """Share of every order that a recorder passes (orders,): 1 - loss x^6 / (1 + x^6), x over half the readings a
+        revolution."""
+        x = (np.arange(self.spectrum.shape[1]) / half) ** 6
+        return 1.0 - self.design.recorder_loss * x / (1.0 + x)
 
     def magnet_linkage(self, angle: np.ndarray) -> np.ndarray:
         """Flux linkages of the phases without current [Wb] (n, 3)."""

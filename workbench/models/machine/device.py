@@ -127,7 +127,8 @@ def _magnet_of(values: Mapping[str, float]) -> Magnet:
 _ALIASES = {"magnet.Br": "remanence", "length": "active_length"}
 _OF_THE_MAGNET = ("remanence", "recoil_permeability")
 _OWN_FIELDS = {"active_length": "length"} | {
-    name: name for name in ("cogging_of_mesh", "end_winding_inductance", "iron_loss_factor", "rise_beyond_table")
+    name: name
+    for name in ("cogging_of_mesh", "end_winding_inductance", "iron_loss_factor", "recorder_loss", "rise_beyond_table")
 }
 _PHASES = {"resistance_a": 0, "resistance_b": 1, "resistance_c": 2}
 _SCATTER_OF_A_PHASE = 0.004  # relative, of windings of one make beside each other: length of wire and of its ends
@@ -135,6 +136,7 @@ _SCATTER_OF_A_PHASE = 0.004  # relative, of windings of one make beside each oth
 _COGGING_OF_MESH = 0.017
 # Tables of twelve grades, cut at 1.8 T: up to their own ends at 2 T they rise 1.05 to 2.2 times as expected from there.
 _RISE_BEYOND_TABLE = 0.6
+_RECORDER_LOSS = 0.5  # recorders pass all or nothing there, and both is common
 _BUILDING_FACTOR = 0.3  # relative: loss of stacks over the data of their sheet, and of two regions over all elements
 _END_PERMEANCE = 0.3  # of an end turn over mu_0 and its length; 0.2 to 0.5 of concentrated windings
 
@@ -188,6 +190,7 @@ def own_tolerances(design: MachineAsBuilt) -> tuple[Tolerance, ...]:
         *(_relative(name, _SCATTER_OF_A_PHASE, "phases wound alike, some tenths of a per cent") for name in _PHASES),
         Tolerance("end_winding_inductance", _end_uncertainty(design), relative=False, source=ends),
         _relative("rise_beyond_table", _RISE_BEYOND_TABLE, "tables of steel cut at 1.8 T, continued and compared"),
+        Tolerance("recorder_loss", _RECORDER_LOSS, relative=False, source="filters against aliasing, or none"),
         *loss,
     )
 

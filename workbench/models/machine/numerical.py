@@ -7,7 +7,9 @@ and its neighbours: in one order two meshes may agree by chance (at order 35 of 
 mV at 100 rad/s, where another code is 0.10 mV off).
 
 The recorder: it may average over the interval between two readings, which lowers every order n of the voltage to
-sinc(n interval / 2).
+sinc(n interval / 2). That it may keep back orders far above half the rate of readings is a tolerance, see
+``Answers.flux_slopes``: a machine that is not as drawn has orders that the drawing has not, and keeping them back must
+not pass for a skew (of 9 slots and 8 poles with one magnet weaker by 16 %, it did by 10 nats; with the tolerance, 3).
 
 What is left open, of every channel by itself: voltage orders near and above what a recorder passes. How much of them it
 lets through and how late is unknown, they hang on corners that no drawing shows, and those above half the number of
@@ -22,6 +24,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from workbench.data.table import Response, Table
+from workbench.models.machine.spectra import half_rate
 from workbench.models.machine.surrogate import Surrogate
 
 # Share of the difference between the two meshes that the finer one still lacks. 12 slots, 10 poles, fine meshes of 720
@@ -76,7 +79,7 @@ def _left_in_orders(surrogate: Surrogate) -> dict[int, float]:
 def _recorder(surrogate: Surrogate, table: Table, ask: Ask) -> tuple[Responses, ...]:
     if table.kind != "back_emf":
         return ({},)
-    return (ask(surrogate.in_orders(_averaging(surrogate, _spacing(table))), table),)
+    return (ask(surrogate.in_orders(_averaging(surrogate, np.pi / half_rate(table.conditions["angle_mech"]))), table),)
 
 
 def _averaging(surrogate: Surrogate, interval: float) -> np.ndarray:
@@ -134,12 +137,4 @@ def _reach(response: Response, table: Table) -> float:
     """Highest order that surely passes: of the bandwidth where one is declared, else of the spacing of the angles."""
     if response.bandwidth is not None:
         return NEAR * response.bandwidth * 2 * np.pi / float(np.median(np.abs(table.conditions["speed"])))
-    apart = _spacing(table)
-    return NEAR * np.pi / apart if apart else np.inf
-
-
-def _spacing(table: Table) -> float:
-    """Usual distance of neighbouring angles of a scan [rad], zero where nothing is known of it."""
-    angle = np.asarray(table.conditions["angle_mech"])
-    apart = np.abs(np.mod(np.diff(angle) + np.pi, 2 * np.pi) - np.pi)[np.diff(table.scan) == 0]
-    return float(np.median(apart)) if len(apart) else 0.0
+    return NEAR * half_rate(table.conditions["angle_mech"])

@@ -27,6 +27,12 @@ def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return sum(w * table[:, (first + k) % _TABLE] for k, w in zip((-1, 0, 1, 2), weights))
 
 
+def half_rate(angle: np.ndarray) -> float:
+    """Order whose half period is the usual distance of neighbouring angles [rad]; infinite where nothing is known."""
+    apart = np.abs(np.mod(np.diff(angle) + np.pi, 2 * np.pi) - np.pi)
+    return np.pi / float(np.median(apart)) if np.any(apart) else np.inf
+
+
 def slope(spectrum: np.ndarray) -> np.ndarray:
     """Coefficients of the derivative by angle."""
     return spectrum * (1j * np.arange(spectrum.shape[1]))
