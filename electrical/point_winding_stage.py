@@ -77,16 +77,21 @@ def candidates_stage(flux_map: FluxMap, begun: BegunMachine, inputs: PointWindin
 
     Raises WindingError when no wire fits the slot or no number of paths is possible.
     """
-    wound, limits = begun.driven.wound, inputs.limits
-    machine = per_turn_machine(flux_map, wound.end_turn_length)
+    wound, limits, valuer = begun.driven.wound, inputs.limits, valuer_of(flux_map, begun, inputs)
+    machine = valuer.machine
     layout = layout_of(flux_map, MatchedMachine(wound.machine))
     connections = possible_connections(layout, inputs.paths, inputs.closings)
     designs = full_designs(machine.coil_side_area, inputs.wires, connections, limits)
     windings = evaluate_windings(machine, limits, designs, as_stated(wound.active_length, len(designs)))
-    valuer = PointValuer(machine, limits, inputs.points, flux_map.torque_error)
     valued = valuer.candidates(_with_circulation(valuer, flux_map, windings))
     left_out = tuple(one for one in inputs.paths if one not in layout.path_numbers)
     return Candidates(inputs, machine.coil_side_area, valued, left_out)
+
+
+def valuer_of(flux_map: FluxMap, begun: BegunMachine, inputs: PointWindingInputs) -> PointValuer:
+    """What windings of a mapped machine are held to."""
+    machine = per_turn_machine(flux_map, begun.driven.wound.end_turn_length)
+    return PointValuer(machine, inputs.limits, inputs.points, flux_map.torque_error)
 
 
 def chosen_winding_stage(candidates: Candidates, begun: BegunMachine) -> PointWinding:

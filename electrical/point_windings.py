@@ -109,11 +109,14 @@ class PointValuer:
         """Of windings that reach every point [A]."""
         if not windings:
             return np.empty(0)
-        shares = [self._needed_shares(windings, point) for point in self.points]
+        shares = [self.needed_shares(windings, point) for point in self.points]
         return np.max(shares, axis=0) * np.array([one.current_peak for one in windings])
 
-    def _needed_shares(self, windings: tuple[Winding, ...], point: OperatingPoint) -> np.ndarray:
-        """Of the full current of each, dimensionless (windings,): at its best angle where the voltage allows that."""
+    def needed_shares(self, windings: tuple[Winding, ...], point: OperatingPoint) -> np.ndarray:
+        """Of the full current of each with which it reaches a point, dimensionless (windings,); they must reach it.
+
+        At the best angle where the voltage allows that.
+        """
         wanted = point.torque / (1 - self.torque_error)
         turns = np.array([one.design.equivalent_turns for one in windings])
         full = turns * np.array([one.current_peak for one in windings])

@@ -12,6 +12,7 @@ from electrical.kind_search import (
     kind_search_stage,
 )
 from electrical.performance import performance_stage
+from electrical.point_field import points_stage
 from electrical.point_winding_stage import candidates_stage, chosen_winding_stage, driven_as_wound
 from electrical.turning_stage import turning_stage
 from electrical.winding_selection import WindingError
@@ -72,6 +73,10 @@ _CHOSEN_WINDING: tuple[Node, ...] = (
         remarks=point_winding.winding_remarks,
     ),
     View(driven_as_wound),
+    Stage(
+        "points", points_stage, "the operating points in the field", point_winding.points_files,
+        remarks=point_winding.points_remarks,
+    ),
 )  # fmt: skip
 _LOSSES: tuple[Node, ...] = (
     Source(loss_inputs),

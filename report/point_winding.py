@@ -10,6 +10,7 @@ import pandas as pd
 
 from electrical.dq import DriveLimits, Envelope, torque_speed_envelope
 from electrical.driven_machine import BegunMachine
+from electrical.point_field import FieldPoint, FieldPoints
 from electrical.point_winding_stage import Candidates, PointWinding, wound_as
 from electrical.point_windings import (
     AS_LITTLE_LOSS,
@@ -29,7 +30,7 @@ from magnetostatics.flux_map_stage import FluxMap
 from report.winding import ALTERNATIVES, TABLE, design_row
 from units import AMPERE_PER_SQUARE_MILLIMETRE, MILLIMETRE, RPM, SQUARE_MILLIMETRE, drawn, percent
 
-ENVELOPES = "torque_speed"
+ENVELOPES, POINTS = "torque_speed", "operating_points.csv"
 _SHOWN = 4  # turns either side of the chosen winding in the table
 _DRAWN = 1  # and in the figure
 _SPEEDS = 121
@@ -62,8 +63,21 @@ def winding_remarks(found: PointWinding, candidates: Candidates) -> Iterator[str
     yield reason(found, candidates)
 
 
-def section(candidates: Candidates | None, found: PointWinding | None) -> Section | None:
-    """What was to be chosen from, what was refused by what, and what was chosen; none for a stated winding."""
+def points_files(points: FieldPoints) -> Iterator[File]:
+    """Currents, torques and voltages of the operating points."""
+    yield table_file(POINTS, points_table(points))
+
+
+def points_remarks(points: FieldPoints) -> Iterator[str]:
+    """What the run says at once."""
+    yield checked(points)
+
+
+def section(
+    candidates: Candidates | None, found: PointWinding | None, points: FieldPoints | None
+) -> Section | None:
+    """What was to be chosen from, what was refused by what, what was chosen, and what it does in the field; none for a
+    stated winding."""
     if candidates is None:
         return None
     chosen = None if found is None else found.chosen
@@ -75,7 +89,7 @@ def section(candidates: Candidates | None, found: PointWinding | None) -> Sectio
         marked=tuple(k for k, one in enumerate(kinds) if one == chosen),
     )
     text = " ".join((*_asked(candidates), *_counted(candidates), _LEGEND))
-    return Section("Winding", (text, *_choice(candidates, found), alternatives))
+    return Section("Winding", (text, *_choice(candidates, found, points), alternatives))
 
 
 _LEGEND = (
@@ -85,7 +99,7 @@ _LEGEND = (
 )
 
 
-def _choice(candidates: Candidates, found: PointWinding | None) -> tuple[Part, ...]:
+def _choice(candidates: Candidates, found: PointWinding | None, points: FieldPoints | None) -> tuple[Part, ...]:
     if found is None:
         return (f"Nothing was chosen: {none_will_do(candidates.valued, candidates.inputs.points)}.",)
     near = _near(found, candidates, _SHOWN)
@@ -97,6 +111,7 @@ def _choice(candidates: Candidates, found: PointWinding | None) -> tuple[Part, .
             picture_name(ENVELOPES), "Largest torque and power over speed at the full current, of the chosen winding "
             "and of its neighbours in turns, with the operating points."
         ),
+        *_in_the_field(points),
         Table(
             table.drop(columns=["wire_mm", "connection", "paths", "insulated_fill"]),
             f"{_kind(found.chosen)}: for each number of turns the most wires in hand that fit. "
@@ -116,6 +131,39 @@ def reason(found: PointWinding, candidates: Candidates) -> str:
         f"{one.needed_current:.4g} A peak at {needed_density(one) / AMPERE_PER_SQUARE_MILLIMETRE:.3g} A/mm² RMS; its "
         f"full current is {one.winding.current_peak:.4g} A peak. {_margins(one, candidates.inputs.points)}"
     )
+
+
+def _in_the_field(points: FieldPoints | None) -> tuple[Part, ...]:
+    if points is None:
+        return ()
+    caption = (
+        f"The operating points at the least line current, peak, solved in the field. {checked(points)} In {POINTS} too."
+    )
+    return (Table(points_table(points), caption),)
+
+
+def points_table(points: FieldPoints) -> pd.DataFrame:
+    """An operating point a row, in drawing units."""
+    return pd.DataFrame([_point_row(one, points.voltage_limit) for one in points.points])
+
+
+def _point_row(one: FieldPoint, limit: float) -> dict[str, object]:
+    return {
+        "speed_rpm": one.asked.speed / RPM, "asked_torque_Nm": one.asked.torque, "i_d_A": one.direct,
+        "i_q_A": one.quadrature, "current_peak_A": one.current, "torque_Nm": one.torque,
+        "ring_average_torque_Nm": one.ring_torque, "phase_voltage_peak_V": one.voltage,
+        "map_phase_voltage_peak_V": one.map_voltage, "largest_phase_voltage_peak_V": limit,
+    }  # fmt: skip
+
+
+def checked(points: FieldPoints) -> str:
+    """How far the field is from what the choice counts on."""
+    torque = min(one.torque / one.asked.torque for one in points.points) - 1
+    voltage = max(one.voltage / points.voltage_limit for one in points.points) - 1
+    given = f"{percent(abs(torque), 2)} {'less' if torque < 0 else 'more'} torque than is asked for, or better"
+    taken = f"{percent(abs(voltage), 2)} {'less' if voltage < 0 else 'more'} voltage than the bus gives, or less"
+    advice = " A little more current than the least brings it below." if voltage > 0 else ""
+    return f"At these currents the field gives {given}, and takes {taken}.{advice}"
 
 
 def _refused(found: PointWinding, candidates: Candidates) -> str:

@@ -15,6 +15,7 @@ from drivetrain.masses import CopperBars, PartMasses, PartMaterials, part_masses
 from electrical.driven_machine import CopperTemperature, DrivenMachine
 from electrical.kind_search import KindDesign, KindOutcome
 from electrical.performance import Performance
+from electrical.point_field import FieldPoints
 from electrical.point_winding_stage import Candidates, PointWinding
 from electrical.point_windings import needed_density
 from electrical.turning_stage import TurningMachine, full_supply
@@ -67,9 +68,9 @@ def machine_sheet(
     turning: TurningMachine,
     losses: LossMap | None,
     winding: PointWinding | None,
-    candidates: Candidates | None,
+    points: FieldPoints | None,
 ) -> MachineSheet:
-    """Every group of rows. losses: None where the file names no loss grade; winding, candidates: None where the file
+    """Every group of rows. losses: None where the file names no loss grade; winding, points: None where the file
     states the winding"""
     wound = driven.wound
     bars = CopperBars(wound.copper_area, 6 * wound.coils_in_series, wound.end_turn_length)
@@ -78,7 +79,7 @@ def machine_sheet(
         Group("Stator", tuple(_drawn(wound.machine.stator))),
         Group("Rotor", tuple(_drawn(wound.machine.rotor))),
         Group("Winding", tuple(_winding(case, copper, driven))),
-        Group("Operating points", tuple(_points(winding, candidates))),
+        Group("Operating points", tuple(_points(winding, points))),
         Group("Torque, speed and supply", tuple(_torques(driven, flux_map, performance, turning))),
         Group("Constants", tuple(_constants(copper, driven, flux_map, performance))),
         Group("Iron at full current", tuple(_iron(wound.machine.rotor, turning))),
@@ -296,14 +297,17 @@ def _end_winding_inductance(wound: WoundMachine) -> Row:
         return Row(name, "not known", "", str(unknown))
 
 
-def _points(winding: PointWinding | None, candidates: Candidates | None) -> Iterator[Row]:
+def _points(winding: PointWinding | None, points: FieldPoints | None) -> Iterator[Row]:
     """What the winding was chosen for."""
-    if winding is None or candidates is None:
+    if winding is None or points is None:
         return
     chosen = winding.chosen
-    for point, torque in zip(candidates.inputs.points, chosen.torques, strict=True):
-        yield row(f"largest torque at {point.speed / RPM:g} rpm", torque, "Nm", f"asked are {point.torque:g} Nm")
-    yield row("line current", chosen.needed_current, "A", "peak, least with which every point is reached")
+    for point, torque in zip(points.points, chosen.torques, strict=True):
+        asked = point.asked
+        yield row(f"largest torque at {asked.speed / RPM:g} rpm", torque, "Nm", f"asked are {asked.torque:g} Nm")
+        yield row(f"line current at {asked.speed / RPM:g} rpm", point.current, "A", f"peak, {asked.torque:g} Nm")
+        yield row(f"phase voltage at {asked.speed / RPM:g} rpm", point.voltage, "V", f"peak, {asked.torque:g} Nm")
+    yield row("largest of these line currents", chosen.needed_current, "A", "peak")
     yield row("current density", needed_density(chosen), "A_per_mm2", "RMS, at that current")
     yield row("copper loss", chosen.copper_loss, "W", "at that current")
 
