@@ -240,7 +240,7 @@ def verdict(one: Candidate, candidates: tuple[Candidate, ...], chosen: Candidate
     if one == chosen:
         return "chosen"
     if one.refused_by or chosen is None:
-        return one.refusal
+        return one.refusal or "reaches every point"
     least = min(other.copper_loss for other in candidates if not other.refused_by)
     lossier, more = one.copper_loss / least - 1, one.needed_current / chosen.needed_current - 1
     if lossier > AS_LITTLE_LOSS:

@@ -20,7 +20,6 @@ from electrical.point_windings import (
     competitors,
     counts,
     needed_density,
-    none_will_do,
     verdict,
 )
 from figures.files import File, figure_file, picture_name, table_file
@@ -85,7 +84,7 @@ def section(
     alternatives = Table(
         candidates_table(candidates, kinds, chosen).drop(columns=["insulated_fill"]),
         "What would be wound of each gauge and connection and why it was chosen or not; where all are refused, the one "
-        f"that comes nearest. In {ALTERNATIVES} too.",
+        f"that comes nearest. {f'In {ALTERNATIVES} too.' if found else f'Every winding is in {TABLE}.'}",
         marked=tuple(k for k, one in enumerate(kinds) if one == chosen),
     )
     text = " ".join((*_asked(candidates), *_counted(candidates), _LEGEND))
@@ -101,7 +100,7 @@ _LEGEND = (
 
 def _choice(candidates: Candidates, found: PointWinding | None, points: FieldPoints | None) -> tuple[Part, ...]:
     if found is None:
-        return (f"Nothing was chosen: {none_will_do(candidates.valued, candidates.inputs.points)}.",)
+        return ("Nothing was chosen.",)
     near = _near(found, candidates, _SHOWN)
     table = candidates_table(candidates, near, found.chosen)
     return (

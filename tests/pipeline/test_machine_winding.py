@@ -133,6 +133,7 @@ KINDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_the_chosen_winding_does_in_the_field_what_was_said_of_it(found, name):
     """Coils of real turns, each with the current of its path, solved anew at the least current of every point.
@@ -197,6 +198,8 @@ def test_from_the_points_to_the_sheet_and_what_is_kept_where_none_will_do(tmp_pa
     path = written("outrunner_9_12", OUTRUNNER, tmp_path, **KINDS["outrunner_9_12"][1])
     out = found("outrunner_9_12", OUTRUNNER, **KINDS["outrunner_9_12"][1]).results.folder
     run = run_to("sheet", path, out)
+    with open(out / "windings.csv", encoding="utf-8") as file:
+        assert {"reaches every point"} < {row["verdict"] for row in csv.DictReader(file)}
     with open(out / "winding_alternatives.csv", encoding="utf-8") as file:
         (chosen,) = [row for row in csv.DictReader(file) if row["verdict"] == "chosen"]
     rows = run.value(MachineSheet).sheet.table.set_index(["quantity", "condition"]).value
