@@ -24,6 +24,7 @@ from magnetostatics.flux_map_stage import FluxMapGrid
 from magnetostatics.model import MachineMaterials
 from materials.conductor import COPPER
 from materials.enamelled_wire import any_gauge
+from study.errors import StudyError
 from study.inputs_electrical import (
     allowed_closings,
     allowed_paths,
@@ -32,6 +33,8 @@ from study.inputs_electrical import (
     insulated_fill,
 )
 from study.machine_file import MachineFile
+from study.machine_winding import POINTS
+from units import RPM
 
 _GRADE = 1  # of the enamel
 
@@ -116,8 +119,19 @@ def winding_inputs(read: MachineFile) -> PointWindingInputs:
             circulating_share=circulating_share(selection),
             phase_current_rms=read.number("drive", "line_current_peak_A") / sqrt(2),
         ),
-        points=tuple(OperatingPoint(one.si.torque, one.si.speed) for one in read.points),
+        points=_points(read),
     )
+
+
+def _points(read: MachineFile) -> tuple[OperatingPoint, ...]:
+    fastest = read.number("drive", "speed_max_rpm")
+    for one in read.points:
+        if one.si.speed > fastest:
+            raise StudyError(
+                f"{read.path}: [[{POINTS}]] speed_rpm = {one.speed_rpm:g} is beyond speed_max_rpm = "
+                f"{fastest / RPM:g} of [drive]; raise that or lower the point."
+            )
+    return tuple(OperatingPoint(one.si.torque, one.si.speed) for one in read.points)
 
 
 def stated_machine(begun: BegunMachine) -> MatchedMachine:

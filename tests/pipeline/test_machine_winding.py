@@ -227,6 +227,7 @@ WRONG = {
     "kind": ("enamel_grade = 1", 'enamel_grade = "1"', 'enamel_grade = "1" is not accepted; give an integer'),
     "closing": ('["star", "delta"]', '["zigzag"]', "connections"),
     "point": ("torque_Nm = 0.003", "torque_Nm = -1.0", "[[operating_points]] torque_Nm = -1.0 is outside"),
+    "fast": ("speed_rpm = 8000.0", "speed_rpm = 13000.0", "is beyond speed_max_rpm = 12000 of [drive]"),
     "no points": (OUTRUNNER[OUTRUNNER.index("[[") :], "", "add [[operating_points]] with torque_Nm and speed_rpm"),
     "points alone": (
         OUTRUNNER[: OUTRUNNER.index("[[")], "", "[[operating_points]] are for a winding to be chosen: add [winding_sel"
