@@ -19,6 +19,7 @@ SOURCES = (
     "magnetostatics/fronts.py",
     "magnetostatics/multifrontal.py",
     "magnetostatics/passes.py",
+    "magnetostatics/two_level.py",
     "materials/compiled_law.py",
     "vehicle/motion.py",
 )

@@ -21,7 +21,7 @@ COLD, PREPARED = "Airgap", "Airgap, prepared"
 
 def _settings(tolerance: float) -> NewtonSettings:
     """The stopping rule of the other codes, with chord steps in the place of the last Newton steps."""
-    return NewtonSettings(tolerance, chords_within=30.0)
+    return NewtonSettings(tolerance)
 
 
 def solve_cold(case: FieldCase, tolerance: float) -> CodeResult:

@@ -57,7 +57,6 @@ _REFERENCE = MeshDensity(720, 0.4, 3, 4.0)
 _DENSITIES = (MeshDensity(120, 3, 1, 1.0), MeshDensity(), MeshDensity(480, 1, 2, 3.0), MeshDensity(960, 1, 3, 5.0))
 _ERROR_ANGLES = (-24.0, -22.7, -21.0, -19.3, -18.0, -13.3)  # deg
 _ERROR_CURRENTS = (6.0, 20.0)  # A/mm2 RMS on the q axis
-_CHORDS = NewtonSettings(chords_within=30.0)
 _MAP = (11, 20)  # currents along each axis, angles
 
 
@@ -92,11 +91,11 @@ def null_point() -> OperatingPoint:
 
 
 def cold_solves() -> list[Row]:
-    """One converged solve of the half model with chord steps, meshed section in memory, and the error of its torque
-    against a fine mesh."""
+    """One converged solve of the half model, meshed section in memory, and the error of its torque against a fine
+    mesh."""
     section, materials, point = reference_section(), reference_materials(), null_point()
-    cold = [cost(lambda: FieldModel(section, materials, _CHORDS).solve(point)) for _ in range(_REPEATS)]
-    model = FieldModel(section, materials, _CHORDS)
+    cold = [cost(lambda: FieldModel(section, materials).solve(point)) for _ in range(_REPEATS)]
+    model = FieldModel(section, materials)
     model.solve(point)
     prepared = [cost(lambda: model.solve(point)) for _ in range(_REPEATS)]
     fine = FieldModel(reference_section(density=_REFERENCE), materials)

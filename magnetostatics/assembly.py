@@ -13,6 +13,7 @@ import numpy as np
 
 from magnetostatics.cholesky import SymmetricSystem
 from magnetostatics.passes import add_scattered, addresses, found_in, merged, symmetric_product
+from magnetostatics.two_level import Lower
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +85,9 @@ class JoinedPattern:
         band_keys = np.sort(np.concatenate([band.keys for band in bands.values()]))
         keys, fixed_position, _ = merged(fixed.keys, band_keys[np.diff(band_keys, prepend=-1) > 0])
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
-        self.columns, self.rows = np.divmod(keys, self.size)
-        self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1))
+        self.columns, rows = np.divmod(keys, self.size)
+        self.rows = rows.astype(np.uint32)  # unsigned: compiled code need not ask whether they count from the end
+        self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1)).astype(np.uint32)
         self.linear_position = fixed_position[fixed.linear]
         self.iron_places = fixed_position.astype(np.int32)[fixed.iron][fixed.iron_entries.places]
         self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
@@ -118,7 +120,11 @@ class JoinedSystem:
 
         iron_tangent: local iron entries [m/H], (K, E)
         """
+        self.pattern.system.factorise(self.tangent(iron_tangent).values)
+        return self.pattern.system
+
+    def tangent(self, iron_tangent: np.ndarray) -> Lower:
+        """Linear part plus iron; iron_tangent: local iron entries [m/H], (K, E)."""
         values = self._linear.copy()
         add_scattered(values, iron_tangent, self.pattern.iron_places, self.pattern.fixed.iron_entries.signs)
-        self.pattern.system.factorise(values)
-        return self.pattern.system
+        return Lower(self.pattern.column_starts, self.pattern.rows, values)

@@ -33,7 +33,7 @@ class SymmetricSystem:
     """
 
     def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int) -> None:
-        pattern = cvxopt.spmatrix(1.0, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
+        pattern = cvxopt.spmatrix(1.0, cvxopt.matrix(rows.astype(int)), cvxopt.matrix(columns), (size, size))
         order = np.array(cvxopt.amd.order(pattern, "L")).ravel()
         self._fronts, self._order, self.column_counts, workspace = analysed(rows, columns, order)
         self._factor, self._workspace = np.empty(self._fronts.panels[-1]), np.empty(workspace)

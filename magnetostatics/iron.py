@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from magnetostatics.elements import Elements, TriangleOrder
+from magnetostatics.elements import LINEAR, Elements, TriangleOrder
 from magnetostatics.passes import flux, iron_forces, tangent_tensor
 from materials.reluctivity import Reluctivity
 
@@ -70,6 +71,16 @@ class IronState:
     @property
     def tangent(self) -> np.ndarray:
         """Local matrices integral nu grad u . grad v + 2 nu' (grad A . grad u)(grad A . grad v) [m/H], (K, E)."""
+        return self.elements.order.products @ self._tensor
+
+    @property
+    def linear_tangent(self) -> np.ndarray:
+        """The same for linear functions on the same triangles in the same field [m/H], (6, E)."""
+        order, points = self.elements.order, self._tensor.reshape(3, -1, self.nu.shape[1])
+        mean = np.tensordot(order.weights / order.weights.sum(), points, axes=(0, 1))
+        return LINEAR.of_distinct_gradients.products @ mean
+
+    @cached_property
+    def _tensor(self) -> np.ndarray:
         elements = self.elements
-        tensor = tangent_tensor(elements.metric, elements.size, self.h1, self.h2, self.nu, self.slope)
-        return elements.order.products @ tensor
+        return tangent_tensor(elements.metric, elements.size, self.h1, self.h2, self.nu, self.slope)

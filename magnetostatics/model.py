@@ -23,11 +23,15 @@ from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
 from magnetostatics.passes import add_scattered, gathered
 from magnetostatics.topology import IRON, Topology
+from magnetostatics.two_level import Refinement, response
 from magnetostatics.unknowns import Turn, Unknowns
 from materials.magnet import Magnet
 from materials.reluctivity import Reluctivity
 from units import MU_0
 
+_ROUGHEST = 0.03  # share of the residual that a Newton step with quadratic elements may leave of its linear equation
+_FEW = 6  # iterations of that; more say that the tangent of linear elements belongs to another field
+_BELOW = 0.1  # of the tolerance, which the linear equation need not be solved beyond
 _COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
 
 
@@ -148,7 +152,7 @@ class FieldModel:
         _check_magnets(section, materials)
         self.section, self.materials = section, materials
         self.topology = topology or Topology(section, order)
-        self.settings = settings if self.order is QUADRATIC else replace(settings, chords_within=0.0)  # not worth it
+        self.settings = settings
         self._joined: tuple[Turn, JoinedSystem] | None = None
 
     @cached_property
@@ -339,14 +343,13 @@ class FieldModel:
     def _solve(self, point: OperatingState, load: np.ndarray, start: FieldSolution | None) -> FieldSolution:
         began = process_time()
         coarse = self._coarse_solution(point, load, start)
-        problem = _Problem(self, point, load)
+        problem = _Problem(self, point, load) if coarse is None else _RefinedProblem(self, point, load, coarse)
         u, record = newton(
             problem.free_values(self._first_guess(coarse, start)),
             float(np.linalg.norm(problem.load)),
             problem.residual,
             problem.direction,
             self.settings,
-            problem.direction_again,
         )
         return FieldSolution(self, point, problem.expand(u), record, process_time() - began, coarse)
 
@@ -443,7 +446,7 @@ class _Problem:
 
     def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray) -> None:
         turn = model.unknowns.turn(point.angle)
-        self.model, self.system = model, model._join(turn)
+        self.model, self.system, self.angle = model, model._join(turn), point.angle
         self.column, self.sign = model.unknowns.turned(turn.edges)
         self.load = self.reduce(load)
         self._iron: tuple[np.ndarray, IronState] | None = None  # of the last field looked at
@@ -470,10 +473,6 @@ class _Problem:
         """Newton step (m,)."""
         return self.factorise(u).solve(residual)
 
-    def direction_again(self, residual: np.ndarray) -> np.ndarray:
-        """Step (m,) with the tangent of the last Newton step."""
-        return self.system.pattern.system.solve(residual)
-
     def factorise(self, u: np.ndarray) -> SymmetricSystem:
         """The tangent at a field, factorised."""
         return self.system.factorise(self._iron_at(u).tangent)
@@ -483,6 +482,42 @@ class _Problem:
         if self._iron is None or self._iron[0] is not u:
             self._iron = u, self.model.iron.at(gathered(u, *self.model.topology.iron_unknowns))
         return self._iron[1]
+
+
+class _RefinedProblem(_Problem):
+    """One operating point with quadratic elements, whose steps are found over the tangent of linear ones.
+
+    coarse: the solution with linear elements
+    """
+
+    def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray, coarse: FieldSolution) -> None:
+        super().__init__(model, point, load)
+        self._coarse = coarse.model
+        self._below = coarse.model._join(coarse.model.unknowns.turn(point.angle))
+        self._tangent_below = self._below.pattern.system if coarse.newton.iterations else None  # of its last step
+
+    def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
+        """Newton step (m,), as exact as it is worth.
+
+        The error of a step is quadratic in its length: more than its square, or much more than the tolerance, is lost.
+        """
+        size = float(np.linalg.norm(residual) / np.linalg.norm(self.load))
+        share = min(_ROUGHEST, max(size, _BELOW * self.model.settings.tolerance / size))
+        iron = self._iron_at(u)
+        if self._tangent_below is None:
+            self._tangent_below = self._below.factorise(iron.linear_tangent)
+        tangent = self.system.tangent(iron.tangent)
+        step, iterations = response(tangent, self._refinement, self._tangent_below, residual, share)
+        if iterations > _FEW:
+            self._tangent_below = None
+        return step
+
+    @cached_property
+    def _refinement(self) -> Refinement:
+        unknowns = self._coarse.unknowns
+        column, sign = unknowns.turned(unknowns.turn(self.angle).edges)
+        ends = self.model.topology.facets[:, self.model.unknowns.free_dofs[unknowns.count :] - self._coarse.size]
+        return Refinement(column[ends].astype(np.uint32), sign[ends] / 2)
 
 
 @dataclass(frozen=True, eq=False)

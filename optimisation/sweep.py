@@ -25,7 +25,7 @@ from units import MILLIMETRE
 
 _RADII_TOGETHER = 5  # rotor radii of a task; of a fine sweep one mesh reaches about so many
 # Torque is within 0.04 % of the converged one at 12 slots, RMS 0.01 % (56 designs), within 0.15 % at 9, RMS 0.04 %.
-_QUICK = NewtonSettings(tolerance=1e-3, chords_within=30.0)
+_QUICK = NewtonSettings(tolerance=1e-3)
 # What the map holds of a ``Design``.
 VARIABLES = ("torque", "torque_null", "tooth_aligned", "tooth_worst", "back_iron_worst", "limited")
 _DIMENSIONS = ("combination", "stator_outer_radius", "back_iron", "rotor_radius")
