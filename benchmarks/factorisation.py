@@ -31,7 +31,8 @@ class Cholmod:
     """What ``SymmetricSystem`` does, by CHOLMOD as cvxopt carries it."""
 
     def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int) -> None:
-        self._matrix = cvxopt.spmatrix(1.0, cvxopt.matrix(rows), cvxopt.matrix(columns), (size, size))
+        indices = (cvxopt.matrix(side.astype(int)) for side in (rows, columns))
+        self._matrix = cvxopt.spmatrix(1.0, *indices, (size, size))
         self._factor = cvxopt.cholmod.symbolic(self._matrix)
 
     def factorise(self, values: np.ndarray) -> None:

@@ -34,7 +34,6 @@ from geometry.half_cell import MeshDensity
 from magnetostatics.cholesky import one_thread
 from magnetostatics.flux_map import CurrentGrid, map_angles, solve_angle
 from magnetostatics.model import FieldModel, OperatingPoint
-from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import null_angle, null_current_angle
 from magnetostatics.torque import arkkio_torque
 from optimisation.constrained_optimum import NoOptimumError

@@ -57,8 +57,8 @@ def response(
     """
     nodes, wanted = len(load) - refinement.ends.shape[1], share * float(np.linalg.norm(load))
     x, p, q = np.zeros_like(load), np.zeros_like(load), np.zeros_like(load)
-    r, before = load.copy(), np.inf
-    for count in range(1, _MOST + 1):
+    r, before, iterations = load.copy(), np.inf, 0
+    while np.linalg.norm(r) > wanted and iterations < _MOST:
         first, left = _forwards(matrix.starts, matrix.rows, matrix.values, r)
         corner = coarse.solve(_restricted(refinement.ends, refinement.shares, left, nodes))
         middle = _prolonged(refinement.ends, refinement.shares, corner)
@@ -73,9 +73,8 @@ def response(
         before = size
         x += size / curvature * p
         r -= size / curvature * q
-        if np.linalg.norm(r) <= wanted:
-            break
-    return x, count
+        iterations += 1
+    return x, iterations
 
 
 @vectorised

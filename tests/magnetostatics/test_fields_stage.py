@@ -38,7 +38,7 @@ def test_mean_ripple_and_cogging_of_the_reference(found):
 
 @pytest.mark.parametrize("machine", (CASE.family.reference, NINE), ids=("12/10", "9/10"))
 def test_half_a_period_stands_for_the_whole(machine, monkeypatch):
-    """The other half as solved: every torque, and every probe in the same tooth."""
+    """The other half as solved: every torque, and every probe in the same tooth beside the largest of them."""
     monkeypatch.setattr("magnetostatics.rotation.COGGING_STEPS", 1)
     seen, model = solve_rotation("turn", CASE, machine, InThisProcess()), CASE.model(machine)
     period = seen.one_period.sel(state="nominal")
@@ -48,7 +48,8 @@ def test_half_a_period_stands_for_the_whole(machine, monkeypatch):
     for k in (count, count + 2, 2 * count):
         solution = model.solve(OperatingPoint(float(period.angle[k]), CASE.nominal_density, 0.0, CASE.packing))
         assert float(period.torque[k]) == pytest.approx(arkkio_torque(solution), rel=1e-4)
-        assert_allclose(period.flux_density[k], list(probe_reader(model).read(solution).values()), rtol=1e-4)
+        probes = np.array(list(probe_reader(model).read(solution).values()))
+        assert_allclose(period.flux_density[k], probes, rtol=0, atol=1e-4 * probes.max())
 
 
 def test_every_angle_is_as_solved_alone(found):

@@ -186,12 +186,3 @@ def test_single_layer_saturates_earlier():
         fields = [model.solve(OperatingPoint(first + 3 * DEGREE * k, POINT.current_density)) for k in range(4)]
         torques.append(np.mean([arkkio_torque(field) for field in fields]))
     assert 1.0 < torques[0] / torques[1] < 1.035
-
-
-def test_chord_steps_save_a_factorisation():
-    """And leave the same torque within what the tolerance leaves."""
-    with_chords = model_of(reference_machine(), settings=NewtonSettings(chords_within=30.0)).solve(POINT)
-    without = model_of(reference_machine()).solve(POINT)
-    assert with_chords.newton.iterations < without.newton.iterations
-    assert with_chords.newton.residuals[-1] < NewtonSettings().tolerance
-    assert arkkio_torque(with_chords) == pytest.approx(arkkio_torque(without), rel=1e-4)

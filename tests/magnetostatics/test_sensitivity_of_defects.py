@@ -37,7 +37,7 @@ ECCENTRIC = StaticEccentricity(0.05e-3, 1.0)
 def base():
     """Eccentric and with a weak magnet, so that nothing vanishes by symmetry."""
     section = Morpher(whole_model().section).to(reference_machine(), [ECCENTRIC])
-    return FieldModel(section, WEAK, NewtonSettings(tolerance=1e-11), topology=whole_model().topology)
+    return FieldModel(section, WEAK, NewtonSettings(tolerance=1e-12), topology=whole_model().topology)
 
 
 @pytest.fixture(scope="module")
