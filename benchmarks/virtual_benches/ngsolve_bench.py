@@ -43,6 +43,8 @@ RECORDER = (60.0, 120.0)  # order of the revolution that half of the recorders p
 REPEATS = 3
 STEP = 0.1  # standard deviations, of differences
 MESH = 0.01  # relative, by which the cogging of good meshes of two codes differs
+ENCODER = "encoder_zero_deg"
+ZEROS = np.arange(-8.0, 8.1, 0.25)  # standard deviations by which a tolerance may explain a turned encoder
 
 
 @dataclass(frozen=True)
@@ -262,6 +264,17 @@ class Eye:
         phases = [self.plain(reading) - base for reading in scatter]
         return np.stack([*in_field, *read, *phases, *self._mounting()], axis=1)
 
+    @cached_property
+    def square_laws(self) -> np.ndarray:
+        """What the square law of the tolerances leaves of machines with nothing in them (n, machines): it knows nothing
+        of one tolerance beside another, nor of another mesh."""
+        sound = [m for which in ("tune", "score") for m in machines(which) if not m.effects and not m.outside]
+        found = []
+        for machine in (m for m in sound if m.drawing == self.drawing.name):
+            read = readings_of(self.drawing, machine.built, truth(machine.name), Reading())
+            found.append(self.stacked(read) - Eye(self.drawing, self.noise, machine.z).plain(Reading()))
+        return np.stack(found, axis=1)
+
     def _mounting(self) -> list[np.ndarray]:
         columns = [layout.declared(table) for layout, table in zip(layouts(self.drawing), self.tables(Reading()))]
         sizes = [u for table in columns for u in table.values()]
@@ -375,8 +388,19 @@ class _Case:
     def seen(self, name: str, effects: Mapping[str, float]) -> float:
         """chi2 of one effect beyond everything declared and beyond the others at any size."""
         free = [self._alone(other) for other in effects if other != name]
-        columns = np.stack([FREE * c / max(np.linalg.norm(c), 1e-9) for c in free], axis=1) if free else None
-        return self.eye.chi2(self._alone(name), columns)
+        columns = [FREE * c / max(np.linalg.norm(c), 1e-9) for c in free]
+        if name in self.machine.effects and len(self.machine.effects) == 1:
+            return self._beside_square_laws(columns)
+        return self.eye.chi2(self._alone(name), np.stack(columns, axis=1) if columns else None)
+
+    def _beside_square_laws(self, free: Sequence[np.ndarray]) -> float:
+        """chi2 of the one effect of the field, against a machine without it: tolerances by their square laws, and the
+        encoder's zero anywhere, which no straight line follows over half a slot; what the zero costs there counts from
+        where it is."""
+        at, read = self.eye.z.get(ENCODER, 0.0), self.read()
+        columns = np.column_stack([self.eye.square_laws, *free])
+        left = [self.eye.chi2(read - self.eye.plain(self.reading, {ENCODER: d}), columns) for d in ZEROS]
+        return float(max(0.0, np.min(left + (at + ZEROS) ** 2 - at**2)))
 
     def _alone(self, name: str) -> np.ndarray:
         """What one effect does, beside the others."""
