@@ -10,6 +10,7 @@ from geometry.half_cell import MeshDensity
 from geometry.morph import Morpher
 from magnetostatics.currents import PhaseCurrents
 from magnetostatics.demagnetisation import MagnetFlux
+from magnetostatics.newton import NewtonSettings
 from magnetostatics.variations import Remanence, SameAmpereTurns
 from materials.iron_loss import iron_loss_law
 from study.inputs_field import field_case
@@ -39,7 +40,7 @@ STEP = {"remanence": 1e-3}  # T; the others 1e-5 m
 
 def solved_again(deviation, state):
     """Central difference over the value in the middle."""
-    model = CASE.model(MACHINE)
+    model = CASE.model(MACHINE, NewtonSettings(tolerance=1e-9))
     morpher, step = Morpher(model.section), STEP.get(deviation.name, 1e-5)
     first, *_ = state.solutions(model)
     ends = []

@@ -32,7 +32,7 @@ from materials.iron_loss import IronLossLaw
 from materials.reluctivity import Reluctivity
 from workbench.models.kept import KeptArrays, key_of
 
-_TIGHT = NewtonSettings(tolerance=1e-7)  # differences of solutions are wanted
+_TIGHT = NewtonSettings(tolerance=1e-8)  # differences of solutions are wanted
 _WRITTEN_EVERY = 50  # solutions
 _LOSS_STEPS = 48  # of an electrical period, for iron loss
 

@@ -33,7 +33,7 @@ from materials.altered_steel import ScaledSaturation, hardened, stacked
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
 
-_TIGHT = NewtonSettings(tolerance=1e-7)  # differences of solutions are wanted
+_TIGHT = NewtonSettings(tolerance=1e-8)  # differences of solutions are wanted
 
 
 @dataclass(frozen=True)
