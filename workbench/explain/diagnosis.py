@@ -20,7 +20,7 @@ from workbench.explain.calibrate import Simulator, detection_limits, plainly_not
 from workbench.explain.contradictions import contradiction
 from workbench.explain.conventions import diagnosis_of as of_conventions
 from workbench.explain.conventions import settle
-from workbench.explain.explore import Posterior
+from workbench.explain.explore import Posterior, beside_the_unknown
 from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of, sealed_rows
 from workbench.explain.recommend import next_measurements
 from workbench.explain.search import searched
@@ -77,7 +77,8 @@ def diagnosis_of(
     best = leading(search, said)
     sealed = opened(bench, best)
     said = _with_sealed(said, sealed)
-    ranked = ranking(search, p)
+    shown = beside_the_unknown(p, search.beliefs) if p.remains >= thresholds.sure else p
+    ranked = ranking(search, shown)
     return Diagnosis(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
@@ -86,9 +87,9 @@ def diagnosis_of(
         probability=said.probability,
         ranking=ranked,
         p_nothing_missing=p.nothing,
-        p_none_of_these=p.none_of_these,
+        p_none_of_these=shown.none_of_these,
         p_something_remains=p.remains,
-        p_sets=leading_sets(p),
+        p_sets=leading_sets(shown),
         alternatives=said.alternatives,
         sure=thresholds.sure,
         abstention_power=power,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from math import fsum, log, log1p
+from math import exp, fsum, log, log1p
 
 import numpy as np
 from scipy.special import logsumexp
@@ -32,6 +32,10 @@ class Beliefs:
     def log_unknown(self) -> float:
         """ln odds of an unknown function."""
         return log(UNKNOWN_RATE) - log1p(-UNKNOWN_RATE)
+
+    def base_rate(self, name: str) -> float:
+        """Share of benches that have the effect."""
+        return 1.0 / (1.0 + exp(-self.log_odds[name]))
 
     def log_prior(self, names: frozenset[str]) -> float:
         """ln odds of a set of effects over nothing."""
@@ -264,3 +268,34 @@ def posterior(
 def _add(shares: dict[frozenset[str], float], names: frozenset[str], share: float) -> None:
     effects = without_laws(names)
     shares[effects] = shares.get(effects, 0.0) + share
+
+
+def beside_the_unknown(p: Posterior, beliefs: Beliefs) -> Posterior:
+    """The same where something unknown is there for sure, so that an effect beside it may be there, or may only be what
+    its shape lacks of the true law.
+
+    A law that takes k of N effects to be followed takes any of them with k/N, and one is there with its base rate pi,
+    so that of those taken pi / (pi + k/N) are there. k: mean number of effects beside the unknown function
+    Raises ValueError where nothing unknown is possible.
+    """
+    if not p.remains > 0:
+        raise ValueError("nothing unknown is possible: its effects cannot be told from what it lacks")
+    taken = fsum(len(names) * share for names, share in p.beside.items()) / fsum(p.beside.values())
+    chance = taken / len(without_laws(frozenset(beliefs.log_odds)))
+    rates = {name: beliefs.base_rate(name) for names in p.beside for name in names}
+    there = {name: rate / (rate + chance) for name, rate in rates.items()}
+    found: dict[frozenset[str], float] = {}
+    for names, share in p.beside.items():
+        for part, portion in _parts(names, there):
+            found[part] = found.get(part, 0.0) + share * portion
+    return Posterior(p.alone, found)
+
+
+def _parts(names: frozenset[str], there: Mapping[str, float]) -> list[tuple[frozenset[str], float]]:
+    """Every part of a set, and the share of those in which it is all that is there."""
+    parts = [(frozenset[str](), 1.0)]
+    for name in names:
+        parts = [(part, share * (1.0 - there[name])) for part, share in parts] + [
+            (part | {name}, share * there[name]) for part, share in parts
+        ]
+    return parts

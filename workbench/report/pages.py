@@ -287,8 +287,17 @@ def _probabilities(d: Diagnosis) -> tuple[str | Picture | Table, ...]:
         "Of an effect: that it is there, alone or with others, so that effects do not add up to 100 %. Nothing "
         "missing: no effect and nothing unknown. Something unknown: a smooth function that no effect describes, with "
         "or without effects. None of these: the same without effects. Blue: what the verdict names."
-    )
+    ) + _beside_the_unknown(d)
     return (Picture(beliefs.probabilities(d), caption), *_sets(d))
+
+
+def _beside_the_unknown(d: Diagnosis) -> str:
+    if d.p_something_remains < d.sure:
+        return ""
+    return (
+        " As something unknown is there for sure, an effect that helps beside it may only be what its shape lacks of "
+        "the true law. The probabilities count that, by how often an effect is met and how many are needed beside it."
+    )
 
 
 def _sets(d: Diagnosis) -> tuple[str | Table, ...]:

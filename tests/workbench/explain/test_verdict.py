@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from workbench.explain.diagnosis import _with_sealed
-from workbench.explain.explore import Beliefs, Posterior, posterior
+from workbench.explain.explore import Beliefs, Posterior, beside_the_unknown, posterior
 from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
 from workbench.findings import Sealed
 
@@ -127,3 +127,32 @@ def test_probabilities_from_evidences_by_hand():
 def test_rounding_carries_no_probability_beyond_one():
     found = Posterior({frozenset((f"n{k}", "a")): 0.1 for k in range(10)} | {frozenset("a"): 1e-15}, {})
     assert sum(found.alone.values()) <= 1.0 + 1e-14 and found.of("a") <= 1.0 and found.any_of(frozenset("a")) <= 1.0
+
+
+USUAL = Beliefs({"usual": 0.0, **{f"n{k}": np.log(0.02 / 0.98) for k in range(49)}}, frozenset())  # 0.5 and 0.02
+
+
+def test_beside_something_unknown_a_rare_effect_may_be_what_its_shape_lacks_of_the_law():
+    """Three of fifty effects are needed beside it: 0.06 each by chance, 0.02 and 0.5 by what is met."""
+    shown = beside_the_unknown(p({}, {"usual+n1+n2": 1.0}), USUAL)
+    assert shown.of("n1") == pytest.approx(0.02 / 0.08) == shown.of("n2")
+    assert shown.of("usual") == pytest.approx(0.5 / 0.56)
+    assert shown.none_of_these == pytest.approx((0.06 / 0.08) ** 2 * 0.06 / 0.56)
+
+
+def test_an_effect_that_is_needed_alone_is_believed_more_than_one_of_many():
+    one, many = (beside_the_unknown(p({}, {sets: 1.0}), USUAL).of("n1") for sets in ("n1", "n1+n2+n3+n4"))
+    assert one == pytest.approx(0.02 / 0.04) and many == pytest.approx(0.02 / 0.1)
+
+
+def test_what_is_there_without_something_unknown_and_that_it_is_stay_as_they_are():
+    before = p({"": 0.01, "n1": 0.04}, {"": 0.15, "n1": 0.5, "usual+n2": 0.3})
+    shown = beside_the_unknown(before, USUAL)
+    assert shown.alone == before.alone and shown.remains == pytest.approx(before.remains)
+    assert sum(shown.sets.values()) == pytest.approx(1.0)
+    assert shown.nothing == before.nothing and 0.04 < shown.of("n1") < before.of("n1")
+
+
+def test_an_unknown_function_that_needs_no_effect_stays_alone():
+    shown = beside_the_unknown(p({"n1": 0.02}, {"": 0.98}), USUAL)
+    assert shown.beside == {frozenset(): 0.98}

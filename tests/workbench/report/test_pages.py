@@ -123,6 +123,13 @@ def test_the_signature_is_shown_where_no_effect_explains(tmp_path, diagnosis):
     assert "What the residual looks like" in headings(html) and "small velocity" in html
 
 
+def test_it_is_said_where_effects_may_only_fill_what_the_unknown_function_lacks(tmp_path, diagnosis):
+    said = "may only be what its shape lacks of the true law"
+    for remains, expected in ((1.0, True), (0.5, False)):
+        write_diagnosis_report(tmp_path / "d.html", replace(diagnosis, p_something_remains=remains))
+        assert (said in (tmp_path / "d.html").read_text(encoding="utf-8")) == expected
+
+
 def test_reasons_of_every_step_stay_visible(pages):
     assert "was refused: the data speak for (odds 10^13.0) the effect; chi²/n left out goes from" in pages["ledger"]
     assert len(re.findall(r"Step \d, [a-z ]+, was accepted: the data speak for", pages["ledger"])) == 3
