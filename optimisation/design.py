@@ -161,6 +161,11 @@ class DesignSolver:
             newton_iterations=solved.iterations,
         )
 
+    @property
+    def last_machine(self) -> Machine | None:
+        """Whose derivatives can be asked for; None before the first design on a mesh."""
+        return self._solved[-1].machine if self._solved else None
+
     def gradient(self, machine_of: Callable[[np.ndarray], Machine], steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of torque [Nm/m] and limited flux density [T] of the last design per change, each (k,).
 

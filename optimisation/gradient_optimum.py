@@ -34,7 +34,7 @@ _BINDS = 5e-3  # relative distance from the limit at which it still counts as bi
 _RULE_SLACK = 1e-3  # relative, of a rule at the end of a search
 _UNBUILDABLE = 1.0  # torque and limit of a design that cannot be built, relative: worse than any
 
-_Looked = tuple[Design, np.ndarray, np.ndarray]  # design, slopes of torque [Nm/m] and limited flux density [T], (k,)
+_Slopes = tuple[np.ndarray, np.ndarray]  # of torque [Nm/m] and limited flux density [T], (k,)
 
 
 class _StandsStillError(Exception):
@@ -51,7 +51,8 @@ class _Problem:
     limit: float
     freedom: Freedom
     centre: np.ndarray
-    known: dict[bytes, _Looked | None] = field(default_factory=dict)
+    known: dict[bytes, Design | None] = field(default_factory=dict)
+    sloped: dict[bytes, _Slopes] = field(default_factory=dict)
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -63,13 +64,13 @@ class _Problem:
         family = self.solver.judge.case.family
         return family.machine(self.combination, stator_outer_radius=self.stator_outer_radius, **dimensions)
 
-    def look(self, x: np.ndarray) -> _Looked | None:
-        """What is known of a design at x, each solved once; None where it cannot be built."""
-        key = np.asarray(x, dtype=float).tobytes()
+    def look(self, x: np.ndarray) -> Design | None:
+        """The design at x, each solved once; None where it cannot be built."""
+        key = _key(x)
         if key not in self.known:
             self._require_a_step(x)
             try:
-                self.known[key] = self._solved(x)
+                self.known[key] = self.solver.design(self.machine(x))
             except GeometryError:
                 self.known[key] = None
         return self.known[key]
@@ -78,17 +79,22 @@ class _Problem:
         if any(np.abs(x - np.frombuffer(key)).max() < _SHORTEST for key in self.known):
             raise _StandsStillError
 
-    def _solved(self, x: np.ndarray) -> _Looked:
-        design = self.solver.design(self.machine(x))
-        steps = np.full(len(x), _STEP)
-        return (design, *self.solver.gradient(lambda changes: self.machine(x + changes), steps))
-
-    def require(self, x: np.ndarray) -> _Looked:
+    def require(self, x: np.ndarray) -> Design:
         """As ``look``. Raises NoOptimumError where no machine can be built."""
         found = self.look(x)
         if found is None:
             raise NoOptimumError(f"{self.where}: the search has come to where no machine can be built")
         return found
+
+    def slopes(self, x: np.ndarray) -> _Slopes:
+        """Of the design at x, where the search goes on from; that is where it looked last. Raises as ``require``."""
+        key = _key(x)
+        if key not in self.sloped:
+            if self.require(x).machine != self.solver.last_machine:
+                self.solver.design(self.machine(x))
+            steps = np.full(len(x), _STEP)
+            self.sloped[key] = self.solver.gradient(lambda changes: self.machine(x + changes), steps)
+        return self.sloped[key]
 
     @property
     def where(self) -> str:
@@ -116,11 +122,11 @@ class _Problem:
 
     def _minimised(self) -> OptimizeResult:
         still = np.zeros(len(self.centre))
-        scale = self.require(still)[0].torque
+        scale = self.require(still).torque
         return minimize(
-            lambda x: _UNBUILDABLE if (seen := self.look(x)) is None else -seen[0].torque / scale,
+            lambda x: _UNBUILDABLE if (seen := self.look(x)) is None else -seen.torque / scale,
             still,
-            jac=lambda x: -self.require(x)[1] / scale,
+            jac=lambda x: -self.slopes(x)[0] / scale,
             method="SLSQP",
             bounds=self.bounds,
             constraints=[{"type": "ineq", "fun": self.room, "jac": self.room_slopes}],
@@ -139,7 +145,7 @@ class _Problem:
     def _torque_of(self, key: bytes) -> float:
         seen = self.known[key]
         assert seen is not None  # those that cannot be built are left out
-        return seen[0].torque
+        return seen.torque
 
     def _require_rules(self, x: np.ndarray) -> None:
         machine = self.machine(x)
@@ -156,13 +162,13 @@ class _Problem:
         seen = self.look(x)
         if seen is None:
             return np.full(1 + len(self.freedom.rules), -_UNBUILDABLE)
-        return np.array([1 - seen[0].limited / self.limit, *self._rules(x)])
+        return np.array([1 - seen.limited / self.limit, *self._rules(x)])
 
     def room_slopes(self, x: np.ndarray) -> np.ndarray:
         """Derivatives of ``room`` (1 + rules, k); the rules are formulas, so a difference of them is exact enough."""
         steps = _STEP * np.eye(len(x))
         rules = [(self._rules(x + step) - self._rules(x - step)) / (2 * _STEP) for step in steps]
-        return np.vstack([-self.require(x)[2] / self.limit, np.transpose(rules)])
+        return np.vstack([-self.slopes(x)[1] / self.limit, np.transpose(rules)])
 
     def _rules(self, x: np.ndarray) -> np.ndarray:
         machine = self.machine(x)
@@ -192,5 +198,9 @@ def find_optimum_by_gradients(
         centre = centre * (1 + x)
         if number >= least and np.abs(x).max() < _STANDS_STILL:
             break
-    design = problem.require(x)[0]
+    design = problem.require(x)
     return BestDesign(design, design.limited > limit * (1 - _BINDS), solves)
+
+
+def _key(x: np.ndarray) -> bytes:
+    return np.asarray(x, dtype=float).tobytes()
