@@ -25,7 +25,8 @@ FITS = 60  # fits of sets of effects at most
 PATIENCE = 8  # fits of an expansion, after which an unknown function is weighed: those of other models take no time
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
-EXACT = 5  # fits that are repeated exactly, where the base model answers by an expansion
+EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion
+DOUBT = 8.0  # nats that an exact model may give an effect of which no fit is exact: up to 7.5 were seen
 PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give a part of it besides
 
 
@@ -169,16 +170,22 @@ def _exactly(search: Search, progress: Progress) -> None:
 
 def _next_exact(search: Search) -> Set | None:
     """What leads; then what might lead, where what an exact model gave what is most like it is wrong by as much as it
-    is; then what leads without one of its effects, where it is not far behind: such an effect may have made good what
-    the expansion lacks, so that its part gains more by an exact model than the whole. Sets with the same effects in the
-    field gain alike."""
+    is, or where an effect in the field is in no exact fit; then what leads without one of its effects, where it is not
+    far behind: such an effect may have made good what the expansion lacks, so that its part gains more by an exact
+    model than the whole. Sets with the same effects in the field gain alike."""
     leader = search.ranked[0]
     if leader not in search.exact:
         return leader
     most = search.log_posterior(leader)
     known = {names & search.of_expansion for names in search.exact if names}
     others = [names for names in search.ranked if names & search.of_expansion not in known]
-    rivals = [n for n in others if search.log_posterior(n) + abs(search.exactness(n)) > most]
+    rivals = [n for n in others if search.log_posterior(n) + _doubt(search, n) > most]
     least = most - REACH - PART_GAINS * max(search.exact[leader], 0.0)
     parts = [n for n in others if n < leader and len(n) == len(leader) - 1 and search.log_posterior(n) >= least]
     return next(iter(rivals + parts), None)
+
+
+def _doubt(search: Search, names: Set) -> float:
+    """What an exact model may give a set beyond what is believed [nats]."""
+    unknown = names & search.of_expansion - frozenset().union(*search.exact)
+    return max(DOUBT if unknown else 0.0, abs(search.exactness(names)))
