@@ -18,6 +18,8 @@ from functools import cached_property
 
 import numpy as np
 
+from workbench.likelihood.whitening import LawError
+
 
 @dataclass(frozen=True, eq=False)
 class Term:
@@ -47,17 +49,51 @@ class Readings:
 
 
 @dataclass(frozen=True, eq=False)
-class Catalogue:
-    """All terms that an explanation may be made of, beside a background (n, m) that is in every one."""
+class Terms:
+    """All terms that there are, of so many rows, and the products of what they add with one another."""
 
-    background: np.ndarray
-    terms: tuple[Term, ...]
+    all: tuple[Term, ...]
+    rows: int
 
     @cached_property
-    def _columns(self) -> np.ndarray:
-        """Background, then of every term its shift and its columns (n, Q)."""
-        parts = [np.column_stack([term.shift, term.columns]) for term in self.terms]
-        return np.hstack([self.background, *parts])
+    def columns(self) -> np.ndarray:
+        """Of every term its shift and its columns (n, Q)."""
+        parts = [np.column_stack([term.shift, term.columns]) for term in self.all]
+        return np.hstack([np.empty((self.rows, 0)), *parts])
+
+    @cached_property
+    def gram(self) -> np.ndarray:
+        """Products of all columns (Q, Q)."""
+        return self.columns.T @ self.columns
+
+    @cached_property
+    def names(self) -> np.ndarray:
+        """Of the effect that every column is of (Q,)."""
+        return np.repeat([term.name for term in self.all], [1 + term.columns.shape[1] for term in self.all])
+
+
+@dataclass(frozen=True, eq=False)
+class Catalogue:
+    """The terms that an explanation may be made of, beside a background (n, m) that is in every one.
+
+    laws: errors of laws that are integrated out besides, one of a row at most. The background feels them already, the
+    terms do not yet: what that changes in their products is of low rank
+    without: effects whose terms are left out
+    """
+
+    background: np.ndarray
+    whole: Terms
+    laws: tuple[LawError, ...] = ()
+    without: frozenset[str] = frozenset()
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        return tuple(term for term in self.whole.all if term.name not in self.without)
+
+    @cached_property
+    def _kept(self) -> np.ndarray:
+        """Places of their columns among those of all (Q,)."""
+        return np.flatnonzero(~np.isin(self.whole.names, sorted(self.without)))
 
     @cached_property
     def first(self) -> np.ndarray:
@@ -67,12 +103,27 @@ class Catalogue:
 
     @cached_property
     def gram(self) -> np.ndarray:
-        """Products of all columns (Q, Q)."""
-        return self._columns.T @ self._columns
+        """Products of all columns, the background first, then of every term its shift and its columns (Q, Q)."""
+        m = self.background.shape[1]
+        out = np.empty((m + len(self._kept),) * 2)
+        out[m:, m:] = self.whole.gram[np.ix_(self._kept, self._kept)]
+        if self.laws:
+            taken = np.vstack([law.taken(self.whole.columns[law.rows]) for law in self.laws])[:, self._kept]
+            out[m:, m:] -= taken.T @ taken
+        out[:, :m] = self._on(self.background)
+        out[:m, m:] = out[m:, :m].T
+        return out
+
+    def _on(self, whitened: np.ndarray) -> np.ndarray:
+        """Products of all columns with whitened ones (n, R) that feel the laws (Q, R)."""
+        felt = whitened.copy()
+        for law in self.laws:
+            felt[law.rows] = law.apply(felt[law.rows])
+        return np.vstack([self.background.T @ whitened, (self.whole.columns.T @ felt)[self._kept]])
 
     def readings(self, residuals: np.ndarray) -> list[Readings]:
         """Of whitened residuals (n, R)."""
-        products = self._columns.T @ residuals
+        products = self._on(residuals)
         squares = np.sum(residuals**2, axis=0)
         return [Readings(products[:, k], float(squares[k])) for k in range(residuals.shape[1])]
 

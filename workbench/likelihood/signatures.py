@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from math import log
 
@@ -19,7 +20,7 @@ from effects.parameter import parameters_of
 from workbench.believed import TAILS
 from workbench.errors import WorkbenchError
 from workbench.likelihood.bench import Bench
-from workbench.likelihood.marginal import Catalogue, Term
+from workbench.likelihood.marginal import Catalogue, Term, Terms
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener
 
@@ -148,10 +149,14 @@ def _changes(effect: Effect, z: np.ndarray, change: Callable[[Effect], np.ndarra
 
 @dataclass(frozen=True, eq=False)
 class Signatures:
-    """Of all effects that do something to the readings. failed: why others could not be had, by name"""
+    """Of all effects that do something to the readings.
+
+    failed: why others could not be had, by name;  white: without the errors of the effects' own laws
+    """
 
     found: Mapping[str, tuple[Signature, ...]]
     failed: Mapping[str, str]
+    white: Whitener
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -162,14 +167,16 @@ class Signatures:
         """Those of the library, without the unknown laws."""
         return {name: variants for name, variants in self.found.items() if name not in LAWS}
 
-    def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
-        """The catalogue beside a background, of all effects but some."""
-        left = [name for name in self.found if name not in set(without)]
-        return Catalogue(background, tuple(term for name in left for term in self._terms(name, white)))
+    @cached_property
+    def terms(self) -> Terms:
+        """Of all effects in all their forms."""
+        every = [(s, k, len(variants)) for variants in self.found.values() for k, s in enumerate(variants)]
+        terms = (term for s, k, count in every for term in s.terms(self.white, k, -log(count)))
+        return Terms(tuple(terms), len(self.white.sigma))
 
-    def _terms(self, name: str, white: Whitener) -> list[Term]:
-        variants = self.found[name]
-        return [t for k, s in enumerate(variants) for t in s.terms(white, k, -log(len(variants)))]
+    def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
+        """The catalogue beside a background that was whitened so (n, m), of all effects but some."""
+        return Catalogue(background, self.terms, white.beyond(self.white), frozenset(without))
 
 
 def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = lambda words: None) -> Signatures:
@@ -187,7 +194,7 @@ def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = 
             failed[effect.name()] = str(error)
     seen = {n: tuple(v) for n, v in found.items() if n not in failed and any(_is_seen(bench, s) for s in v)}
     failed |= {n: "it changes nothing in these data" for n in found if n not in seen and n not in failed}
-    return Signatures(seen, failed)
+    return Signatures(seen, failed, bench.fit.white)
 
 
 def _is_seen(bench: Bench, signature: Signature) -> bool:

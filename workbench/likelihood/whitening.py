@@ -30,6 +30,11 @@ class LawError:
         shrink = 1 - 1 / np.sqrt(1 + self.size**2)
         return z - self.directions @ ((shrink * self.directions).T @ z)
 
+    def taken(self, z: np.ndarray) -> np.ndarray:
+        """What ``apply`` takes of the products of rows of the channel (n_c, m) with one another, as the products of
+        these (q, m): Z^T Z - apply(Z)^T apply(Z)."""
+        return (self.size / np.sqrt(1 + self.size**2) * self.directions).T @ z
+
 
 def law_error(rows: slice, wrong: np.ndarray) -> LawError:
     """Of whitened shapes with standard normal weights (n_c, q).
@@ -68,6 +73,13 @@ class Whitener:
         for law in self.laws:
             z[law.rows] = law.apply(z[law.rows])
         return z
+
+    def beyond(self, other: Whitener) -> tuple[LawError, ...]:
+        """The errors of laws that this has besides those of another, which it must begin with."""
+        count = len(other.laws)
+        if self.sigma is not other.sigma or self.laws[:count] != other.laws:
+            raise ValueError("one whitener does not begin with the other")
+        return self.laws[count:]
 
 
 def whitener(stack: Stack, noise: Noise) -> Whitener:

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 
 from workbench.explain.explore import Beliefs, Names
-from workbench.likelihood.marginal import Catalogue, Term
+from workbench.likelihood.marginal import Catalogue, Term, Terms
 
 ODDS = np.log(0.05 / 0.95)
 ANY = np.array([[-1e3, 1e3]])
@@ -20,7 +20,7 @@ def names_of(shapes, places=(-2.0, -1.0, 1.0, 2.0), background=None):
         for k in range(effects)
         for number, place in enumerate(places)
     ]
-    return Names(Catalogue(background, tuple(terms)))
+    return Names(Catalogue(background, Terms(tuple(terms), rows)))
 
 
 def beliefs(names, excluded=()):

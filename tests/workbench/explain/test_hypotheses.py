@@ -23,7 +23,7 @@ from workbench.explain.search import best_alone, searched
 from workbench.explain.tried import Promise, Search, fit_set, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit
-from workbench.likelihood.marginal import Catalogue
+from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
 from workbench.likelihood.whitening import Whitener
@@ -265,7 +265,7 @@ def test_a_size_that_cannot_be_negative_is_not_promised_a_negative_one():
     """A friction on its logarithmic grid, held against readings that show less than none."""
     friction = signature(Bump(), lambda effect: np.full(40, np.exp(2 * effect.size)))
     white = Whitener(np.ones(40), np.zeros(40))
-    catalogue = Catalogue(np.zeros((40, 0)), tuple(friction.terms(white, 0, 0.0)))
+    catalogue = Catalogue(np.zeros((40, 0)), Terms(tuple(friction.terms(white, 0, 0.0)), 40))
     gains = catalogue.given((), catalogue.readings(-3.0 * np.ones((40, 1)))[0]).gains()
     assert gains.max() < 0
 
@@ -474,16 +474,22 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
     assert done == ["effects", "exact", "effects", "exact"]
 
 
-@pytest.mark.parametrize(("gain", "behind", "is_next"), [(-8, 5, True), (8, 5, True), (-8, 20, False), (4, 5, False)])
-def test_what_an_exact_model_might_bring_to_the_lead_is_made_exact_next(tmp_path, gain, behind, is_next):
-    """What is behind by less than an exact model moved what is most like it."""
+@pytest.mark.parametrize(
+    ("gain", "behind", "is_seen", "is_next"),
+    [(-9, 8.5, True, True), (9, 8.5, True, True), (-8, 20, True, False), (4, 5, True, False)]
+    + [(0, 5, True, False), (0, 5, False, True), (0, 9, False, False)],
+)
+def test_what_an_exact_model_might_bring_to_the_lead_is_made_exact_next(tmp_path, gain, behind, is_seen, is_next):
+    """What is behind by less than an exact model moved what is most like it, or may move an effect that is in no exact
+    fit."""
     bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
     first, other = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave3",))
     second = replace(first, log_evidence=first.log_evidence - behind - gain)
     search = searching(bench, {frozenset(): null_of(bench), first.names: first, other: second})
-    search.of_expansion = first.names | other
+    search.of_expansion = first.names | {"wave3", "wave4"}
     assert search_module._next_exact(search) == (first.names if behind + gain > 0 else other)
-    search.exact = dict.fromkeys((frozenset(), first.names), float(gain))
+    exact = [frozenset(), first.names] + [frozenset(("wave3", "wave4"))] * is_seen
+    search.exact = dict.fromkeys(exact, float(gain))
     assert search_module._next_exact(search) == (other if is_next else None)
     search.of_expansion = frozenset()
     assert search_module._next_exact(search) is None, "both leave the field as it is: an exact one gives them the same"

@@ -1,12 +1,16 @@
 """The low-rank likelihood against the dense multivariate normal it stands for, on random small problems."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from workbench.likelihood.marginal import Catalogue, Term
+from workbench.likelihood.marginal import Catalogue, Term, Terms
+from workbench.likelihood.whitening import law_error
 
 ROWS = 13
+CHANNELS = (slice(0, 6), slice(6, ROWS))
 
 
 def problem(seed):
@@ -14,7 +18,7 @@ def problem(seed):
     random = np.random.default_rng(seed)
     draw = lambda *shape: random.standard_normal(shape)  # noqa: E731
     terms = tuple(Term(f"e{k}", draw(ROWS), draw(ROWS, k), 0.0, np.tile([-1e3, 1e3], (k, 1))) for k in (1, 2, 3, 1))
-    return Catalogue(draw(ROWS, 2), terms), 3 * draw(ROWS, 2)
+    return Catalogue(draw(ROWS, 2), Terms(terms, ROWS)), 3 * draw(ROWS, 2)
 
 
 def dense(catalogue, chosen, residual):
@@ -65,6 +69,22 @@ def test_weights_are_those_of_ridge_regression():
 
 def test_a_background_of_nothing_is_no_hindrance():
     catalogue, residuals = problem(1)
-    bare = Catalogue(np.zeros((ROWS, 0)), catalogue.terms)
+    bare = Catalogue(np.zeros((ROWS, 0)), catalogue.whole)
     found = bare.given((1,), bare.readings(residuals)[0]).log_marginal
     assert found == pytest.approx(dense(bare, (1,), residuals[:, 0]), abs=1e-9)
+
+
+def test_what_feels_the_errors_of_laws_is_as_if_it_were_whitened_with_them():
+    """Two channels, each with an error of a law, and a term that is left out."""
+    catalogue, residuals = problem(2)
+    random = np.random.default_rng(2)
+    laws = tuple(law_error(rows, random.standard_normal((rows.stop - rows.start, 3))) for rows in CHANNELS)
+    felt = lambda z: np.concatenate([law.apply(z[law.rows]) for law in laws])  # noqa: E731
+    left = [t for t in catalogue.terms if t.name != "e2"]
+    whitened = tuple(replace(t, shift=felt(t.shift), columns=felt(t.columns)) for t in left)
+    other = Catalogue(catalogue.background, Terms(whitened, ROWS))
+    found = Catalogue(catalogue.background, catalogue.whole, laws, frozenset(("e2",)))
+    assert np.allclose(found.gram, other.gram, atol=1e-10)
+    for one, same in zip(found.readings(residuals), other.readings(residuals)):
+        assert np.allclose(one.on, same.on, atol=1e-10) and one.square == same.square
+    assert np.abs(found.gram - Catalogue(catalogue.background, Terms(tuple(left), ROWS)).gram).max() > 0.5
