@@ -15,7 +15,7 @@ from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
-from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, with_parameters
+from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, refitted, with_parameters
 from workbench.likelihood.unknown import Seen, Shape, expected, seen, smooth
 from workbench.likelihood.whitening import LawError, law_error
 
@@ -56,32 +56,37 @@ def null_of(bench: Bench) -> Hypothesis:
     return Hypothesis(bench.null, bench.fit, bench.null.log_evidence)
 
 
-def fitted_from(bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray) -> Hypothesis:
+def fitted_from(
+    bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None = None
+) -> Hypothesis:
     """Effects fitted from a start, with the errors of their laws integrated out; where it is not known how large an
     error is, the most probable one, and the evidence of all.
 
     effects: null effects;  x: nuisances (m,);  z: parameters of all effects one after the other (k,)
+    slopes: d readings / d x (n, m) of a fit near the start, where there is one
     Raises:
         WorkbenchError: the model has no answer at the start.
     """
     found = []
     for each in product(*(effect.with_errors for effect in effects)):
-        found.append(_fitted_from(bench, each, x, z))
-        x, z = found[-1].fit.x, found[-1].fit.z
+        found.append(_fitted_from(bench, each, x, z, slopes))
+        x, z, slopes = found[-1].fit.x, found[-1].fit.z, found[-1].fit.slopes
     evidence = float(logsumexp([h.log_evidence for h in found])) - log(len(found))
     return replace(max(found, key=lambda h: h.log_evidence), log_evidence=evidence)
 
 
-def _fitted_from(bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray) -> Hypothesis:
+def _fitted_from(
+    bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None
+) -> Hypothesis:
     """With the errors that the effects have; evidence by Laplace, for one parameter by integration over it."""
     problem, log_det = with_law_error(bench.fit, with_parameters(effects, z), x)
-    fit = fitted(problem, tuple(effects), x, z)
+    fit = fitted(problem, tuple(effects), x, z, slopes)
     for _ in range(LAW_ROUNDS):
         before = log_det
         problem, log_det = with_law_error(bench.fit, fit.at_maximum, fit.x)
         if abs(log_det - before) < LAW_CLOSE:
             break
-        fit = fitted(problem, tuple(effects), fit.x, fit.z)
+        fit = refitted(problem, fit)
     evidence = fit.log_evidence if len(z) != 1 else _integrated(problem, fit)[2]
     return Hypothesis(fit, problem, evidence - log_det, log_det)
 
@@ -157,7 +162,7 @@ def beside_unknown(hypothesis: Hypothesis, shapes: Sequence[Shape]) -> Beside | 
     if not leading:
         return None
     problem, log_det = _without_unknown(hypothesis.problem, leading)
-    refit = fitted(problem, fit.effects, fit.x, fit.z)
+    refit = refitted(problem, fit)
     evidence = refit.log_evidence - log_det - hypothesis.log_det + share
     functions, background = [], fit.jacobian
     for s in leading:

@@ -75,7 +75,7 @@ def _twins(
     starts.sort(key=lambda start: start[:2])
     known, laws = ([s for s in starts if (s[1] in LAWS) is is_law][:EXCHANGED] for is_law in (False, True))
     return [
-        start_from(search, kept | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
+        start_from(search, whole.fit, kept | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
         for _, other, effect, z in known + laws
     ]
 
@@ -96,7 +96,7 @@ def less_one(search: Search, progress: Progress) -> None:
 def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
     """Fits some of the effects of a fit, from where it ended."""
     effects, z = _part_of(whole, names)
-    fit_set(search, start_from(search, names, effects, whole.fit.x, z))
+    fit_set(search, start_from(search, whole.fit, names, effects, whole.fit.x, z))
 
 
 def _part_of(whole: Hypothesis, names: Set) -> tuple[tuple[Effect, ...], np.ndarray]:

@@ -21,7 +21,7 @@ from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
 from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from
 from workbench.likelihood.bench import Bench
-from workbench.likelihood.fit import FAR, misfit
+from workbench.likelihood.fit import FAR, Fit, misfit
 from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import Shape
@@ -43,6 +43,7 @@ class Promise:
 
     effects, x, z: null effects, nuisances and parameters where a fit of it begins
     forms: what other forms of its effects add to ln evidence [nats]
+    slopes: d readings / d x (n, m) of the fit beside which it was promised
     """
 
     order: float
@@ -52,6 +53,7 @@ class Promise:
     x: np.ndarray = field(compare=False)
     z: np.ndarray = field(compare=False)
     forms: float = field(compare=False)
+    slopes: np.ndarray | None = field(compare=False, default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ class Additions:
             place += count
         forms = self.search.forms.get(self.parent.names, 0.0) + found.forms
         x = np.clip(weights[:m], -FAR, FAR)
-        return Promise(-promised, label_of(every), every, tuple(effects), x, np.concatenate(z), forms)
+        return Promise(-promised, label_of(every), every, tuple(effects), x, np.concatenate(z), forms, fit.slopes)
 
 
 @dataclass(eq=False)
@@ -203,10 +205,12 @@ def label_of(names: Set) -> str:
     return " with ".join(sorted(names))
 
 
-def start_from(search: Search, every: Set, effects: tuple[Effect, ...], x: np.ndarray, z: np.ndarray) -> Promise:
-    """A fit of effects of which only the forms that they have count."""
+def start_from(
+    search: Search, fit: Fit, every: Set, effects: tuple[Effect, ...], x: np.ndarray, z: np.ndarray
+) -> Promise:
+    """A fit of effects of which only the forms that they have count, near another fit."""
     forms = -sum(log(len(search.signatures.found[name])) for name in sorted(every))
-    return Promise(0.0, label_of(every), every, effects, x, z, forms)
+    return Promise(0.0, label_of(every), every, effects, x, z, forms, fit.slopes)
 
 
 def promised_of(search: Search, every: Set) -> float:
@@ -245,7 +249,7 @@ def _fitted(bench: Bench, promise: Promise) -> Hypothesis:
 
     def begun(share: float) -> Hypothesis:
         x = share * promise.x + (1 - share) * bench.null.x
-        return fitted_from(bench, promise.effects, x, share * promise.z)
+        return fitted_from(bench, promise.effects, x, share * promise.z, promise.slopes)
 
     for share in STARTS[:-1]:
         try:

@@ -16,7 +16,7 @@ from workbench.data.schema import BY_REGION
 from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
-from workbench.likelihood.fit import Fit, Problem, fitted, linearised
+from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
 from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
@@ -128,7 +128,7 @@ def bench_of(
     first = fitted(drawn, (), predictor.start, np.zeros(0))
     noise = _noise_at(predictor, stack, chosen, first.x)
     drawn = _problem(predictor, stack, noise, chosen)
-    fit, null = sharpened(drawn, fitted(drawn, (), first.x, np.zeros(0)))
+    fit, null = sharpened(drawn, refitted(drawn, first))
     fit = drawn if _far(fit, null) else fit
     hidden = [~mask for mask in chosen]
     held_out = _problem(fit.predictor, stack, noise, hidden) if any(m.any() for m in hidden) else None
@@ -173,7 +173,7 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         design = problem.predictor.model_at(fit.x, fit.at_maximum).design_as_built
         predictor = replace(problem.predictor, model=replace(model, base=model.base.recentred(design)))
         problem, before = replace(problem, predictor=predictor), fit.objective
-        fit = fitted(problem, fit.effects, fit.x, fit.z)
+        fit = refitted(problem, fit)
         if abs(before - fit.objective) < SHARP:
             break
     return problem, fit

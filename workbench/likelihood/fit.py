@@ -27,7 +27,7 @@ from workbench.likelihood.whitening import Whitener
 
 ITERATIONS = 15
 CLOSE = 1e-4  # change of the objective [nats] at which a fit is done
-ROUND_CLOSE = 1e-2  # change of the objective [nats] after new slopes at which it is
+ROUND_CLOSE = 1e-2  # change of the objective [nats] that new slopes may still bring when it is
 TRIALS = ((1.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.05, 0.0), (1.0, 1.0), (1.0, 30.0))  # length of a step, its damping
 ROUNDS = 4  # times the slopes of the nuisances are taken anew
 FAR = 20.0  # a standard normal number is not followed beyond
@@ -86,6 +86,7 @@ class Fit:
     """Of some effects (none: the null).
 
     x, z: nuisances and effect parameters at the maximum;  residual: whitened (n,);  jacobian: whitened, of x then z
+    slopes: d readings / d x, SI (n, m)
     objective: minus ln posterior;  log_evidence: by Laplace;  covariance: of x then z
     """
 
@@ -94,6 +95,7 @@ class Fit:
     z: np.ndarray
     residual: np.ndarray
     jacobian: np.ndarray
+    slopes: np.ndarray
     objective: float
     log_evidence: float
     covariance: np.ndarray
@@ -118,16 +120,29 @@ def fitted(
 ) -> Fit:
     """The fit from one start by damped Gauss-Newton.
 
-    slopes: whitened derivatives to x (n, m), used until the last steps; without them they are taken at the start
+    slopes: d readings / d x (n, m) of a fit near the start, used until the last steps; without them they are taken at
+    the start
     """
     search = _Search(problem, tuple(effects), len(x))
-    p, slopes = np.concatenate([x, z]), search.nuisance_slopes(x, z) if slopes is None else slopes
-    p, value = search.descend(p, slopes)
+    p = np.concatenate([x, z])
+    p, gain = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes)
+    return _with_new_slopes(search, p, gain)
+
+
+def refitted(problem: Problem, fit: Fit) -> Fit:
+    """The fit again where the problem is another one, from where it ended, with its slopes if that changes little."""
+    search = _Search(problem, fit.effects, len(fit.x))
+    p, gain = search.descend(np.concatenate([fit.x, fit.z]), fit.slopes)
+    return search.result(p, fit.slopes) if gain < ROUND_CLOSE else _with_new_slopes(search, p, gain)
+
+
+def _with_new_slopes(search: _Search, p: np.ndarray, gain: float) -> Fit:
+    """The fit from p on, its slopes taken anew until that gains no more: each time by the same share of what the time
+    before did. gain: of the objective by the steps to p [nats]"""
     for _ in range(ROUNDS):
-        before = value
-        slopes = search.nuisance_slopes(p[: len(x)], p[len(x) :])
-        p, value = search.descend(p, slopes)
-        if before - value < ROUND_CLOSE:
+        slopes, before = search.nuisance_slopes(p[: search.m], p[search.m :]), gain
+        p, gain = search.descend(p, slopes)
+        if gain * min(gain / max(before, CLOSE), 1.0) < ROUND_CLOSE:
             break
     return search.result(p, slopes)
 
@@ -165,7 +180,7 @@ class _Search:
 
     def nuisance_slopes(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
         effects = with_parameters(self.effects, z)
-        return self.problem.white(jacobian(self.problem.predictor, x, effects, self.predict(np.concatenate([x, z]))))
+        return jacobian(self.problem.predictor, x, effects, self.predict(np.concatenate([x, z])))
 
     def effect_slopes(self, p: np.ndarray) -> np.ndarray:
         slopes = np.empty((self.problem.stack.size, len(p) - self.m))
@@ -176,15 +191,16 @@ class _Search:
         return self.problem.white(slopes)
 
     def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> tuple[np.ndarray, float]:
-        residual = self.residual(p)
-        value = self.objective(p, residual)
+        """Where steps with these slopes end, and what the objective gains by them [nats]."""
+        residual, nuisance_slopes = self.residual(p), self.problem.white(nuisance_slopes)
+        first = value = self.objective(p, residual)
         for _ in range(ITERATIONS):
             slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
             p, residual, new = self._step(p, residual, value, slopes)
-            if value - new < CLOSE:
+            value, gain = new, value - new
+            if gain < CLOSE:
                 break
-            value = new
-        return p, new
+        return p, first - value
 
     def _step(self, p, residual, value, slopes):
         """Gauss-Newton, the step shortened until the objective falls: that stays on a ridge between an effect and a
@@ -208,11 +224,10 @@ class _Search:
 
     def result(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> Fit:
         residual = self.residual(p)
-        slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
+        slopes = np.hstack([self.problem.white(nuisance_slopes), self.effect_slopes(p)])
         weights = self.problem.weights(residual)
         hessian = slopes.T @ (weights[:, None] * slopes) + np.diag(self.prior_curvature(p))
         value = self.objective(p, residual)
         evidence = -value - 0.5 * np.linalg.slogdet(hessian)[1]
-        return Fit(
-            self.effects, p[: self.m], p[self.m :], residual, slopes, value, float(evidence), np.linalg.inv(hessian)
-        )
+        x, z, covariance = p[: self.m], p[self.m :], np.linalg.inv(hessian)
+        return Fit(self.effects, x, z, residual, slopes, nuisance_slopes, value, float(evidence), covariance)
