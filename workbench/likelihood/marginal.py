@@ -106,7 +106,7 @@ class Catalogue:
         """Products of all columns, the background first, then of every term its shift and its columns (Q, Q)."""
         m = self.background.shape[1]
         out = np.empty((m + len(self._kept),) * 2)
-        out[m:, m:] = self.whole.gram[np.ix_(self._kept, self._kept)]
+        out[m:, m:] = self.whole.gram[self._kept].take(self._kept, axis=1)
         if self.laws:
             taken = np.vstack([law.taken(self.whole.columns[law.rows]) for law in self.laws])[:, self._kept]
             out[m:, m:] -= taken.T @ taken

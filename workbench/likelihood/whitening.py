@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -25,10 +26,13 @@ class LawError:
     def half_log_det(self) -> float:
         return 0.5 * float(np.log1p(self.size**2).sum())
 
+    @cached_property
+    def _shrunk(self) -> np.ndarray:
+        return (1 - 1 / np.sqrt(1 + self.size**2))[:, None] * self.directions.T
+
     def apply(self, z: np.ndarray) -> np.ndarray:
         """(1 + F F^T)^(-1/2) z of the rows of the channel, F = directions * size."""
-        shrink = 1 - 1 / np.sqrt(1 + self.size**2)
-        return z - self.directions @ ((shrink * self.directions).T @ z)
+        return z - self.directions @ (self._shrunk @ z)
 
     def taken(self, z: np.ndarray) -> np.ndarray:
         """What ``apply`` takes of the products of rows of the channel (n_c, m) with one another, as the products of

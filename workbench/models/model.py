@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -64,7 +65,7 @@ class Model:
             raise WorkbenchError(f"{table.file}: has no condition column; a {self.base.name} is asked at conditions.")
         return Conditions(conditions, table.file)
 
-    @property
+    @cached_property
     def design_as_built(self) -> Any:
         """The design after all effects that act on it."""
         design = self.design

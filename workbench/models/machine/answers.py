@@ -110,7 +110,8 @@ class Answers:
 
     def flux_change(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """Flux linkages of the phases against those without current [Wb] (n, 3); the end winding adds L_end i."""
-        change = self._with_current(angle, currents) - self._with_current(angle, 0 * currents)
+        both = self._with_current(np.tile(angle, 2), np.vstack([currents, 0 * currents]))
+        change = both[: len(angle)] - both[len(angle) :]
         return self.design.length * change[:, 1:] + self.design.end_winding_inductance * currents
 
     @cached_property

@@ -6,6 +6,7 @@ import numpy as np
 
 ORDERS = 240  # that are kept
 _TABLE = 4096  # angles of a revolution that are interpolated between by cubics; 68 to a period of order 60
+_FEW = 64  # angles, up to which all orders are summed at each of them in less time than the table takes
 
 
 def coefficients(samples: np.ndarray, most: int = ORDERS) -> np.ndarray:
@@ -16,7 +17,19 @@ def coefficients(samples: np.ndarray, most: int = ORDERS) -> np.ndarray:
 
 
 def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Values (rows, n) at angles [rad] (n,) of functions over the revolution, by cubics between _TABLE angles."""
+    """Values (rows, n) at angles [rad] (n,) of functions over the revolution."""
+    return _summed(spectrum, angle) if len(angle) <= _FEW else _interpolated(spectrum, angle)
+
+
+def _summed(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """By the orders themselves, every one turned by one angle more than the one before."""
+    turning = np.tile(np.exp(1j * angle), (spectrum.shape[1], 1))
+    turning[0] = 1.0
+    return (spectrum @ np.cumprod(turning, axis=0)).real
+
+
+def _interpolated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """By cubics between _TABLE angles."""
     full = spectrum * (_TABLE / 2)
     full[:, 0] *= 2
     table = np.fft.irfft(full, _TABLE, axis=1)
