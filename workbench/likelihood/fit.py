@@ -125,7 +125,7 @@ def fitted(
     """
     search = _Search(problem, tuple(effects), len(x))
     p = np.concatenate([x, z])
-    p, gain = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes)
+    p, gain = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes, ROUND_CLOSE)
     return _with_new_slopes(search, p, gain)
 
 
@@ -190,15 +190,16 @@ class _Search:
             slopes[:, k - self.m] = (self.predict(p + step) - self.predict(p)) / step[k]
         return self.problem.white(slopes)
 
-    def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> tuple[np.ndarray, float]:
-        """Where steps with these slopes end, and what the objective gains by them [nats]."""
+    def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray, close: float = CLOSE) -> tuple[np.ndarray, float]:
+        """Where steps with these slopes end, the last of which gains less than ``close`` [nats], and what the objective
+        gains by all of them [nats]."""
         residual, nuisance_slopes = self.residual(p), self.problem.white(nuisance_slopes)
         first = value = self.objective(p, residual)
         for _ in range(ITERATIONS):
             slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
             p, residual, new = self._step(p, residual, value, slopes)
             value, gain = new, value - new
-            if gain < CLOSE:
+            if gain < close:
                 break
         return p, first - value
 

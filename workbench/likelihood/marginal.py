@@ -102,17 +102,42 @@ class Catalogue:
         return self.background.shape[1] + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
 
     @cached_property
-    def gram(self) -> np.ndarray:
-        """Products of all columns, the background first, then of every term its shift and its columns (Q, Q)."""
+    def size(self) -> int:
+        """Number of all columns: the background's, then of every term its shift and its columns."""
+        return self.background.shape[1] + len(self._kept)
+
+    @cached_property
+    def _across(self) -> np.ndarray:
+        """Products of the background with all columns (m, Q)."""
+        return self._on(self.background).T
+
+    @cached_property
+    def _taken(self) -> np.ndarray:
+        """What the laws take of the products of the terms' columns, as the products of these (q, Q - m)."""
+        every = [law.taken(self.whole.columns[law.rows]) for law in self.laws]
+        return np.vstack([np.empty((0, len(self.whole.names))), *every]).take(self._kept, axis=1)
+
+    def products(self, places: np.ndarray) -> np.ndarray:
+        """Of the columns at these places with all columns (k, Q)."""
         m = self.background.shape[1]
-        out = np.empty((m + len(self._kept),) * 2)
-        out[m:, m:] = self.whole.gram[self._kept].take(self._kept, axis=1)
-        if self.laws:
-            taken = np.vstack([law.taken(self.whole.columns[law.rows]) for law in self.laws])[:, self._kept]
-            out[m:, m:] -= taken.T @ taken
-        out[:, :m] = self._on(self.background)
-        out[:m, m:] = out[m:, :m].T
+        out = np.empty((len(places), self.size))
+        behind = places < m
+        out[behind] = self._across[places[behind]]
+        of_terms = places[~behind] - m
+        own = self.whole.gram[self._kept[of_terms]].take(self._kept, axis=1)
+        out[~behind, m:] = own - self._taken[:, of_terms].T @ self._taken
+        out[~behind, :m] = self._across[:, places[~behind]].T
         return out
+
+    @cached_property
+    def blocks(self) -> dict[int, np.ndarray]:
+        """Products of what each term adds, by how many columns they have (t, 1 + k, 1 + k)."""
+        return {size: self._blocks(which, size) for size, which in self.by_size.items()}
+
+    def _blocks(self, which: np.ndarray, size: int) -> np.ndarray:
+        places = self.first[which][:, None] + np.arange(1 + size) - self.background.shape[1]
+        kept, taken = self._kept[places], self._taken[:, places].transpose(1, 2, 0)
+        return self.whole.gram[kept[:, :, None], kept[:, None, :]] - taken @ taken.transpose(0, 2, 1)
 
     def _on(self, whitened: np.ndarray) -> np.ndarray:
         """Products of all columns with whitened ones (n, R) that feel the laws (Q, R)."""
@@ -165,14 +190,23 @@ class Given:
     readings: Readings
 
     @cached_property
+    def _own(self) -> np.ndarray:
+        """Products of the columns inside with all (q, Q)."""
+        return self.catalogue.products(self.inside)
+
+    @cached_property
     def _root(self) -> np.ndarray:
-        g = self.catalogue.gram[np.ix_(self.inside, self.inside)]
-        return np.linalg.cholesky(np.eye(len(g)) + g)
+        return np.linalg.cholesky(np.eye(len(self.inside)) + self._own[:, self.inside])
+
+    @cached_property
+    def _of_shifts(self) -> np.ndarray:
+        """Products of the sum of the shifts with all columns (Q,)."""
+        return self.catalogue.products(self.shifts).sum(axis=0)
 
     @cached_property
     def _left(self) -> np.ndarray:
         """Products of all columns with the residual less the shifts (Q,)."""
-        return self.readings.on - self.catalogue.gram[:, self.shifts].sum(axis=1)
+        return self.readings.on - self._of_shifts
 
     @cached_property
     def _taken(self) -> tuple[np.ndarray, np.ndarray]:
@@ -185,13 +219,13 @@ class Given:
         on: products of all columns with the residuals (Q, R)
         """
         turned = np.linalg.inv(self._root)
-        return turned @ self.catalogue.gram[self.inside], turned @ on[self.inside]
+        return turned @ self._own, turned @ on[self.inside]
 
     @property
     def log_marginal(self) -> float:
         """ln p of the readings, up to what all explanations share [nats]."""
-        gram, shifts = self.catalogue.gram, self.shifts
-        square = self.readings.square - 2 * self.readings.on[shifts].sum() + gram[np.ix_(shifts, shifts)].sum()
+        shifts = self.shifts
+        square = self.readings.square - 2 * self.readings.on[shifts].sum() + self._of_shifts[shifts].sum()
         taken = self._taken[1]
         return float(-0.5 * (square - taken @ taken) - np.log(np.diagonal(self._root)).sum())
 
@@ -212,7 +246,7 @@ class Given:
         """Of terms with the same number of columns, for residuals as ``taken_of`` has them (t, R) [nats]."""
         places = self.catalogue.first[which][:, None] + np.arange(1 + size)
         beside = taken[:, places].transpose(1, 2, 0)  # (t, 1 + k, q)
-        gram = self.catalogue.gram[places[:, :, None], places[:, None, :]] - beside @ beside.transpose(0, 2, 1)
+        gram = self.catalogue.blocks[size] - beside @ beside.transpose(0, 2, 1)
         left = on[places] - beside @ own  # (t, 1 + k, R)
         root = np.linalg.cholesky(np.eye(size) + gram[:, 1:, 1:])
         moved = np.linalg.solve(root, left[:, 1:] - gram[:, 1:, :1])
