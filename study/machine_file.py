@@ -27,6 +27,7 @@ from magnetostatics.model import MachineMaterials
 from materials.errors import MaterialError
 from materials.library import load_steel
 from materials.magnet import Magnet
+from materials.reluctivity import SplineReluctivity
 from study.errors import StudyError
 from study.machine_winding import (
     POINTS,
@@ -166,6 +167,7 @@ def _machine(table: _Table) -> MachineFile:
     selection = read_selection(table.path, table.sections)
     if selection is None:
         _number(table, "winding", "turns_per_coil", winding["turns_per_coil"])
+    steel = _stator_steel(table, values["materials"]["stator_steel"])
     return MachineFile(
         table.path,
         values["machine"]["title"],
@@ -174,14 +176,14 @@ def _machine(table: _Table) -> MachineFile:
         _connection(table, winding),
         _end_turn(table, winding, machine, layout),
         1e-3 * _number(table, "machine", "active_length_mm", values["machine"]["active_length_mm"]),
-        _materials(table, values["materials"], machine.rotor.magnets_per_pitch),
+        _materials(table, values["materials"], steel, machine.rotor.magnets_per_pitch),
         MeshDensity(
             mesh["gap_edges_per_revolution"], gap_layers=mesh["gap_layers"], across_iron=mesh["elements_across_iron"]
         ),
         winding,
         values["drive"],
         (_count(table, "flux_map", values, "angles", 1), _count(table, "flux_map", values, "currents", 4)),
-        load_steel(values["materials"]["stator_steel"], table.path.parent).name,
+        steel.name,
         values["materials"]["loss_grade"],
         _search(table, machine, values) if VARIABLES in table.sections else None,
         selection,
@@ -243,17 +245,20 @@ def _number(table: _Table, section: str, key: str, value: Any) -> float:
     return float(value)
 
 
-def _materials(table: _Table, stated: Mapping[str, Any], magnets_per_pitch: int) -> MachineMaterials:
-    name = stated["stator_steel"]
+def _stator_steel(table: _Table, name: Any) -> SplineReluctivity:
     if not isinstance(name, str):
         raise table.wrong("materials", "lacks stator_steel; add the name of a steel or the path of its curve")
-    steel, folder = load_steel(name, table.path.parent), table.path.parent
+    return load_steel(name, table.path.parent)
+
+
+def _materials(
+    table: _Table, stated: Mapping[str, Any], steel: SplineReluctivity, magnets_per_pitch: int
+) -> MachineMaterials:
     other = stated["rotor_steel"]
     remanence = _number(table, "materials", "remanence_T", stated["remanence_T"]) if magnets_per_pitch else 0.0
     permeability = _number(table, "materials", "recoil_permeability", stated["recoil_permeability"])
-    return MachineMaterials(
-        steel, steel if other is None else load_steel(other, folder), Magnet(remanence, permeability)
-    )
+    rotor_steel = steel if other is None else load_steel(other, table.path.parent)
+    return MachineMaterials(steel, rotor_steel, Magnet(remanence, permeability))
 
 
 # ---- what may vary ---------------------------------------------------------------------------------------------------
