@@ -22,7 +22,7 @@ from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.search import best_alone, searched
 from workbench.explain.tried import Promise, Search, fit_set, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
-from workbench.likelihood.fit import fitted, misfit
+from workbench.likelihood.fit import fitted, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
@@ -196,6 +196,23 @@ class Expansion(SpringModel):
         return moved
 
     is_expansion = True
+
+
+def test_a_fit_that_begins_with_foreign_slopes_ends_where_one_with_its_own_does(bench):
+    """Slopes of a spring of another stiffness, far off at the start, are replaced by its own."""
+    z = np.array([1.0])
+    foreign = replace(bench.null, slopes=np.roll(bench.null.slopes, 1, axis=1))
+    own, found = (fitted_from(bench, (Hardening(),), bench.null.x, z, s) for s in (None, foreign.slopes))
+    assert found.log_evidence == pytest.approx(own.log_evidence, abs=0.01)
+    assert found.fit.slopes == pytest.approx(own.fit.slopes, rel=1e-3)
+
+
+def test_a_fit_of_a_problem_that_changed_little_keeps_its_slopes(bench):
+    assert refitted(bench.fit, bench.null).slopes is bench.null.slopes
+    heavier = replace(bench.fit, stack=replace(bench.fit.stack, y=1.02 * bench.fit.stack.y))
+    moved = refitted(heavier, bench.null)
+    assert moved.slopes is not bench.null.slopes
+    assert moved.objective == pytest.approx(fitted(heavier, (), np.zeros(2), np.zeros(0)).objective, abs=0.01)
 
 
 def test_a_fit_ends_where_the_expansion_is_exact(bench):
