@@ -21,7 +21,7 @@ from materials.reluctivity import Reluctivity
 class Remanence:
     """Remanence of all magnets; step, change: [T]."""
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with B_r + change in all magnets, the state as it is; change: [T]."""
@@ -33,7 +33,7 @@ class Remanence:
 class RecoilPermeability:
     """Recoil permeability of all magnets; the remanence stays; step, change: dimensionless."""
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with mu_r + change in all magnets, the state as it is; change: dimensionless."""
@@ -52,7 +52,7 @@ class OneMagnet:
 
     number: int
     name: str = "remanence"
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with that property of that magnet + change, the state as it is; change: [as the property]."""
@@ -65,7 +65,7 @@ class OneMagnet:
 class CurrentDensity:
     """Amplitude of the current density; step, change: [A/m^2]."""
 
-    step: float = 1e3
+    step: float = 10.0
 
     def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
         """The model as it is, the state at J + change; change: of the amplitude [A/m^2]."""
@@ -76,7 +76,7 @@ class CurrentDensity:
 class CurrentAngle:
     """Current angle gamma; step, change: [rad]."""
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingPoint, change: float) -> tuple[FieldModel, OperatingState]:
         """The model as it is, the state at gamma + change; change: [rad]."""
@@ -87,7 +87,7 @@ class CurrentAngle:
 class SteelStrength:
     """Scale of H in both steels; step, change: relative, 0.01 is 1 % more field for the same flux density."""
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with H(B) (1 + change) in both steels, the state as it is; change: relative, dimensionless."""
@@ -98,7 +98,7 @@ class SteelStrength:
 class SaturationPolarisation:
     """Scale of the saturation polarisation of both steels; step, change: relative, 0.01 is 1 % more."""
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with J_s (1 + change) in both steels, the state as it is; change: relative, dimensionless."""
@@ -112,7 +112,7 @@ class StackingFactor:
     step, change: relative, -0.03 is a stacking factor of 0.97 times the present
     """
 
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with 1 + change of the present steel in both stacks, the state as it is; change: dimensionless."""
@@ -152,7 +152,7 @@ class Dimension:
 
     morpher: Morpher
     machine: Callable[[float], Machine]
-    step: float = 1e-6  # [m]
+    step: float = 1e-8  # [m]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model on the moved mesh, of the same order of elements, the state as it is; change: [as of ``machine``].
@@ -183,7 +183,7 @@ class Shape:
     """
 
     section: Callable[[float], CrossSection]
-    step: float = 1e-6  # [m or rad]
+    step: float = 1e-8  # [m or rad]
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model on the moved cross-section, the state as it is; change: [m or rad]."""
@@ -223,7 +223,7 @@ class PhaseCurrent:
     """Current of one phase of ``PhaseCurrents``; step, change: [A]."""
 
     phase: int  # 0 A, 1 B, 2 C
-    step: float = 1e-2
+    step: float = 1e-4
 
     def at(self, model: FieldModel, point: PhaseCurrents, change: float) -> tuple[FieldModel, OperatingState]:
         """The model as it is, the state with i + change in that phase; change: [A]."""
@@ -236,7 +236,7 @@ class CoilTurns:
     """Turns of one coil of a whole machine; step, change: relative to those of the design."""
 
     coil: int  # its index in the winding
-    step: float = 1e-4
+    step: float = 1e-6
 
     def at(self, model: FieldModel, point: OperatingState, change: float) -> tuple[FieldModel, OperatingState]:
         """The model with that coil's turns + change, the state as it is; change: relative to the design's."""

@@ -23,7 +23,7 @@ from optimisation.freedom import AS_SWEPT, Freedom
 from units import MILLIMETRE
 
 _FARTHEST = 0.35  # relative change of a dimension in one search
-_STEP = 1e-4  # relative change for the derivatives
+_STEP = 1e-6  # relative change for the derivatives
 _TOLERANCE = 1e-5  # of torque and limit, relative
 _ROUNDS = 12  # of one search
 _SHORTEST = 1e-4  # relative; designs closer together differ by the rounding of their field solutions

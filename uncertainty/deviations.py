@@ -31,7 +31,7 @@ class Deviation:
     half_width: float
     name: ClassVar[str]
     unit: ClassVar[str] = "mm"
-    step: ClassVar[float] = 1e-6  # a small change [SI], small against any half width
+    step: ClassVar[float] = 1e-8  # a small change [SI], small against any half width
 
     @property
     def standard_uncertainty(self) -> float:
@@ -185,7 +185,7 @@ class StatorRadius(SectionDimension):
 class MagnetRemanence(Deviation):
     """Remanence of all magnets, of their batch."""
 
-    name, unit, step = "remanence", "T", 1e-4
+    name, unit, step = "remanence", "T", 1e-6
 
     def variation(self, morpher: Morpher) -> Variation:
         return Remanence(self.step)
@@ -194,7 +194,7 @@ class MagnetRemanence(Deviation):
 class MagnetPermeability(Deviation):
     """Recoil permeability of all magnets at the same remanence."""
 
-    name, unit, step = "recoil permeability", "", 1e-4
+    name, unit, step = "recoil permeability", "", 1e-6
 
     def variation(self, morpher: Morpher) -> Variation:
         return RecoilPermeability(self.step)
@@ -203,7 +203,7 @@ class MagnetPermeability(Deviation):
 class Stacking(Deviation):
     """Share of steel in the stack, relative to that of the design."""
 
-    name, unit, step = "stacking factor", "percent", 1e-4
+    name, unit, step = "stacking factor", "percent", 1e-6
 
     def variation(self, morpher: Morpher) -> Variation:
         return StackingFactor(self.step)
@@ -226,7 +226,7 @@ class StackLength(Deviation):
 class WireDiameter(Deviation):
     """Copper diameter of the wires, relative."""
 
-    name, unit, step = "wire diameter", "percent", 1e-4
+    name, unit, step = "wire diameter", "percent", 1e-6
 
     def wound(self, wound: WoundMachine, change: float) -> WoundMachine:
         """With it; change: relative."""

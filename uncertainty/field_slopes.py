@@ -2,7 +2,7 @@
 cross-section and its materials.
 
 A state is a current at rotor angles over a part of the electrical period; what is read of its solutions together is
-read again of their neighbours along each deviation (``magnetostatics.sensitivity``), which costs a back-substitution a
+read again a step further along each deviation (``magnetostatics.sensitivity``), which costs a back-substitution a
 deviation and angle in the place of a mesh and a solution. The ampere-turns stay those of the wires.
 """
 
@@ -25,7 +25,7 @@ from magnetostatics.flux_map import flux_and_torque, flux_torque_and_inductances
 from magnetostatics.mesh_error import SAFETY, refined_model
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint
 from magnetostatics.positions import null_angle
-from magnetostatics.sensitivity import Variation, neighbours
+from magnetostatics.sensitivity import Variation, ahead
 from magnetostatics.torque import arkkio_torque
 from magnetostatics.variations import SameAmpereTurns
 from materials.iron_loss import IronLossLaw
@@ -244,10 +244,9 @@ def solve_slopes(task: StateTask) -> StateSlopes:
 
 def slopes(solutions: Solutions, variations: dict[str, Variation], state: FieldState) -> dict[str, np.ndarray]:
     """Derivatives of the quantities of a state [unit of the quantity per its own], (k,), by name of the variation."""
-    both = [neighbours(one, variations) for one in solutions]
+    here, moved = state.read(solutions), [ahead(one, variations) for one in solutions]
     return {
-        name: (state.read([one[name].forward for one in both]) - state.read([one[name].back for one in both]))
-        / (2 * variation.step)
+        name: (state.read([one[name] for one in moved]) - here) / variation.step
         for name, variation in variations.items()
     }
 

@@ -37,7 +37,7 @@ _MACHINES = 2000  # drawn by lot
 _SEED = 1  # of the lot: the same machines every time
 _ANGLES_TOGETHER = 10  # of a task; each starts from the field of the one before
 _FINER = 4  # points between two steps at which the peaks are looked for
-_ANGLE_STEP = 1e-6  # rad, small against any scatter
+_ANGLE_STEP = 1e-8  # rad, small against any scatter
 
 
 @dataclass(frozen=True, eq=False)

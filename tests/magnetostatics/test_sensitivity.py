@@ -51,8 +51,8 @@ def read(solution):
 
 
 def solved_again(solution, variation, read):
-    """Central difference over ten steps of the variation."""
-    ends, change = [], 10 * variation.step
+    """Central difference over a thousand steps of the variation."""
+    ends, change = [], 1000 * variation.step
     for signed in (change, -change):
         model, point = variation.at(solution.model, solution.point, signed)
         ends.append(read(model.solve(point, start=solution)))
@@ -66,13 +66,13 @@ def scale(values):
 
 
 PHYSICAL = {
-    "remanence": Remanence(1e-5),
+    "remanence": Remanence(1e-7),
     "recoil permeability": RecoilPermeability(),
     "current density": CurrentDensity(),
-    "current angle": CurrentAngle(1e-5),
+    "current angle": CurrentAngle(1e-7),
     "steel": SteelStrength(),
-    "saturation": SaturationPolarisation(1e-5),
-    "stacking factor": StackingFactor(1e-5),
+    "saturation": SaturationPolarisation(1e-7),
+    "stacking factor": StackingFactor(1e-7),
 }
 
 

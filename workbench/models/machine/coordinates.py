@@ -71,22 +71,22 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
     magnets, slots = range(nominal.machine.poles), range(nominal.machine.slots)
     return (
         *arc,
-        Coordinate(REMANENCE, 1e-4, tuple(share * remanence for share in (-0.13, -0.055, 0.04, 0.09, 0.15))),
-        Coordinate(("magnet", "recoil_permeability"), 1e-4, (0.08,)),
-        Coordinate(AIRGAP, 1e-7, (-0.2 * gap, 0.2 * gap)),
-        Coordinate(("magnet_grinding",), 1e-7, (0.15 * gap,)),
-        Coordinate(("bore_grinding",), 1e-7, (0.15 * gap,)),
-        Coordinate(("machine", "slot_opening"), 1e-7, (-0.2 * opening, 0.2 * opening)),
-        Coordinate(("field_scale",), 1e-4, (0.6, 1.6)),
-        Coordinate(("saturation_scale",), 1e-4, (-0.08, 0.05)),
-        Coordinate(("rise_beyond_table",), 1e-4, (-0.9, 1.0)),
-        Coordinate(("stacking_factor",), 1e-4, (-0.1, -0.04)),
-        Coordinate(("edge_damage",), 1e-4, (0.5,)),
-        Coordinate(("radial_share",), 1e-4, (-0.4, 0.4)),
-        *(Coordinate(("magnet_strengths",), 1e-4, (-0.3, -0.12), k, MAGNET) for k in magnets),
-        *(Coordinate(("magnet_turns",), 1e-5, (0.012,), k, MAGNET) for k in magnets),
-        *(Coordinate(("opening_changes",), 1e-7, (0.15 * opening,), k, SLOT) for k in slots),
-        *(Coordinate(path, 1e-7, (0.2 * gap, 0.4 * gap), k, breaks) for path, breaks in SHIFTS for k in (0, 1)),
+        Coordinate(REMANENCE, 1e-6, tuple(share * remanence for share in (-0.13, -0.055, 0.04, 0.09, 0.15))),
+        Coordinate(("magnet", "recoil_permeability"), 1e-6, (0.08,)),
+        Coordinate(AIRGAP, 1e-9, (-0.2 * gap, 0.2 * gap)),
+        Coordinate(("magnet_grinding",), 1e-9, (0.15 * gap,)),
+        Coordinate(("bore_grinding",), 1e-9, (0.15 * gap,)),
+        Coordinate(("machine", "slot_opening"), 1e-9, (-0.2 * opening, 0.2 * opening)),
+        Coordinate(("field_scale",), 1e-6, (0.6, 1.6)),
+        Coordinate(("saturation_scale",), 1e-6, (-0.08, 0.05)),
+        Coordinate(("rise_beyond_table",), 1e-6, (-0.9, 1.0)),
+        Coordinate(("stacking_factor",), 1e-6, (-0.1, -0.04)),
+        Coordinate(("edge_damage",), 1e-6, (0.5,)),
+        Coordinate(("radial_share",), 1e-6, (-0.4, 0.4)),
+        *(Coordinate(("magnet_strengths",), 1e-6, (-0.3, -0.12), k, MAGNET) for k in magnets),
+        *(Coordinate(("magnet_turns",), 1e-7, (0.012,), k, MAGNET) for k in magnets),
+        *(Coordinate(("opening_changes",), 1e-9, (0.15 * opening,), k, SLOT) for k in slots),
+        *(Coordinate(path, 1e-9, (0.2 * gap, 0.4 * gap), k, breaks) for path, breaks in SHIFTS for k in (0, 1)),
     )
 
 
@@ -96,7 +96,7 @@ SHIFTS = ((("stator_shift",), STATOR), (("rotor_shift",), ROTOR))
 def arc_of(nominal: MachineAsBuilt) -> Coordinate:
     """The share of a pole pitch that a magnet covers."""
     sizes = LESS_ARC if nominal.machine.magnet_arc_fraction >= 1 else (-0.1, -0.04)
-    return Coordinate(("machine", "magnet_arc_fraction"), 1e-4, sizes)
+    return Coordinate(("machine", "magnet_arc_fraction"), 1e-6, sizes)
 
 
 def all_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
@@ -135,7 +135,7 @@ class CoilVariation:
     """Ampere-turns of one coil of ``CoilCurrents`` [A]."""
 
     coil: int
-    step: float = 1.0
+    step: float = 1e-2
 
     def at(self, model: FieldModel, point: CoilCurrents, change: float) -> tuple[FieldModel, CoilCurrents]:
         currents = list(point.coil_ampere_turns)
