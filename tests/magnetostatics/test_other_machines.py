@@ -124,7 +124,7 @@ def test_what_the_rotor_sees_repeats_after_the_period_of_the_torque(name):
     assert abs(torques[1] - torques[0]) > 1e-3 * abs(torques[0])
 
 
-CHANGES = np.array([10.0, -10.0])
+CHANGES = np.array([30.0, -30.0])  # steps of the derivative
 DIMENSIONS = {
     "outrunner": ("arc_fraction", "magnet_length", "back_iron_width"),
     "Halbach": ("arc_fraction", "magnet_length"),
@@ -144,7 +144,7 @@ def test_derivatives_of_moved_meshes_are_the_differences_of_solutions(name, dime
     """Torque, and flux linkages of all phases, at full current."""
     machine, found = NAMED[name], solved(name, COARSE)
     value = getattr(machine.rotor, dimension)
-    step = 1e-6 * value
+    step = 3e-7 * value  # between the torque's bend, 1e-3 of the smallest slope over 1e-6, and rounding, 1e-3 over 1e-7
 
     def read(solution):
         return np.array([arkkio_torque(solution), *phase_flux_linkage(solution)])
@@ -155,7 +155,7 @@ def test_derivatives_of_moved_meshes_are_the_differences_of_solutions(name, dime
     variation = Dimension(Morpher(found.model.section), drawn, step)
     derivative = sensitivities(found, {"it": variation}, read)["it"]
     ends = [variation.at(found.model, found.point, change)[0].solve(found.point, found) for change in CHANGES * step]
-    expected = (read(ends[0]) - read(ends[1])) / (20 * step)
+    expected = (read(ends[0]) - read(ends[1])) / (60 * step)
     scale = np.array([abs(expected[0]), *[np.abs(expected[1:]).max()] * 3])
     assert (np.abs(derivative - expected) / scale).max() < 1e-3
 
