@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import log
+from math import log, prod
 
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
 from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, refitted, with_parameters
@@ -25,6 +26,7 @@ ALSO = 0.5  # probability that an unknown law which shows in one group of channe
 LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
+SIZES_TRIED, OTHERS_TRIED = 3, {2: 8, 3: 4, 4: 3}  # values of the size and of every other parameter, by their number
 SHARES = 100  # of a posterior, whose middles stand for it where several are brought together
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
@@ -89,6 +91,37 @@ def _fitted_from(
         fit = refitted(problem, fit)
     evidence = fit.log_evidence if len(z) != 1 else _integrated(problem, fit)[2]
     return Hypothesis(fit, problem, evidence - log_det, log_det)
+
+
+def from_elsewhere(bench: Bench, hypothesis: Hypothesis) -> Hypothesis:
+    """The fit again from other sizes, directions and the like of every effect that has several parameters, where that
+    ends higher: a fit that begins at a wrong direction makes the effect small first, and stays there."""
+    place = 0
+    for effect in hypothesis.fit.effects:
+        count = len(parameters_of(effect))
+        if count > 1:
+            fit, start = hypothesis.fit, _highest(hypothesis, slice(place, place + count))
+            again = fitted_from(bench, fit.effects, fit.x, start, fit.slopes)
+            hypothesis = max(hypothesis, again, key=lambda h: h.log_evidence)
+        place += count
+    return hypothesis
+
+
+def _highest(hypothesis: Hypothesis, own: slice) -> np.ndarray:
+    """Parameters of all effects (k,), those of one where they are or at a place of a grid, even in probability,
+    wherever the fit would be highest; places where the model has no answer are left out."""
+    fit, count = hypothesis.fit, own.stop - own.start
+    axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED[count]] * (count - 1))]
+    places = np.tile(fit.z, (1 + prod(len(axis) for axis in axes), 1))
+    places[1:, own] = list(product(*axes))
+
+    def height(z: np.ndarray) -> float:
+        try:
+            return _profile(hypothesis.problem, fit, fit.x, z)
+        except WorkbenchError:
+            return -np.inf
+
+    return max(places, key=height)
 
 
 def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -> tuple[Problem, float]:
@@ -243,20 +276,20 @@ def _integrated(problem: Problem, fit: Fit) -> tuple[np.ndarray, np.ndarray, flo
     spread = np.sqrt(fit.covariance[m, m])
     places = np.unique(np.clip(fit.z[0] + spread * np.linspace(-REACH, REACH, PLACES), -FAR, FAR))
     drift = fit.covariance[:m, m] / fit.covariance[m, m]
-    density = np.array([_profile(problem, fit, fit.x + drift * (z - fit.z[0]), z) for z in places])
+    density = np.array([_profile(problem, fit, fit.x + drift * (z - fit.z[0]), np.array([z])) for z in places])
     widths = np.gradient(places)
     widths[[0, -1]] *= 0.5
     return places, density, float(logsumexp(density + np.log(widths)) - 0.5 * log(2 * np.pi))
 
 
-def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: float) -> float:
-    """ln of prior times likelihood at z with the nuisances integrated out around their best values."""
+def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:
+    """ln of prior times likelihood at z (k,) with the nuisances integrated out around their best values."""
     slopes = fit.jacobian[:, : len(x)]
-    residual = problem.residual(x, with_parameters(fit.effects, np.array([z])))
+    residual = problem.residual(x, with_parameters(fit.effects, z))
     weights = problem.weights(residual)
     normal = slopes.T @ (weights[:, None] * slopes) + np.eye(len(x))
     move = np.linalg.solve(normal, slopes.T @ (weights * residual) - x)
-    value = problem.misfit(residual - slopes @ move) + 0.5 * float(np.sum((x + move) ** 2)) + prior_cost(np.array([z]))
+    value = problem.misfit(residual - slopes @ move) + 0.5 * float(np.sum((x + move) ** 2)) + prior_cost(z)
     return -value - 0.5 * float(np.linalg.slogdet(normal)[1])
 
 

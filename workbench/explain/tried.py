@@ -19,7 +19,7 @@ from effects.parameter import parameters_of
 from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
-from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from
+from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import FAR, Fit, misfit
 from workbench.likelihood.marginal import Readings
@@ -221,11 +221,14 @@ def promised_of(search: Search, every: Set) -> float:
 
 
 def fit_set(search: Search, promise: Promise) -> bool:
-    """Fits a set; False where the model has no answer. Replaces a guess of it, and an earlier fit that was worse."""
+    """Fits a set; False where the model has no answer. Replaces a guess of it, and an earlier fit that was worse. A fit
+    that ends far below its guess may have ended in a wrong valley."""
     every = promise.every
     guess = search.guessed.pop(every, -np.inf)
     try:
         found = _fitted(search.bench, promise)
+        if found.log_evidence + promise.forms < guess - PLAIN:
+            found = from_elsewhere(search.bench, found)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
         if every not in search.fitted:
             search.failed[promise.label] = str(error)

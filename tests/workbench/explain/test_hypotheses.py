@@ -11,13 +11,24 @@ from scipy.stats import t as student
 
 import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
-from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, SpringModel, written
+from effects.base import ResponseEffect
+from effects.parameter import parameter
+from effects.prior import LogNormal, Uniform
+from tests.workbench.toy_bench import LIBRARY, RATE, Bump, Hardening, Spring, SpringModel, written
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh
 from workbench.explain.explore import beliefs_of
-from workbench.explain.hypotheses import at_zero, beside_unknown, exact, fitted_from, null_of, with_law_error
+from workbench.explain.hypotheses import (
+    at_zero,
+    beside_unknown,
+    exact,
+    fitted_from,
+    from_elsewhere,
+    null_of,
+    with_law_error,
+)
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.search import best_alone, searched
 from workbench.explain.tried import Promise, Search, fit_set, student_gain
@@ -52,6 +63,37 @@ def gauss(bench, change=0.0, extra=None):
     start = bench.fit.residual(np.zeros(2))
     whole = multivariate_normal(np.zeros(len(slopes)), covariance).logpdf(start - change)
     return whole + 0.5 * len(slopes) * np.log(2 * np.pi)
+
+
+@dataclass(frozen=True)
+class Ripple(ResponseEffect):
+    """F = k x + size^2 cos(2 pi x / 10 mm - 2 phase), as faint as an eccentricity; beyond three there is no answer."""
+
+    title = "ripple"
+    looks_like = "a force that comes and goes"
+    designs = (Spring,)
+    base_rate = RATE
+    size: float = parameter(0.0, "N", prior=LogNormal(0.3, 0.7), low=0.0, high=10.0, source="made up")
+    phase: float = parameter(0.0, "rad", prior=Uniform(-np.pi, np.pi), low=-np.pi, high=np.pi, source="any")
+
+    def on_response(self, response, conditions, kind, design):
+        if self.phase > 3.0:
+            raise WorkbenchError("no answer")
+        wave = np.cos(2 * np.pi * conditions["displacement"] / 0.01 - 2 * self.phase)
+        return {**response, "force": response["force"] + self.size**2 * wave}
+
+
+def test_a_fit_that_ended_in_a_wrong_valley_finds_the_right_one(tmp_path):
+    """From a phase of 2.9 the way to -2.1, which is the same as 1.0, leads through phases without an answer."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(2 * np.pi * x / 0.01 - 2.0))
+    start = np.array([LogNormal(0.3, 0.7).standard(0.1), Uniform(-np.pi, np.pi).standard(2.9)])
+    there = fitted_from(bench, (Ripple(),), np.zeros(2), start)
+    found = from_elsewhere(bench, there)
+    assert found.log_evidence > there.log_evidence + 100
+    (ripple,) = found.effects
+    assert ripple.size == pytest.approx(0.5, abs=0.05)
+    assert ripple.phase % np.pi == pytest.approx(1.0, abs=0.1)
+    assert from_elsewhere(bench, found).log_evidence >= found.log_evidence
 
 
 def alone(bench, cls):

@@ -45,7 +45,7 @@ class MeshPlan:
     """
 
     base: MeshDensity = MeshDensity(gap_edges=720, gap_layers=3, across_iron=3.0)
-    idle: MeshDensity = MeshDensity(gap_edges=360)
+    idle: MeshDensity = MeshDensity(gap_edges=480)
     loaded: MeshDensity = MeshDensity(gap_edges=240)
 
 
