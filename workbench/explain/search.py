@@ -60,23 +60,23 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
 
 
 def _until_exact(search: Search, progress: Progress) -> None:
-    """Sets of effects; once more where an unknown function had ended the search, but not beside a model that is
-    exact."""
+    """Sets of effects; once more where exact models let another set lead, whose neighbours nobody has looked at, and
+    where an unknown function had ended the search, but not beside a model that is exact."""
+    heap: list[Promise] = []
+    settled: set[Set] = set()
+    expand(search, search.fitted[frozenset()], heap)
     while True:
-        _effects_alone(search, progress)
+        _effects_alone(search, heap, settled, progress)
         ended = search.is_beaten
         _exactly(search, progress)
-        if not ended or search.is_beaten:
+        if search.is_beaten or (not ended and search.ranked[0] in settled):
             break
 
 
-def _effects_alone(search: Search, progress: Progress) -> None:
+def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progress: Progress) -> None:
     """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
-    until that changes nothing, or an unknown function is better by far."""
-    heap: list[Promise] = []
-    expand(search, search.fitted[frozenset()], heap)
+    until that changes nothing, or an unknown function is better by far. settled: sets that led and were treated so"""
     _best_first(search, heap, progress)
-    settled: set[Set] = set()
     while (leader := search.ranked[0]) not in settled and not search.is_beaten:
         settled.add(leader)
         less_one(search, progress)
@@ -170,7 +170,8 @@ def _exactly(search: Search, progress: Progress) -> None:
 
 def _next_exact(search: Search) -> Set | None:
     """What leads; then what might lead, where what an exact model gave what is most like it is wrong by as much as it
-    is, or where an effect in the field is in no exact fit; then what leads without one of its effects, where it is not
+    is, where it would give as much as another set with one of its effects, or where an effect in the field is in no
+    exact fit; then what leads without one of its effects, where it is not
     far behind: such an effect may have made good what the expansion lacks, so that its part gains more by an exact
     model than the whole. Sets with the same effects in the field gain alike."""
     leader = search.ranked[0]
@@ -187,5 +188,7 @@ def _next_exact(search: Search) -> Set | None:
 
 def _doubt(search: Search, names: Set) -> float:
     """What an exact model may give a set beyond what is believed [nats]."""
-    unknown = names & search.of_expansion - frozenset().union(*search.exact)
-    return max(DOUBT if unknown else 0.0, abs(search.exactness(names)))
+    mine, believed = names & search.of_expansion, search.exactness(names)
+    unknown = mine - frozenset().union(*search.exact)
+    more = [gain - believed for other, gain in search.exact.items() if other & mine]
+    return max(DOUBT if unknown else 0.0, abs(believed), *more)

@@ -527,10 +527,35 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
     search = searching(bench, {frozenset(): null_of(bench)})
     done = []
     monkeypatch.setattr(Search, "best_beside", property(lambda self: np.inf if len(done) == 1 else -np.inf))
-    monkeypatch.setattr(search_module, "_effects_alone", lambda *asked: done.append("effects"))
+
+
+    def treated(search, heap, settled, progress):
+        done.append("effects")
+        settled.add(search.ranked[0])
+
+    monkeypatch.setattr(search_module, "_effects_alone", treated)
     monkeypatch.setattr(search_module, "_exactly", lambda *asked: done.append("exact"))
     search_module._until_exact(search, lambda words: None)
     assert done == ["effects", "exact", "effects", "exact"]
+
+
+def test_neighbours_of_a_set_that_leads_by_an_exact_model_only_are_looked_at(tmp_path, monkeypatch):
+    bench = sure_of_noise(tmp_path)
+    first, then = frozenset(), frozenset(("wave2",))
+    search = searching(bench, {first: null_of(bench), then: replace(null_of(bench), log_evidence=-1e3)})
+    led = []
+
+    def treated(search, heap, settled, progress):
+        led.append(search.ranked[0])
+        settled.add(search.ranked[0])
+
+    def exactly(search, progress):
+        search.fitted[then] = replace(null_of(bench), log_evidence=1e3)
+
+    monkeypatch.setattr(search_module, "_effects_alone", treated)
+    monkeypatch.setattr(search_module, "_exactly", exactly)
+    search_module._until_exact(search, lambda words: None)
+    assert led == [first, then]
 
 
 @pytest.mark.parametrize(
@@ -552,6 +577,19 @@ def test_what_an_exact_model_might_bring_to_the_lead_is_made_exact_next(tmp_path
     assert search_module._next_exact(search) == (other if is_next else None)
     search.of_expansion = frozenset()
     assert search_module._next_exact(search) is None, "both leave the field as it is: an exact one gives them the same"
+
+
+@pytest.mark.parametrize(("gains", "is_next"), [((0.0, 8.0), True), ((0.0, 4.0), False), ((6.0, 8.0), True)])
+def test_a_set_is_made_exact_where_it_might_gain_as_much_as_another_with_one_of_its_effects(tmp_path, gains, is_next):
+    """wave3 stands with wave4 in what gained little, alone in what gained more; it is five nats behind."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    first, mine = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave3", "wave4"))
+    second = replace(first, log_evidence=first.log_evidence - 5 - gains[0] + np.log(19))  # of one effect more
+    search = searching(bench, {frozenset(): null_of(bench), first.names: first, mine: second})
+    search.of_expansion = first.names | {"wave3", "wave4", "wave5"}
+    search.exact = {frozenset(): 0.0, first.names: 0.0}
+    search.exact |= {mine | {"wave5"}: gains[0], frozenset(("wave3", "wave5", "wave6")): gains[1]}
+    assert search_module._next_exact(search) == (mine if is_next else None)
 
 
 def test_probabilities_of_a_search_add_up_to_one(bench):
