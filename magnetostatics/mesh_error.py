@@ -9,6 +9,7 @@ import numpy as np
 from skfem import MeshTri
 
 from geometry.cross_section import CrossSection
+from magnetostatics.elements import QUADRATIC, refine_order
 from magnetostatics.flux_linkage import phase_flux_linkage
 from magnetostatics.model import FieldModel, FieldSolution, OperatingState
 from magnetostatics.torque import arkkio_torque, maxwell_torque
@@ -17,6 +18,8 @@ from magnetostatics.torque import arkkio_torque, maxwell_torque
 # order h^(4/3), so halving takes away 0.6 of it and 1/0.6 = 1.7 would do on an ever finer mesh.
 SAFETY = 2.0
 _SAME_RADIUS = 1e-6  # of the radius
+# Halves of the edges of a triangle and the edges between their middles, by its degrees of freedom.
+_HALVES = np.array([[0, 1, 1, 2, 2, 0, 3, 4, 5], [3, 3, 4, 4, 5, 5, 4, 5, 3]])
 
 
 def torque_with_error(model: FieldModel, point: OperatingState) -> tuple[float, float]:
@@ -34,7 +37,7 @@ def torque_errors(solutions: Sequence[FieldSolution]) -> list[float]:
     finer = refined_model(solutions[0].model)
     fine: list[FieldSolution] = []
     for solution in solutions:
-        fine.append(finer.solve(solution.point, start=fine[-1] if fine else None))
+        fine.append(finer.solve(solution.point, start=fine[-1] if fine else prolonged(solution, finer)))
     return [torque_error(*both) for both in zip(solutions, fine, strict=True)]
 
 
@@ -56,8 +59,38 @@ def torque_error(solution: FieldSolution, finer: FieldSolution) -> float:
 
 
 def refined_solution(solution: FieldSolution) -> FieldSolution:
-    """The same operating point on the refined mesh."""
-    return refined_model(solution.model).solve(solution.point)
+    """The same operating point on the refined mesh, from the field on the coarse one."""
+    finer = refined_model(solution.model)
+    return finer.solve(solution.point, prolonged(solution, finer))
+
+
+def prolonged(solution: FieldSolution, finer: FieldModel) -> FieldSolution:
+    """The same field on the triangles of the refined model, to start from: Newton's method has less to go there.
+
+    The nodes of the refined mesh are numbered like the degrees of freedom of quadratic elements on the coarse one, so
+    that what is known at these is a field of linear elements on the refined one.
+    """
+    if solution.coarse is None:
+        nodes = refine_order(solution.model.topology.facets, solution.a)
+        return replace(solution, model=finer, a=nodes)
+    linear = replace(solution.coarse, model=finer.coarse_model, a=solution.a)
+    return replace(solution, model=finer, a=np.concatenate([solution.a, _at_halves(solution, finer)]), coarse=linear)
+
+
+def _at_halves(solution: FieldSolution, finer: FieldModel) -> np.ndarray:
+    """Quadratic potential in the middles of the edges of the refined mesh [Wb/m], (k,)."""
+    dofs, element, facets = solution.model.topology.dofs, QUADRATIC.element, finer.topology.facets
+    middles = element.doflocs[_HALVES].mean(axis=0).T
+    values = np.stack([element.lbasis(middles, i)[0] for i in range(len(dofs))])
+    keys, found = _key(facets), np.empty(facets.shape[1])
+    order = np.argsort(keys)
+    found[order[np.searchsorted(keys, _key(dofs[_HALVES]), sorter=order)]] = values.T @ solution.a[dofs]
+    return found
+
+
+def _key(ends: np.ndarray) -> np.ndarray:
+    """One number for two nodes, indices (2, ...), in any order."""
+    return (np.min(ends, axis=0).astype(np.int64) << 32) + np.max(ends, axis=0)
 
 
 def refined_model(model: FieldModel) -> FieldModel:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from math import sqrt
 
@@ -11,11 +12,12 @@ from numpy.testing import assert_allclose
 
 from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentricity
 from geometry.half_cell import MeshDensity
+from magnetostatics.elements import LINEAR, QUADRATIC, dof_locations
 from magnetostatics.flux_linkage import phase_flux_linkage
-from magnetostatics.mesh_error import flux_linkage_with_error, refined, torque_with_error
+from magnetostatics.mesh_error import flux_linkage_with_error, prolonged, refined, refined_model, torque_with_error
 from magnetostatics.model import OperatingPoint
 from magnetostatics.torque import arkkio_torque, maxwell_torque
-from tests.magnetostatics.reference_machine import FINE, SWEEP, model_of, reference_machine, section_of
+from tests.magnetostatics.reference_machine import FINE, SWEEP, TIGHT, model_of, reference_machine, section_of
 from tests.magnetostatics.whole_machine import COARSE, whole_model, with_defects
 from units import DEGREE
 
@@ -101,3 +103,29 @@ def test_a_machine_with_defects_can_be_refined():
     finer = type(model)(refined(model.section), model.materials).solve(POINTS["rated"])
     assert abs(arkkio_torque(finer) - maxwell_torque(finer)) < 0.3
     assert abs(torque - maxwell_torque(finer)) <= error
+
+
+@pytest.mark.parametrize("order", (LINEAR, QUADRATIC), ids=("linear", "quadratic"))
+def test_a_prolonged_field_is_the_same_field(order):
+    """A polynomial of the degree of the elements, on the triangles as they are before nodes go out onto arcs."""
+    model = model_of(reference_machine(), SWEEP, order=order)
+    solution, mesh = model.solve(POINTS["rated"]), model.section.mesh
+
+    def potential(mesh, order):
+        x, y = 100 * dof_locations(mesh, order)
+        return 1 + x - 2 * y + (order is QUADRATIC) * (x * x - 3 * x * y + y * y)
+
+    start = prolonged(replace(solution, a=potential(mesh, order)), refined_model(model))
+    assert_allclose(start.a, potential(mesh.refined(), order), atol=1e-12)
+    if order is QUADRATIC:
+        assert_allclose(start.coarse.a, start.a[: start.model.coarse_model.size])
+
+
+def test_a_prolonged_field_is_a_good_start():
+    """Half the iterations with linear elements and more, and the same field in the end."""
+    model = model_of(reference_machine(), SWEEP, settings=TIGHT)
+    solution, finer = model.solve(POINTS["overload"]), refined_model(model)
+    cold, warm = (finer.solve(solution.point, start) for start in (None, prolonged(solution, finer)))
+    assert warm.coarse.newton.iterations <= cold.coarse.newton.iterations / 2
+    assert warm.newton.iterations <= cold.newton.iterations
+    assert arkkio_torque(warm) == pytest.approx(arkkio_torque(cold), rel=1e-8)

@@ -1,4 +1,7 @@
-"""All stages on a small study by the command: files, a second run without work, the report, a wrong study."""
+"""All stages on a small study by the command: files, a second run without work, the report, a wrong study.
+
+The run is one of a user, in a process with workers of its own; what only looks at it afterwards needs none.
+"""
 
 import re
 import shutil
@@ -15,11 +18,12 @@ from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.stages import graph_of
 from study.read import read_study
+from tests.command_line import airgap
 
 FOLDER = PROJECT / "results" / "small-test-study"
 
 
-def airgap(*arguments):
+def in_a_process_of_its_own(*arguments):
     command = [sys.executable, "-m", "pipeline.cli", *map(str, arguments)]
     return subprocess.run(command, cwd=PROJECT, capture_output=True, text=True)
 
@@ -28,7 +32,7 @@ def airgap(*arguments):
 def study(tmp_path_factory):
     path = small("motorcycle", tmp_path_factory.mktemp("study"), **MOTORCYCLE).path
     shutil.rmtree(FOLDER, ignore_errors=True)
-    done = airgap("run", path)
+    done = in_a_process_of_its_own("run", path)
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     yield path
     shutil.rmtree(FOLDER, ignore_errors=True)

@@ -54,8 +54,8 @@ class Walk:
 
 @pytest.fixture(scope="module")
 def base(tmp_path_factory) -> MachineBench:
-    """The model; its field solutions are made by the first campaign and kept for the others."""
-    return MachineBench(PLAN, tmp_path_factory.mktemp("fields"))
+    """The model; its field solutions are made by the first campaign, in this process, and kept for the others."""
+    return MachineBench(PLAN, tmp_path_factory.mktemp("fields"), workers=1)
 
 
 def opened(base: MachineBench, hidden: dict[str, float], seed: int, folder) -> tuple[Model, Campaign]:

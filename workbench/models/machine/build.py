@@ -55,7 +55,7 @@ class SurrogateBuilder:
         workers: int = 1,
     ):
         self.machinery = Machinery(nominal, plan, steel)
-        self.pool = Processes(workers) if workers > 1 else None
+        self.pool = Processes(workers, preload=(solved.__module__,)) if workers > 1 else None
         self.store = Store(cache / f"machine-{_key(self.machinery)}" if cache else None)
         self._about: tuple | None = None
 
