@@ -62,7 +62,7 @@ def conforming_mesh(section: CrossSection, angle: float) -> ConformingMesh:
     """
     _check_angle(section, angle)
     placed = _placed_points(section, angle)
-    points, merged = _merge(placed)
+    points, merged = merge(placed)
     region, names = _regions(section)
     triangles = merged[section.mesh.t.T]
     edges = _boundary_edges(triangles)
@@ -113,7 +113,7 @@ def _rotor_triangles(section: CrossSection) -> np.ndarray:
     return np.flatnonzero(section.rotor_elements)
 
 
-def _merge(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def merge(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points without duplicates (n', 2) and the new number of every old point (n,)."""
     _, first, number = np.unique(_first_at_same_place(points), return_index=True, return_inverse=True)
     return points[first], number
@@ -123,7 +123,7 @@ def _first_at_same_place(points: np.ndarray) -> np.ndarray:
     """Lowest number of the points at the same place (n,)."""
     lowest = np.arange(len(points))
     for a, b in cKDTree(points).query_pairs(_SAME_PLACE):
-        lowest[max(a, b)] = min(a, b)
+        lowest[max(a, b)] = min(a, b, lowest[max(a, b)])
     return lowest
 
 

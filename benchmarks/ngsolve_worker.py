@@ -46,9 +46,8 @@ THREE_POINTS = IntegrationRule(points=[(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2
 class Problem:
     """Space, forms and load of a case."""
 
-    def __init__(self, case: dict, arrays: dict):
-        self.case = case
-        self.mesh = Mesh(netgen_mesh(case, arrays))
+    def __init__(self, case: dict, mesh: Mesh):
+        self.case, self.mesh = case, mesh
         self.space = space_of(self.mesh, case)
         self.free = free_unknowns(self.space, case)
         self.rule = {"intrules": {TRIG: THREE_POINTS if case["points"] == 3 else IntegrationRule(TRIG, MANY_POINTS)}}
@@ -180,7 +179,8 @@ def corner_potential(a: GridFunction, problem: Problem, pairs: np.ndarray) -> np
 def main(folder: Path) -> None:
     ngsolve.SetNumThreads(1)
     arrays = dict(np.load(folder / "mesh.npz"))
-    problem = Problem(json.loads((folder / "case.json").read_text()), arrays)
+    case = json.loads((folder / "case.json").read_text())
+    problem = Problem(case, Mesh(netgen_mesh(case, arrays)))
     problem.newton()
     began = time.process_time(), time.perf_counter()
     a, residuals = problem.newton()

@@ -1,47 +1,34 @@
 """Every kind of rotor against NGSolve on identical triangles: ``python -m benchmarks.other_kinds``.
 
-Torque, flux linkages and potential at a saturating current, quadratic elements: machines of ``machines/``, and of the
-kinds of rotors that none of them has one inside the stator of one. Both codes integrate for themselves, NGSolve with
-the law of the steel from a table, as in ``benchmarks.other_codes``. Needs ``sh benchmarks/set_up``.
-Writes results/reference/benchmarks/other_kinds.csv.
+Torque, flux linkages and potential at a large current, quadratic elements, the machines of ``benchmarks.drawn_kinds``.
+Both codes integrate for themselves, NGSolve with the law of the steel from a table, as in ``benchmarks.other_codes``.
+Then the same machines on meshes of NGSolve's own, ``benchmarks.own_meshes``. Needs ``sh benchmarks/set_up``.
+Writes results/reference/benchmarks/other_kinds.csv and own_meshes.csv.
 """
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from benchmarks import own_meshes
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT, relative
+from benchmarks.drawn_kinds import drawn
 from benchmarks.ngsolve_run import solve_ngsolve
 from benchmarks.reference_case import FieldCase, State
+from benchmarks.tables import write_table
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
-from geometry.magnetisation import PARALLEL
-from geometry.parts import Rotor
-from geometry.rotors.bread_loaf_magnets import BreadLoafMagnets
-from geometry.rotors.ribbed_v_shape import RibbedVShape
-from geometry.rotors.spoke import Spoke
-from geometry.rotors.surface_magnets import SurfaceMagnets
 from magnetostatics.model import OperatingPoint
 from pipeline.modules import PROJECT
-from study.machine_file import MachineFile, read_machine
+from study.machine_file import MachineFile
 from units import AMPERE_PER_SQUARE_MILLIMETRE
-from units import MILLIMETRE as mm
 
 TABLE = PROJECT / "results" / "reference" / "benchmarks" / "other_kinds.csv"
-FILES = ("outrunner_9_12", "inset_ferrite_6_4", "prius_2004", "v2_48_8", "consequent_12_8", "synrm_48_4",
-         "szesynrm_outline")  # fmt: skip
 DENSITY = MeshDensity(gap_edges=240, longest_gap_edge=2.5, gap_layers=2, across_iron=2.0)
-INSIDE_OF_TWELVE_SLOTS = (
-    SurfaceMagnets(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.85, PARALLEL),
-    BreadLoafMagnets(8, 15.7 * mm, 12.8 * mm, 9.0 * mm, 5.0 * mm),
-    Spoke(8, 15.7 * mm, 3.0 * mm, 6.0 * mm),
-)
 FULL = 20.0 * AMPERE_PER_SQUARE_MILLIMETRE  # amplitude in the copper
 WITH_MAGNETS, WITHOUT = 0.5, -0.8  # rad, current angles
 
@@ -58,22 +45,6 @@ class Row:
     torque_difference: float
     flux_difference: float
     potential_difference: float
-
-
-def drawn() -> Iterator[tuple[str, MachineFile]]:
-    """Machines with windings and materials by name, all kinds of rotors that are drawn by their dimensions or an
-    outline."""
-    for name in FILES:
-        yield name, read_machine(name)
-    v, twelve = read_machine("prius_2004"), read_machine("consequent_12_8")
-    rib = RibbedVShape(rib=1.2 * mm, **vars(v.machine.rotor))
-    yield "prius_2004, a rib between its magnets", _with_rotor(v, rib)
-    for rotor in INSIDE_OF_TWELVE_SLOTS:
-        yield "consequent_12_8, another rotor", _with_rotor(twelve, rotor)
-
-
-def _with_rotor(found: MachineFile, rotor: Rotor) -> MachineFile:
-    return replace(found, machine=replace(found.machine, rotor=rotor))
 
 
 def case_of(found: MachineFile, order: str = "P2") -> FieldCase:
@@ -108,19 +79,9 @@ def compared(name: str, found: MachineFile) -> Row:
 
 def main() -> None:
     """Compare, print and write."""
-    rows = []
     with threadpool_limits(1):
-        for name, found in drawn():
-            rows.append(compared(name, found))
-            print(*asdict(rows[-1]).values(), flush=True)
-    with open(TABLE, "w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, [one.name for one in fields(Row)], lineterminator="\n")
-        table.writeheader()
-        table.writerows({name: _digits(value) for name, value in asdict(row).items()} for row in rows)
-
-
-def _digits(value: object) -> object:
-    return f"{value:.3g}" if isinstance(value, float) and abs(value) < 1e-3 else value
+        write_table(TABLE, (compared(name, found) for name, found in drawn()))
+        own_meshes.main()
 
 
 if __name__ == "__main__":

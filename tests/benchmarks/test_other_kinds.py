@@ -8,14 +8,14 @@ import pytest
 
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT
-from benchmarks.other_kinds import TABLE, case_of, drawn
+from benchmarks.drawn_kinds import drawn
+from benchmarks.other_kinds import TABLE, case_of
 from geometry.kinds import ROTORS
 from geometry.magnetisation import RadialMagnetisation
 from study.machine_file import read_machine
 
 MACHINES = tuple(drawn())
 WITHIN = 1e-5  # relative
-DRAWN_BY_OTHERS = {"OutlineMagnets"}  # the outlines of rotors that are compared
 
 
 def table():
@@ -25,7 +25,7 @@ def table():
 
 def test_every_kind_was_compared():
     kinds = {kind.__name__ for kind in ROTORS.known.values()}
-    assert {kind for kind, _ in table()} == kinds - DRAWN_BY_OTHERS
+    assert {kind for kind, _ in table()} == kinds
 
 
 def test_both_codes_agree():
