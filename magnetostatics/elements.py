@@ -125,7 +125,7 @@ def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
 
     facets: indices of the ends of the edges, (2, k); load: on the quadratic functions [A], (n,); or several, (m, n)
     """
-    return lowered(facets, np.atleast_2d(load)).reshape(*load.shape[:-1], -1)
+    return lowered(facets, np.atleast_2d(load)).reshape(*load.shape[:-1], load.shape[-1] - facets.shape[1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,6 +30,7 @@ from materials.reluctivity import Reluctivity
 from units import MU_0
 
 _ROUGHEST = 0.03  # share of the residual that a Newton step with quadratic elements may leave of its linear equation
+_LITTLE = 0.8  # what a step that brought little leaves of the residual
 _FEW = 6  # iterations of that; more say that the tangent of linear elements belongs to another field
 _BELOW = 0.1  # of the tolerance, which the linear equation need not be solved beyond
 _COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
@@ -450,6 +451,8 @@ class _Problem:
         self.column, self.sign = model.unknowns.turned(turn.edges)
         self.load = self.reduce(load)
         self._iron: tuple[np.ndarray, IronState] | None = None  # of the last field looked at
+        self._touched: IronState | None = None  # where the tangent of the last step touches the laws
+        self._size = np.inf  # of the residual before it; without end when it touched them at the field itself
 
     def expand(self, u: np.ndarray) -> np.ndarray:
         """All degrees of freedom (n,) from the free unknowns."""
@@ -471,7 +474,22 @@ class _Problem:
 
     def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Newton step (m,)."""
-        return self.factorise(u).solve(residual)
+        iron, load = self._tangent_at(u, residual)
+        return self.system.factorise(iron.tangent).solve(load)
+
+    def _tangent_at(self, u: np.ndarray, residual: np.ndarray) -> tuple[IronState, np.ndarray]:
+        """Where the tangent of a step touches the laws, and its load (m,) [A].
+
+        That is the field itself at first, and after a step from another point of the laws that brought little.
+        """
+        field, before, size = self._iron_at(u), self._touched, float(np.linalg.norm(residual))
+        if before is None or size > _LITTLE * self._size:
+            self._touched, self._size = field, np.inf
+            return field, residual
+        self._touched, lacking = self.model.iron.drawn_back(field, before)
+        self._size, load = size, residual.copy()
+        add_scattered(load, lacking, *self.model.topology.iron_unknowns)
+        return self._touched, load
 
     def factorise(self, u: np.ndarray) -> SymmetricSystem:
         """The tangent at a field, factorised."""
@@ -503,11 +521,11 @@ class _RefinedProblem(_Problem):
         """
         size = float(np.linalg.norm(residual) / np.linalg.norm(self.load))
         share = min(_ROUGHEST, max(size, _BELOW * self.model.settings.tolerance / size))
-        iron = self._iron_at(u)
+        iron, load = self._tangent_at(u, residual)
         if self._tangent_below is None:
             self._tangent_below = self._below.factorise(iron.linear_tangent)
         tangent = self.system.tangent(iron.tangent)
-        step, iterations = response(tangent, self._refinement, self._tangent_below, residual, share)
+        step, iterations = response(tangent, self._refinement, self._tangent_below, load, share)
         if iterations > _FEW:
             self._tangent_below = None
         return step

@@ -132,6 +132,49 @@ def tangent_tensor(
     return tensor
 
 
+@vectorised
+def field_strength_on_tangent(
+    metric: np.ndarray,
+    size: np.ndarray,
+    here: tuple[np.ndarray, np.ndarray, np.ndarray],
+    touched: tuple[np.ndarray, np.ndarray, np.ndarray],
+    nu: np.ndarray,
+    slope: np.ndarray,
+) -> np.ndarray:
+    """What a tangent of H(B) says of the field strength along the flux density [A/m], (Q, E).
+
+    H . B / |B| with H = nu B + 2 nu' (B_t . (B - B_t)) B_t, where the tangent touches the law in B_t
+    metric: M_11, M_12, M_22, dimensionless (3, E), of determinant one; size: |D| [m^2], (E,)
+    here, touched: h1, h2 [Wb/m] and b2 [T^2] of B and of B_t, (Q, E) each; nu [m/H], slope [m/(H T^2)]: there, (Q, E)
+    """
+    strength = np.empty_like(nu)
+    for q in range(len(nu)):
+        for e in range(len(size)):
+            h1, h2, b = here[0][q, e], here[1][q, e], np.sqrt(here[2][q, e])
+            g1, g2 = metric[2, e] * h1 - metric[1, e] * h2, metric[0, e] * h2 - metric[1, e] * h1
+            common = (touched[0][q, e] * g1 + touched[1][q, e] * g2) / size[e]
+            bent = 2.0 * slope[q, e] * (common - touched[2][q, e]) * common
+            strength[q, e] = nu[q, e] * b + (bent / b if b > 0.0 else 0.0)
+    return strength
+
+
+@vectorised
+def nearer_law(
+    line: tuple[np.ndarray, np.ndarray, float], b: np.ndarray, nu: np.ndarray, slope: np.ndarray
+) -> np.ndarray:
+    """One step of Newton's method from b towards where H(B) meets the line H = H_0 - n (B - B_0) [T], (Q, E).
+
+    line: B_0 [T] and H_0 [A/m], (Q, E) each, and n [m/H]; b: [T], (Q, E); nu [m/H] and slope, dnu/d(b2): there, (Q, E)
+    """
+    step = np.empty_like(b)
+    for q in range(len(b)):
+        for e in range(b.shape[1]):
+            excess = nu[q, e] * b[q, e] - line[1][q, e] + line[2] * (b[q, e] - line[0][q, e])
+            step[q, e] = excess / (nu[q, e] + 2.0 * slope[q, e] * b[q, e] ** 2 + line[2])
+            step[q, e] = max(b[q, e] - step[q, e], 0.0)
+    return step
+
+
 @compiled
 def addresses(
     pairs: tuple[np.ndarray, np.ndarray], dofs: np.ndarray, column: np.ndarray, dof_sign: np.ndarray, size: int
