@@ -7,7 +7,8 @@ takes 0.5 to 0.6 of the time of CHOLMOD as cvxopt carries it (``docs/speed.md``)
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import cvxopt
 import cvxopt.amd
@@ -17,12 +18,22 @@ from threadpoolctl import ThreadpoolController
 from magnetostatics.fronts import analysed
 from magnetostatics.multifrontal import factorise, solve
 
-_BLAS = ThreadpoolController()  # made after the imports above, or it would not know their libraries
+# Made after the imports above, or it would not know their libraries.
+_BLAS = [library for library in ThreadpoolController().lib_controllers if library.user_api == "blas"]
 
 
-def one_thread() -> AbstractContextManager[object]:
+@contextmanager
+def one_thread() -> Iterator[None]:
     """Context in which BLAS uses one thread: two make a solve of this size two to three times slower."""
-    return _BLAS.limit(limits=1, user_api="blas")
+    threads = [(library, library.get_num_threads()) for library in _BLAS]
+    others = [(library, count) for library, count in threads if count != 1]
+    for library, _ in others:
+        library.set_num_threads(1)
+    try:
+        yield
+    finally:
+        for library, count in others:
+            library.set_num_threads(count)
 
 
 class SymmetricSystem:

@@ -21,7 +21,7 @@ from skfem.assembly import Dofs
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
-from magnetostatics.passes import lowered
+from magnetostatics.passes import edges_of, lowered, metric_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,10 +139,9 @@ class Triangles:
     edges: np.ndarray
 
     @classmethod
-    def of(cls, corners: np.ndarray) -> Triangles:
-        """Triangles with corners (2, 3, E) [m]."""
-        a, b, c = corners.transpose(1, 0, 2)
-        return cls(a, np.stack([b - a, c - a]))
+    def of(cls, points: np.ndarray, corners: np.ndarray) -> Triangles:
+        """Triangles with corners, indices (3, E) of points (2, n) [m]."""
+        return cls(*edges_of(points, corners))
 
     def take(self, which: np.ndarray) -> Triangles:
         """The triangles with these indices; which: indices (k,)."""
@@ -162,8 +161,7 @@ class Triangles:
     @cached_property
     def metric(self) -> np.ndarray:
         """M_11, M_12, M_22, dimensionless (3, E): grad . grad times |D| in reference coordinates."""
-        u, v = self.edges
-        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / self.size
+        return metric_of(self.edges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,9 +176,9 @@ class Elements:
     shape: Triangles
 
     @classmethod
-    def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
-        """Elements with corners (2, 3, E) [m] and dofs, indices (F, E)."""
-        return cls(order, dofs, Triangles.of(corners))
+    def of(cls, order: TriangleOrder, points: np.ndarray, corners: np.ndarray, dofs: np.ndarray) -> Elements:
+        """Elements with corners, indices (3, E) of points (2, n) [m], and dofs, indices (F, E)."""
+        return cls(order, dofs, Triangles.of(points, corners))
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices; which: indices (k,)."""

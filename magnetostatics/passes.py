@@ -31,6 +31,34 @@ def symmetric_product(starts: np.ndarray, rows: np.ndarray, lower: np.ndarray, u
 
 
 @vectorised
+def edges_of(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First corners (2, E) [m] and the edges from them to the second and the third corners (2, 2, E) [m].
+
+    points: [m], (2, n); corners: indices (3, E)
+    """
+    first, edges = np.empty((2, corners.shape[1])), np.empty((2, 2, corners.shape[1]))
+    for axis in range(2):
+        for e in range(corners.shape[1]):
+            first[axis, e] = points[axis, corners[0, e]]
+            for edge in range(2):
+                edges[edge, axis, e] = points[axis, corners[edge + 1, e]] - first[axis, e]
+    return first, edges
+
+
+@vectorised
+def metric_of(edges: np.ndarray) -> np.ndarray:
+    """M_11, M_12, M_22 of triangles, dimensionless (3, E); edges: ``Triangles.edges`` [m], (2, 2, E)."""
+    metric = np.empty((3, edges.shape[2]))
+    for e in range(edges.shape[2]):
+        u, v, x, y = edges[0, 0, e], edges[0, 1, e], edges[1, 0, e], edges[1, 1, e]
+        size = abs(u * y - v * x)
+        metric[0, e] = (x * x + y * y) / size
+        metric[1, e] = -(u * x + v * y) / size
+        metric[2, e] = (u * u + v * v) / size
+    return metric
+
+
+@vectorised
 def flux(
     local: np.ndarray, slopes: np.ndarray, metric: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
