@@ -15,7 +15,7 @@ import cvxopt.amd
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from magnetostatics.fronts import analysed
+from magnetostatics.fronts import Fronts, analysed
 from magnetostatics.multifrontal import factorise, solve
 
 # Made after the imports above, or it would not know their libraries.
@@ -48,6 +48,11 @@ class SymmetricSystem:
         order = np.array(cvxopt.amd.order(pattern, "L")).ravel()
         self._fronts, self._order, self.column_counts, workspace = analysed(rows, columns, order)
         self._factor, self._workspace = np.empty(self._fronts.panels[-1]), np.empty(workspace)
+
+    @property
+    def factors(self) -> tuple[Fronts, np.ndarray, np.ndarray]:
+        """What ``magnetostatics.multifrontal.solve`` asks for; good until the next factorisation."""
+        return self._fronts, self._order, self._factor
 
     def factorise(self, values: np.ndarray) -> None:
         """Numeric factorisation for the values of the lower triangle [m/H], (k,), in the order of the pattern.
