@@ -387,8 +387,8 @@ def _on_circles(radius: np.ndarray, circles: Iterable[float | None]) -> np.ndarr
 
 
 def _triangle_areas(mesh: MeshTri, which: np.ndarray) -> np.ndarray:
-    a, b, c = (mesh.p[:, corner].T for corner in mesh.t[:, which])
-    return np.abs(_cross(b - a, c - a)) / 2
+    (ax, bx, cx), (ay, by, cy) = mesh.p[:, mesh.t[:, which]]
+    return np.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
 
 
 def _turn(points: np.ndarray, angle: float) -> np.ndarray:
