@@ -2,9 +2,9 @@
 
 Weak form for the vector potential A (per metre of length), B = (dA/dy, -dA/dx):
     integral nu(|B|^2) grad A . grad v = integral J v + integral nu (B_rx dv/dy - B_ry dv/dx)
-scikit-fem supplies the reference functions, the quadrature and the numbering. In reference coordinates (xi, eta) the
-functions are the same in every triangle: what differs is three numbers, the metric M, and so a vector or a matrix of
-all elements is one small constant matrix times a few numbers per element,
+scikit-fem supplies the reference functions and the quadrature, and its numbering is kept: nodes, then edges. In
+reference coordinates (xi, eta) the functions are the same in every triangle: what differs is three numbers, the metric
+M, and so a vector or a matrix of all elements is one small constant matrix times a few numbers per element,
     grad A . grad v = (dA/dxi, dA/deta) M (dv/dxi, dv/deta) / |D|,   M = |D| J^-1 J^-T,   D = det J
 The element index comes last in every array, so that each operation is one pass over contiguous memory.
 """
@@ -17,7 +17,6 @@ from functools import cached_property
 
 import numpy as np
 from skfem import ElementTriP1, ElementTriP2, MeshTri
-from skfem.assembly import Dofs
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
@@ -101,8 +100,10 @@ QUADRATIC = TriangleOrder.of(ElementTriP2(), 6)
 
 def element_dofs(mesh: MeshTri, order: TriangleOrder) -> tuple[np.ndarray, int]:
     """Indices of the degrees of freedom (F, E), nodes first, then edges, and their total number."""
-    dofs = Dofs(mesh, order.element)
-    return dofs.element_dofs, dofs.N
+    nodes = mesh.p.shape[1]
+    if order is LINEAR:
+        return mesh.t, nodes
+    return np.vstack([mesh.t, nodes + mesh.t2f]), nodes + mesh.facets.shape[1]
 
 
 def dof_locations(mesh: MeshTri, order: TriangleOrder) -> np.ndarray:

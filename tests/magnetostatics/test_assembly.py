@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
+from skfem.assembly import Dofs
 
 from magnetostatics.assembly import Entries
-from magnetostatics.elements import LINEAR, QUADRATIC, lower_order, refine_order
+from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, lower_order, refine_order
 from magnetostatics.iron import _SERIES
 from magnetostatics.model import OperatingPoint, _Problem
 from magnetostatics.passes import merged
@@ -134,6 +135,15 @@ def test_solution_of_the_factorised_tangent(order):
     step = 1e-5 * np.abs(u).max() / np.abs(answer).max()
     slope = (problem.residual(u - step * answer) - problem.residual(u + step * answer)) / (2 * step)
     assert_allclose(slope, load, atol=2e-3 * np.abs(load).max())
+
+
+@orders
+def test_numbering_is_that_of_scikit_fem(order):
+    mesh = model_of(reference_machine()).section.mesh
+    dofs, size = element_dofs(mesh, order)
+    wanted = Dofs(mesh, order.element)
+    assert size == wanted.N
+    assert np.array_equal(dofs, wanted.element_dofs)
 
 
 def test_entries_are_those_of_scipy():
