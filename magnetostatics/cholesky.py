@@ -51,7 +51,10 @@ class SymmetricSystem:
 
     @property
     def factors(self) -> tuple[Fronts, np.ndarray, np.ndarray]:
-        """What ``magnetostatics.multifrontal.solve`` asks for; good until the next factorisation."""
+        """Fronts, order [indices, (n,)] and factor [square root of m/H, (l,)] as ``multifrontal.solve`` takes them.
+
+        Good until the next factorisation.
+        """
         return self._fronts, self._order, self._factor
 
     def factorise(self, values: np.ndarray) -> None:

@@ -192,7 +192,8 @@ def nearer_law(
 ) -> np.ndarray:
     """One step of Newton's method from b towards where H(B) meets the line H = H_0 - n (B - B_0) [T], (Q, E).
 
-    line: B_0 [T] and H_0 [A/m], (Q, E) each, and n [m/H]; b: [T], (Q, E); nu [m/H] and slope, dnu/d(b2): there, (Q, E)
+    line: B_0 [T] and H_0 [A/m], (Q, E) each, and n [m/H]; b: [T], (Q, E)
+    nu [m/H] and slope, dnu/d(b2) [m/(H T^2)]: there, (Q, E) each
     """
     step = np.empty_like(b)
     for q in range(len(b)):

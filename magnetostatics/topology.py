@@ -66,7 +66,7 @@ class Topology:
         return Entries.of(self.order.pairs, self.dofs[:, which], u.column, u.sign, u.count)
 
     def turned(self, edges: int) -> tuple[np.ndarray, np.ndarray]:
-        """``Unknowns.turned`` of this numbering, (n,) each; the last few are kept."""
+        """(column, sign), index and dimensionless, (n,) each, as ``Unknowns.turned``; the last few are kept."""
         if edges not in self._turned:
             if len(self._turned) == _MOST_TURNED:
                 self._turned.pop(next(iter(self._turned)))
