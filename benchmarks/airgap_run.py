@@ -20,7 +20,7 @@ COLD, PREPARED = "Airgap", "Airgap, prepared"
 
 
 def _settings(tolerance: float) -> NewtonSettings:
-    """The stopping rule of the other codes, with chord steps in the place of the last Newton steps."""
+    """The stopping rule of the other codes."""
     return NewtonSettings(tolerance)
 
 

@@ -224,6 +224,5 @@ def _sweep(start: np.ndarray, end: np.ndarray) -> float:
 
 def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Signed areas of triangles (3, e) with points (2, n)."""
-    a, b, c = (points[:, corner] for corner in triangles)
-    u, v = b - a, c - a
-    return (u[0] * v[1] - u[1] * v[0]) / 2
+    (ax, bx, cx), (ay, by, cy) = points[:, triangles]
+    return ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2

@@ -7,7 +7,7 @@ depends on the rotor's turn. Entries are addressed by one integer key, column * 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -82,8 +82,8 @@ class JoinedPattern:
     """
 
     def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
-        band_keys = np.sort(np.concatenate([band.keys for band in bands.values()]))
-        keys, fixed_position, _ = merged(fixed.keys, band_keys[np.diff(band_keys, prepend=-1) > 0])
+        band_keys = reduce(lambda known, band: merged(known, band.keys)[0], bands.values(), np.empty(0, np.int64))
+        keys, fixed_position, _ = merged(fixed.keys, band_keys)
         self.fixed, self.bands, self.size = fixed, bands, fixed.size
         self.columns, rows = np.divmod(keys, self.size)
         self.rows = rows.astype(np.uint32)  # unsigned: compiled code need not ask whether they count from the end

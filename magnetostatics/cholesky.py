@@ -7,22 +7,33 @@ takes 0.5 to 0.6 of the time of CHOLMOD as cvxopt carries it (``docs/speed.md``)
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import cvxopt
 import cvxopt.amd
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from magnetostatics.fronts import analysed
+from magnetostatics.fronts import Fronts, analysed
 from magnetostatics.multifrontal import factorise, solve
 
-_BLAS = ThreadpoolController()  # made after the imports above, or it would not know their libraries
+# Made after the imports above, or it would not know their libraries.
+_BLAS = [library for library in ThreadpoolController().lib_controllers if library.user_api == "blas"]
 
 
-def one_thread() -> AbstractContextManager[object]:
+@contextmanager
+def one_thread() -> Iterator[None]:
     """Context in which BLAS uses one thread: two make a solve of this size two to three times slower."""
-    return _BLAS.limit(limits=1, user_api="blas")
+    threads = [(library, library.get_num_threads()) for library in _BLAS]
+    others = [(library, count) for library, count in threads if count != 1]
+    for library, _ in others:
+        library.set_num_threads(1)
+    try:
+        yield
+    finally:
+        for library, count in others:
+            library.set_num_threads(count)
 
 
 class SymmetricSystem:
@@ -37,6 +48,14 @@ class SymmetricSystem:
         order = np.array(cvxopt.amd.order(pattern, "L")).ravel()
         self._fronts, self._order, self.column_counts, workspace = analysed(rows, columns, order)
         self._factor, self._workspace = np.empty(self._fronts.panels[-1]), np.empty(workspace)
+
+    @property
+    def factors(self) -> tuple[Fronts, np.ndarray, np.ndarray]:
+        """Fronts, order [indices, (n,)] and factor [square root of m/H, (l,)] as ``multifrontal.solve`` takes them.
+
+        Good until the next factorisation.
+        """
+        return self._fronts, self._order, self._factor
 
     def factorise(self, values: np.ndarray) -> None:
         """Numeric factorisation for the values of the lower triangle [m/H], (k,), in the order of the pattern.

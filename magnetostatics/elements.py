@@ -2,9 +2,9 @@
 
 Weak form for the vector potential A (per metre of length), B = (dA/dy, -dA/dx):
     integral nu(|B|^2) grad A . grad v = integral J v + integral nu (B_rx dv/dy - B_ry dv/dx)
-scikit-fem supplies the reference functions, the quadrature and the numbering. In reference coordinates (xi, eta) the
-functions are the same in every triangle: what differs is three numbers, the metric M, and so a vector or a matrix of
-all elements is one small constant matrix times a few numbers per element,
+scikit-fem supplies the reference functions and the quadrature, and its numbering is kept: nodes, then edges. In
+reference coordinates (xi, eta) the functions are the same in every triangle: what differs is three numbers, the metric
+M, and so a vector or a matrix of all elements is one small constant matrix times a few numbers per element,
     grad A . grad v = (dA/dxi, dA/deta) M (dv/dxi, dv/deta) / |D|,   M = |D| J^-1 J^-T,   D = det J
 The element index comes last in every array, so that each operation is one pass over contiguous memory.
 """
@@ -17,11 +17,10 @@ from functools import cached_property
 
 import numpy as np
 from skfem import ElementTriP1, ElementTriP2, MeshTri
-from skfem.assembly import Dofs
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
-from magnetostatics.passes import lowered
+from magnetostatics.passes import edges_of, lowered, metric_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +100,10 @@ QUADRATIC = TriangleOrder.of(ElementTriP2(), 6)
 
 def element_dofs(mesh: MeshTri, order: TriangleOrder) -> tuple[np.ndarray, int]:
     """Indices of the degrees of freedom (F, E), nodes first, then edges, and their total number."""
-    dofs = Dofs(mesh, order.element)
-    return dofs.element_dofs, dofs.N
+    nodes = mesh.p.shape[1]
+    if order is LINEAR:
+        return mesh.t, nodes
+    return np.vstack([mesh.t, nodes + mesh.t2f]), nodes + mesh.facets.shape[1]
 
 
 def dof_locations(mesh: MeshTri, order: TriangleOrder) -> np.ndarray:
@@ -125,7 +126,7 @@ def lower_order(facets: np.ndarray, load: np.ndarray) -> np.ndarray:
 
     facets: indices of the ends of the edges, (2, k); load: on the quadratic functions [A], (n,); or several, (m, n)
     """
-    return lowered(facets, np.atleast_2d(load)).reshape(*load.shape[:-1], -1)
+    return lowered(facets, np.atleast_2d(load)).reshape(*load.shape[:-1], load.shape[-1] - facets.shape[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,10 +140,9 @@ class Triangles:
     edges: np.ndarray
 
     @classmethod
-    def of(cls, corners: np.ndarray) -> Triangles:
-        """Triangles with corners (2, 3, E) [m]."""
-        a, b, c = corners.transpose(1, 0, 2)
-        return cls(a, np.stack([b - a, c - a]))
+    def of(cls, points: np.ndarray, corners: np.ndarray) -> Triangles:
+        """Triangles with corners, indices (3, E) of points (2, n) [m]."""
+        return cls(*edges_of(points, corners))
 
     def take(self, which: np.ndarray) -> Triangles:
         """The triangles with these indices; which: indices (k,)."""
@@ -162,8 +162,7 @@ class Triangles:
     @cached_property
     def metric(self) -> np.ndarray:
         """M_11, M_12, M_22, dimensionless (3, E): grad . grad times |D| in reference coordinates."""
-        u, v = self.edges
-        return np.stack([(v * v).sum(0), -(u * v).sum(0), (u * u).sum(0)]) / self.size
+        return metric_of(self.edges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,9 +177,9 @@ class Elements:
     shape: Triangles
 
     @classmethod
-    def of(cls, order: TriangleOrder, corners: np.ndarray, dofs: np.ndarray) -> Elements:
-        """Elements with corners (2, 3, E) [m] and dofs, indices (F, E)."""
-        return cls(order, dofs, Triangles.of(corners))
+    def of(cls, order: TriangleOrder, points: np.ndarray, corners: np.ndarray, dofs: np.ndarray) -> Elements:
+        """Elements with corners, indices (3, E) of points (2, n) [m], and dofs, indices (F, E)."""
+        return cls(order, dofs, Triangles.of(points, corners))
 
     def take(self, which: np.ndarray) -> Elements:
         """The elements with these indices; which: indices (k,)."""

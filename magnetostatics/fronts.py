@@ -81,8 +81,7 @@ def _indexed(
     families: (child, sibling), indices (s,) each
     """
     entries = _bucketed(pairs[0], int(starts[-1]))
-    owner = np.repeat(np.arange(len(starts) - 1), np.diff(row_starts)) * starts[-1]
-    rows = (np.sort(_structure(starts, row_starts, entries, pairs[1], *families) + owner) - owner).astype(np.uint32)
+    rows = _rising(_structure(starts, row_starts, entries, pairs[1], *families), row_starts, int(starts[-1]))
     return {
         "row_starts": row_starts,
         "rows": rows,
@@ -313,6 +312,26 @@ def _noted(row: int, front: int, seen: np.ndarray, rows: np.ndarray, found: int)
     seen[row] = front
     rows[found] = row
     return found + 1
+
+
+@compiled
+def _rising(rows: np.ndarray, row_starts: np.ndarray, size: int) -> np.ndarray:
+    """The rows of every front by rising index, (r,); rows, row_starts: indices (r,) below size and (s + 1,)."""
+    front, free = np.empty(len(rows), np.int64), np.zeros(size + 1, np.int64)
+    for s in range(len(row_starts) - 1):
+        for k in range(row_starts[s], row_starts[s + 1]):
+            front[k] = s
+            free[rows[k] + 1] += 1
+    for row in range(size):
+        free[row + 1] += free[row]
+    by_row, found, rising = np.empty_like(rows), row_starts.copy(), np.empty(len(rows), np.uint32)
+    for k in range(len(rows)):
+        by_row[free[rows[k]]] = k
+        free[rows[k]] += 1
+    for k in by_row:
+        rising[found[front[k]]] = rows[k]
+        found[front[k]] += 1
+    return rising
 
 
 @compiled

@@ -17,7 +17,7 @@ from geometry.errors import GeometryError
 from geometry.winding import Coil
 from magnetostatics.assembly import JoinedSystem
 from magnetostatics.cholesky import SymmetricSystem, one_thread
-from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, lower_order, refine_order
+from magnetostatics.elements import LINEAR, QUADRATIC, Elements, TriangleOrder, Triangles, lower_order, refine_order
 from magnetostatics.iron import Iron, IronState
 from magnetostatics.local_steel import LocalSteel, law_in
 from magnetostatics.newton import NewtonRecord, NewtonSettings, newton
@@ -30,6 +30,7 @@ from materials.reluctivity import Reluctivity
 from units import MU_0
 
 _ROUGHEST = 0.03  # share of the residual that a Newton step with quadratic elements may leave of its linear equation
+_LITTLE = 0.8  # what a step that brought little leaves of the residual
 _FEW = 6  # iterations of that; more say that the tangent of linear elements belongs to another field
 _BELOW = 0.1  # of the tolerance, which the linear equation need not be solved beyond
 _COARSE = NewtonSettings(tolerance=2e-4, always_step=False)  # of the linear elements that quadratic ones start from
@@ -154,11 +155,12 @@ class FieldModel:
         self.topology = topology or Topology(section, order)
         self.settings = settings
         self._joined: tuple[Turn, JoinedSystem] | None = None
+        self._bands: dict[float, Triangles] = {}  # of the last angle, shared with the problem of the other order
 
     @cached_property
     def elements(self) -> Elements:
         """Of the whole mesh."""
-        return Elements.of(self.order, self.section.mesh.p[:, self.section.mesh.t], self.topology.dofs)
+        return Elements.of(self.order, self.section.mesh.p, self.section.mesh.t, self.topology.dofs)
 
     @cached_property
     def iron(self) -> Iron:
@@ -295,10 +297,16 @@ class FieldModel:
 
     def band_elements(self, rest: float) -> Elements:
         """The rotor side of the gap, sheared so that the sliding circle moves by -rest [rad] against the rotor."""
-        corners = self.section.mesh.p[:, self.section.mesh.t[:, self.rotor_band]]
+        if rest not in self._bands:
+            self._bands.clear()
+            self._bands[rest] = self._band(rest)
+        return Elements(self.order, self.topology.band_dofs, self._bands[rest])
+
+    def _band(self, rest: float) -> Triangles:
+        points = self.section.mesh.p[:, self.topology.band_nodes]
         if rest != 0.0:
-            corners = self.section.rotor_gap.sheared(corners, -rest)
-        return Elements.of(self.order, corners, self.elements.dofs[:, self.rotor_band])
+            points = self.section.rotor_gap.sheared(points, -rest)
+        return Triangles.of(points, self.topology.band_corners)
 
     @cached_property
     def _linear_values(self) -> np.ndarray:
@@ -384,6 +392,7 @@ class FieldModel:
     @cached_property
     def coarse_model(self) -> FieldModel:
         """The same problem with linear elements; a solution there costs a quarter of one with quadratic elements."""
+        _ = self.iron, self._linear_metric  # both share them
         return _CoarseModel(copy(self), self._coarse_topology)  # of a copy: a cycle would hold its memory for long
 
     @cached_property
@@ -400,7 +409,7 @@ class _CoarseModel(FieldModel):
     def __init__(self, fine: FieldModel, topology: Topology) -> None:
         settings = replace(_COARSE, tolerance=max(_COARSE.tolerance, fine.settings.tolerance))
         super().__init__(fine.section, fine.materials, settings, topology=topology)
-        self._fine = fine
+        self._fine, self._bands = fine, fine._bands
 
     @property
     def finest(self) -> FieldModel:
@@ -447,9 +456,11 @@ class _Problem:
     def __init__(self, model: FieldModel, point: OperatingState, load: np.ndarray) -> None:
         turn = model.unknowns.turn(point.angle)
         self.model, self.system, self.angle = model, model._join(turn), point.angle
-        self.column, self.sign = model.unknowns.turned(turn.edges)
+        self.column, self.sign = model.topology.turned(turn.edges)
         self.load = self.reduce(load)
         self._iron: tuple[np.ndarray, IronState] | None = None  # of the last field looked at
+        self._touched: IronState | None = None  # where the tangent of the last step touches the laws
+        self._size = np.inf  # of the residual before it; without end when it touched them at the field itself
 
     def expand(self, u: np.ndarray) -> np.ndarray:
         """All degrees of freedom (n,) from the free unknowns."""
@@ -471,7 +482,22 @@ class _Problem:
 
     def direction(self, u: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Newton step (m,)."""
-        return self.factorise(u).solve(residual)
+        iron, load = self._tangent_at(u, residual)
+        return self.system.factorise(iron.tangent).solve(load)
+
+    def _tangent_at(self, u: np.ndarray, residual: np.ndarray) -> tuple[IronState, np.ndarray]:
+        """Where the tangent of a step touches the laws, and its load (m,) [A].
+
+        That is the field itself at first, and after a step from another point of the laws that brought little.
+        """
+        field, before, size = self._iron_at(u), self._touched, float(np.linalg.norm(residual))
+        if before is None or size > _LITTLE * self._size:
+            self._touched, self._size = field, np.inf
+            return field, residual
+        self._touched, lacking = self.model.iron.drawn_back(field, before)
+        self._size, load = size, residual.copy()
+        add_scattered(load, lacking, *self.model.topology.iron_unknowns)
+        return self._touched, load
 
     def factorise(self, u: np.ndarray) -> SymmetricSystem:
         """The tangent at a field, factorised."""
@@ -503,11 +529,11 @@ class _RefinedProblem(_Problem):
         """
         size = float(np.linalg.norm(residual) / np.linalg.norm(self.load))
         share = min(_ROUGHEST, max(size, _BELOW * self.model.settings.tolerance / size))
-        iron = self._iron_at(u)
+        iron, load = self._tangent_at(u, residual)
         if self._tangent_below is None:
             self._tangent_below = self._below.factorise(iron.linear_tangent)
         tangent = self.system.tangent(iron.tangent)
-        step, iterations = response(tangent, self._refinement, self._tangent_below, residual, share)
+        step, iterations = response(tangent, self._refinement, self._tangent_below, load, share)
         if iterations > _FEW:
             self._tangent_below = None
         return step
@@ -515,7 +541,7 @@ class _RefinedProblem(_Problem):
     @cached_property
     def _refinement(self) -> Refinement:
         unknowns = self._coarse.unknowns
-        column, sign = unknowns.turned(unknowns.turn(self.angle).edges)
+        column, sign = self._coarse.topology.turned(unknowns.turn(self.angle).edges)
         ends = self.model.topology.facets[:, self.model.unknowns.free_dofs[unknowns.count :] - self._coarse.size]
         return Refinement(column[ends].astype(np.uint32), sign[ends] / 2)
 

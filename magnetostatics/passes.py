@@ -31,6 +31,34 @@ def symmetric_product(starts: np.ndarray, rows: np.ndarray, lower: np.ndarray, u
 
 
 @vectorised
+def edges_of(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First corners (2, E) [m] and the edges from them to the second and the third corners (2, 2, E) [m].
+
+    points: [m], (2, n); corners: indices (3, E)
+    """
+    first, edges = np.empty((2, corners.shape[1])), np.empty((2, 2, corners.shape[1]))
+    for axis in range(2):
+        for e in range(corners.shape[1]):
+            first[axis, e] = points[axis, corners[0, e]]
+            for edge in range(2):
+                edges[edge, axis, e] = points[axis, corners[edge + 1, e]] - first[axis, e]
+    return first, edges
+
+
+@vectorised
+def metric_of(edges: np.ndarray) -> np.ndarray:
+    """M_11, M_12, M_22 of triangles, dimensionless (3, E); edges: ``Triangles.edges`` [m], (2, 2, E)."""
+    metric = np.empty((3, edges.shape[2]))
+    for e in range(edges.shape[2]):
+        u, v, x, y = edges[0, 0, e], edges[0, 1, e], edges[1, 0, e], edges[1, 1, e]
+        size = abs(u * y - v * x)
+        metric[0, e] = (x * x + y * y) / size
+        metric[1, e] = -(u * x + v * y) / size
+        metric[2, e] = (u * u + v * v) / size
+    return metric
+
+
+@vectorised
 def flux(
     local: np.ndarray, slopes: np.ndarray, metric: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -130,6 +158,50 @@ def tangent_tensor(
             tensor[points + q, e] = nu[q, e] * metric[1, e] + twice * h1[q, e] * h2[q, e]
             tensor[2 * points + q, e] = nu[q, e] * metric[2, e] + twice * h2[q, e] * h2[q, e]
     return tensor
+
+
+@vectorised
+def field_strength_on_tangent(
+    metric: np.ndarray,
+    size: np.ndarray,
+    here: tuple[np.ndarray, np.ndarray, np.ndarray],
+    touched: tuple[np.ndarray, np.ndarray, np.ndarray],
+    nu: np.ndarray,
+    slope: np.ndarray,
+) -> np.ndarray:
+    """What a tangent of H(B) says of the field strength along the flux density [A/m], (Q, E).
+
+    H . B / |B| with H = nu B + 2 nu' (B_t . (B - B_t)) B_t, where the tangent touches the law in B_t
+    metric: M_11, M_12, M_22, dimensionless (3, E), of determinant one; size: |D| [m^2], (E,)
+    here, touched: h1, h2 [Wb/m] and b2 [T^2] of B and of B_t, (Q, E) each; nu [m/H], slope [m/(H T^2)]: there, (Q, E)
+    """
+    strength = np.empty_like(nu)
+    for q in range(len(nu)):
+        for e in range(len(size)):
+            h1, h2, b = here[0][q, e], here[1][q, e], np.sqrt(here[2][q, e])
+            g1, g2 = metric[2, e] * h1 - metric[1, e] * h2, metric[0, e] * h2 - metric[1, e] * h1
+            common = (touched[0][q, e] * g1 + touched[1][q, e] * g2) / size[e]
+            bent = 2.0 * slope[q, e] * (common - touched[2][q, e]) * common
+            strength[q, e] = nu[q, e] * b + (bent / b if b > 0.0 else 0.0)
+    return strength
+
+
+@vectorised
+def nearer_law(
+    line: tuple[np.ndarray, np.ndarray, float], b: np.ndarray, nu: np.ndarray, slope: np.ndarray
+) -> np.ndarray:
+    """One step of Newton's method from b towards where H(B) meets the line H = H_0 - n (B - B_0) [T], (Q, E).
+
+    line: B_0 [T] and H_0 [A/m], (Q, E) each, and n [m/H]; b: [T], (Q, E)
+    nu [m/H] and slope, dnu/d(b2) [m/(H T^2)]: there, (Q, E) each
+    """
+    step = np.empty_like(b)
+    for q in range(len(b)):
+        for e in range(b.shape[1]):
+            excess = nu[q, e] * b[q, e] - line[1][q, e] + line[2] * (b[q, e] - line[0][q, e])
+            step[q, e] = excess / (nu[q, e] + 2.0 * slope[q, e] * b[q, e] ** 2 + line[2])
+            step[q, e] = max(b[q, e] - step[q, e], 0.0)
+    return step
 
 
 @compiled

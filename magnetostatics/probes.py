@@ -14,6 +14,7 @@ from geometry.errors import GeometryError
 from magnetostatics.elements import TriangleOrder
 from magnetostatics.model import FieldModel, FieldSolution
 
+_ON_EDGE = 1e-9  # barycentric coordinate; beyond it a point lies in one element alone
 _NEAREST = 12  # elements tried around a point, by distance of their centres
 
 
@@ -58,7 +59,7 @@ def probe_reader(model: FieldModel, known: ProbeReader | None = None) -> ProbeRe
     points = np.hstack([probe.points for probe in probes])
     mesh = section.mesh
     near = _nearest(model, probes) if known is None else known.near
-    elements = _locate(mesh, points, near)
+    elements = _locate(mesh, points, near) if known is None else _still(mesh, points, known)
     if elements is None:
         if known is None:
             raise GeometryError("a probe point lies outside the iron: refine the mesh")
@@ -80,6 +81,18 @@ def _nearest(model: FieldModel, probes: Sequence[Probe]) -> np.ndarray:
         trees[name] = iron, cKDTree(mesh.p[:, mesh.t[:, iron]].mean(axis=1).T)
     found = ((trees[probe.iron], probe.points.T) for probe in probes)
     return np.vstack([iron[tree.query(points, k=_NEAREST)[1]] for (iron, tree), points in found])
+
+
+def _still(mesh: MeshTri, points: np.ndarray, known: ProbeReader) -> np.ndarray | None:
+    """As ``_locate``, for points that mostly lie in the elements where they have been, indices (n,)."""
+    inside = _barycentric(mesh.p[:, mesh.t[:, known.elements]], points).min(axis=0)
+    moved = np.flatnonzero(inside <= _ON_EDGE)
+    found = _locate(mesh, points[:, moved], known.near[moved]) if len(moved) else known.elements[moved]
+    if found is None:
+        return None
+    elements = known.elements.copy()
+    elements[moved] = found
+    return elements
 
 
 def _locate(mesh: MeshTri, points: np.ndarray, near: np.ndarray) -> np.ndarray | None:

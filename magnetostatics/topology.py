@@ -17,6 +17,7 @@ from magnetostatics.unknowns import number_unknowns
 
 IRON = ("stator_iron", "rotor_iron")
 _TURNS = 4  # neighbouring numbers of edges that share a pattern
+_MOST_TURNED = 8  # numbers of edges of which the unknowns are kept; one takes 100 kilobytes
 _MOST_PATTERNS = 20  # that are kept; one takes about two megabytes
 
 
@@ -30,7 +31,10 @@ class Topology:
         self.facets = section.mesh.facets
         self.regions = section.mesh.subdomains
         self.rotor_band = section.rotor_band  # the only elements that change with the angle
+        self.band_dofs = self.dofs[:, self.rotor_band]
+        self.band_nodes, self.band_corners = np.unique(section.mesh.t[:, self.rotor_band], return_inverse=True)
         self._patterns: dict[int, JoinedPattern] = {}
+        self._turned: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     @cached_property
     def linear(self) -> np.ndarray:
@@ -61,6 +65,14 @@ class Topology:
         u = self.unknowns
         return Entries.of(self.order.pairs, self.dofs[:, which], u.column, u.sign, u.count)
 
+    def turned(self, edges: int) -> tuple[np.ndarray, np.ndarray]:
+        """(column, sign), index and dimensionless, (n,) each, as ``Unknowns.turned``; the last few are kept."""
+        if edges not in self._turned:
+            if len(self._turned) == _MOST_TURNED:
+                self._turned.pop(next(iter(self._turned)))
+            self._turned[edges] = self.unknowns.turned(edges)
+        return self._turned[edges]
+
     def pattern(self, edges: int) -> JoinedPattern:
         """Pattern with the rotor turned by whole edges."""
         group = edges // _TURNS
@@ -73,5 +85,4 @@ class Topology:
         return self._patterns[group]
 
     def _band_entries(self, edges: int) -> Entries:
-        column, sign = self.unknowns.turned(edges)
-        return Entries.of(self.order.pairs, self.dofs[:, self.rotor_band], column, sign, self.unknowns.count)
+        return Entries.of(self.order.pairs, self.band_dofs, *self.unknowns.turned(edges), self.unknowns.count)

@@ -43,7 +43,7 @@ def gap_force_density(solution: FieldSolution) -> tuple[Elements, np.ndarray]:
     """
     model = solution.model
     gap = model.section.mesh.subdomains["gap"]
-    ring = model.elements.take(np.setdiff1d(gap, model.rotor_band, assume_unique=True))
+    ring = model.elements.take(gap[~model.section.rotor_elements[gap]])
     dx, dy = ring.gradient(solution.a)
     b = np.stack([dy, -dx])
     upwards = model.section.stator_gap.gradient(ring.points)

@@ -17,6 +17,8 @@ import numpy as np
 
 from compiling import vectorised
 from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.fronts import Fronts
+from magnetostatics.multifrontal import solve
 from magnetostatics.passes import symmetric_product
 
 _MOST = 50  # iterations; what is reached is a direction all the same
@@ -55,26 +57,52 @@ def response(
     coarse: K of about the same field with linear elements, factorised; load: [A], (n,); share: dimensionless
     Raises ArithmeticError when the matrix is not positive definite.
     """
-    nodes, wanted = len(load) - refinement.ends.shape[1], share * float(np.linalg.norm(load))
-    x, p, q = np.zeros_like(load), np.zeros_like(load), np.zeros_like(load)
-    r, before, iterations = load.copy(), np.inf, 0
-    while np.linalg.norm(r) > wanted and iterations < _MOST:
-        first, left = _forwards(matrix.starts, matrix.rows, matrix.values, r)
-        corner = coarse.solve(_restricted(refinement.ends, refinement.shares, left, nodes))
-        middle = _prolonged(refinement.ends, refinement.shares, corner)
-        left -= symmetric_product(matrix.starts, matrix.rows, matrix.values, middle)
-        last, product = _backwards(matrix.starts, matrix.rows, matrix.values, left)
-        z = first + middle + last
-        size = float(r @ z)
-        p, q = z + size / before * p, r + product + size / before * q
-        curvature = float(p @ q)
-        if not (size > 0 and curvature > 0):
-            raise ArithmeticError("the matrix is not positive definite")
-        before = size
-        x += size / curvature * p
-        r -= size / curvature * q
-        iterations += 1
+    wanted = share * float(np.linalg.norm(load))
+    lower = matrix.starts, matrix.rows, matrix.values
+    x, iterations, is_positive = _found(lower, refinement.ends, refinement.shares, coarse.factors, load, wanted)
+    if not is_positive:
+        raise ArithmeticError("the matrix is not positive definite")
     return x, iterations
+
+
+@vectorised
+def _found(
+    lower: tuple[np.ndarray, np.ndarray, np.ndarray],
+    ends: np.ndarray,
+    shares: np.ndarray,
+    coarse: tuple[Fronts, np.ndarray, np.ndarray],
+    load: np.ndarray,
+    wanted: float,
+) -> tuple[np.ndarray, int, bool]:
+    """x [Wb/m], (n,), the number of iterations, and whether the matrix has turned out to be positive.
+
+    lower: the parts of ``Lower``; ends, shares: of ``Refinement``; coarse: ``SymmetricSystem.factors``
+    load: [A], (n,); wanted: norm of what may be left of it [A]
+    """
+    x, p, q = np.zeros_like(load), np.zeros_like(load), np.zeros_like(load)
+    r, before, iterations, nodes = load.copy(), np.inf, 0, len(load) - ends.shape[1]
+    while np.sqrt(np.sum(r * r)) > wanted and iterations < _MOST:
+        z, left = _forwards(lower[0], lower[1], lower[2], r)
+        corner = solve(coarse[0], coarse[1], coarse[2], _restricted(ends, shares, left, nodes).reshape(1, nodes))
+        middle = _prolonged(ends, shares, corner[0])
+        left -= symmetric_product(lower[0], lower[1], lower[2], middle)
+        last, product = _backwards(lower[0], lower[1], lower[2], left)
+        size, curvature = 0.0, 0.0
+        for i in range(len(z)):
+            z[i] += middle[i] + last[i]
+            size += r[i] * z[i]
+        for i in range(len(z)):
+            p[i] = z[i] + size / before * p[i]
+            q[i] = r[i] + product[i] + size / before * q[i]
+            curvature += p[i] * q[i]
+        if not (size > 0.0 and curvature > 0.0):
+            return x, iterations, False
+        for i in range(len(z)):
+            x[i] += size / curvature * p[i]
+            r[i] -= size / curvature * q[i]
+        before = size
+        iterations += 1
+    return x, iterations, True
 
 
 @vectorised

@@ -20,6 +20,8 @@ import numpy as np
 from geometry.cross_section import CrossSection
 from magnetostatics.elements import LINEAR, TriangleOrder, dof_locations
 
+_SIDES = "start", "end"
+
 
 @dataclass(frozen=True)
 class Turn:
@@ -97,7 +99,9 @@ def number_unknowns(section: CrossSection, order: TriangleOrder) -> Unknowns:
 def _on(section: CrossSection, name: str, locations: np.ndarray) -> np.ndarray:
     """Degrees of freedom on a named boundary: its nodes and, where the edges carry some, its edges."""
     edges, nodes = section.mesh.boundaries[name], section.mesh.p.shape[1]
-    on_nodes = np.unique(section.mesh.facets[:, edges])
+    is_on = np.zeros(nodes, dtype=bool)
+    is_on[section.mesh.facets[:, edges]] = True
+    on_nodes = np.flatnonzero(is_on)
     return on_nodes if locations.shape[1] == nodes else np.concatenate([on_nodes, nodes + edges])
 
 
@@ -113,10 +117,11 @@ def _ray_pairs(section: CrossSection, locations: np.ndarray) -> list[tuple[np.nd
     """(start, end) degrees of freedom of the periodic rays of stator and rotor, both in the order of radius."""
     if section.sectors == 1:
         return []
-    radius = np.hypot(*locations)
-    rays = {
-        f"{piece}_{side}": sorted(_on(section, f"{piece}_{side}", locations), key=radius.__getitem__)
-        for piece in ("stator", "rotor")
-        for side in ("start", "end")
-    }
-    return [(np.array(rays[f"{piece}_start"]), np.array(rays[f"{piece}_end"])) for piece in ("stator", "rotor")]
+    ends = [[_outwards(section, locations, f"{piece}_{side}") for side in _SIDES] for piece in ("stator", "rotor")]
+    return [(start, end) for start, end in ends]
+
+
+def _outwards(section: CrossSection, locations: np.ndarray, name: str) -> np.ndarray:
+    """Degrees of freedom on a ray in the order of radius."""
+    dofs = _on(section, name, locations)
+    return dofs[np.argsort(np.hypot(*locations[:, dofs]), kind="stable")]

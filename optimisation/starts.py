@@ -20,7 +20,7 @@ def weights_at_origin(places: np.ndarray) -> np.ndarray:
     places: dimensionless, (n, k)
     """
     for terms in _polynomials(places):
-        if np.linalg.matrix_rank(terms, tol=np.sqrt(_SAME)) == terms.shape[1]:
+        if len(places) >= terms.shape[1] and np.linalg.svd(terms, compute_uv=False)[-1] > np.sqrt(_SAME):
             weighted = terms / (_SAME + np.square(places).sum(axis=1, keepdims=True))
             weights = weighted @ np.linalg.solve(terms.T @ weighted, np.eye(terms.shape[1])[0])
             if np.abs(weights).sum() < _MOST_WEIGHT:

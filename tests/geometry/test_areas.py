@@ -98,3 +98,11 @@ def test_moments_of_a_circle_and_of_a_square_off_the_axis():
     square = Contour(tuple(Line(a, b) for a, b in zip(corners, corners[1:] + corners[:1])))
     assert square.area == pytest.approx(side**2)
     assert square.moment == pytest.approx(side**2 * (abs(centre) ** 2 + side**2 / 6))
+
+
+def test_half_a_slot_is_that_of_any_side_alike():
+    section = mesh_cross_section(THESIS, star_of_slots(12, 5, 2), FINE)
+    corners = section.mesh.p[:, section.mesh.t[:, section.mesh.subdomains["slot_2_L"]]]
+    (ax, ay), (bx, by), (cx, cy) = corners.transpose(1, 0, 2)
+    area = np.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).sum() / 2
+    assert section.half_slot_area == pytest.approx(area, rel=1e-12)

@@ -27,7 +27,7 @@ def machine(slots=12, **changes):
 def model(slots=12, whole=False, **changes):
     section = mesh_cross_section(machine(slots, **changes), star_of_slots(slots, 5), whole=whole)
     steel = load_steel("35PN270")
-    return FieldModel(section, MachineMaterials(steel, steel, Magnet(1.3, 1.0)), NewtonSettings(tolerance=1e-10))
+    return FieldModel(section, MachineMaterials(steel, steel, Magnet(1.3, 1.0)), NewtonSettings(tolerance=1e-11))
 
 
 def point(amplitude=NOMINAL, gamma=0.0):

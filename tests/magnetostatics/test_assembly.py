@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
+from skfem.assembly import Dofs
 
 from magnetostatics.assembly import Entries
-from magnetostatics.elements import LINEAR, QUADRATIC, lower_order, refine_order
+from magnetostatics.elements import LINEAR, QUADRATIC, element_dofs, lower_order, refine_order
+from magnetostatics.iron import _SERIES
 from magnetostatics.model import OperatingPoint, _Problem
 from magnetostatics.passes import merged
 from tests.magnetostatics.reference_machine import STEEL, model_of, reference_machine
@@ -44,16 +48,82 @@ def test_tangent_is_the_derivative_of_the_forces(order):
     model, _, u, column, sign = state(order)
     local = u[column] * sign
     direction = np.random.default_rng(2).standard_normal(local.shape) * np.abs(local).max()
-    i, j = order.pairs
-    entries = model.iron.at(local).tangent
-    product = np.zeros_like(local)
-    for k, (row, col) in enumerate(zip(i, j)):
-        product[row] += entries[k] * direction[col]
-        if row != col:
-            product[col] += entries[k] * direction[row]
-    step = 1e-6
+    product = local_product(order, model.iron.at(local).tangent, direction)
+    step = 1e-7
     ends = [model.iron.at(local + sign * step * direction).forces for sign in (1, -1)]
     assert_allclose(product, (ends[0] - ends[1]) / (2 * step), rtol=1e-4, atol=1e-5 * np.abs(product).max())
+
+
+def local_product(order, entries, local):
+    """Local symmetric matrices (K, E) times local vectors (F, E)."""
+    product = np.zeros_like(local)
+    for k, (row, col) in enumerate(zip(*order.pairs)):
+        product[row] += entries[k] * local[col]
+        if row != col:
+            product[col] += entries[k] * local[row]
+    return product
+
+
+def drawn_back(model, local, beside):
+    """Where the tangent after one from ``beside`` touches the laws, what is lacking there, and B there over B."""
+    field = model.iron.at(local)
+    state, lacking = model.iron.drawn_back(field, model.iron.at(beside))
+    return state, lacking, np.sqrt(state.b2 / field.b2)
+
+
+def test_what_is_lacking_where_the_tangent_touches():
+    """f(u) - f(p) + K(p) (p - u), each by itself; fields of linear elements are fields where they are drawn back."""
+    model, _, u, column, sign = state(LINEAR)
+    local = u[column] * sign
+    touching, lacking, share = drawn_back(model, 1.3 * local, local)
+    there = share * 1.3 * local
+    assert share.min() < 0.95
+    assert_allclose(touching.forces, model.iron.at(there).forces, rtol=1e-9, atol=1e-9 * np.abs(lacking).max())
+    forces = model.iron.at(1.3 * local).forces - model.iron.at(there).forces
+    wanted = forces + local_product(LINEAR.of_distinct_gradients, touching.tangent, there - 1.3 * local)
+    assert_allclose(lacking, wanted, atol=1e-9 * np.abs(forces).max())
+
+
+@orders
+def test_field_strength_on_a_tangent(order):
+    """nu B + 2 nu' (B_t . (B - B_t)) B_t along B, with gradients in metres and B turned against B_t."""
+    model, _, u, column, sign = state(order)
+    elements = replace(model.elements.take(model.topology.iron), order=model.iron.elements.order)
+    touched = u[column] * sign
+    turned = touched + 0.3 * np.abs(touched).max() * np.random.default_rng(4).standard_normal(touched.shape)
+    (x, y), (x_t, y_t) = (
+        [np.einsum("iqe,ie->qe", part, local) for part in (elements.gradient_x, elements.gradient_y)]
+        for local in (turned, touched)
+    )
+    nu, slope = STEEL.nu_and_derivative(x_t**2 + y_t**2)
+    bent = 2 * slope * (x_t * (x - x_t) + y_t * (y - y_t))
+    wanted = ((nu * x + bent * x_t) * x + (nu * y + bent * y_t) * y) / np.hypot(x, y)
+    found = model.iron.at(turned).strength_on(model.iron.at(touched))
+    assert_allclose(found, wanted, rtol=1e-7, atol=1e-7 * np.abs(wanted).max())
+
+
+@orders
+def test_the_tangent_touches_the_law_between_field_and_tangent(order):
+    """H there lies on the line H = H_t - n (B - b), to two steps of Newton's method."""
+    model, _, u, column, sign = state(order)
+    local = u[column] * sign
+    at, after = model.iron.at(local), model.iron.at(1.05 * local)
+    b, there = np.sqrt(after.b2), np.sqrt(drawn_back(model, 1.05 * local, local)[0].b2)
+    slope = at.nu + 2 * at.slope * at.b2
+    on_tangent = at.nu * np.sqrt(at.b2) + slope * (b - np.sqrt(at.b2))  # B along itself: the law's own slope
+    line = on_tangent - _SERIES * (there - b)
+    assert_allclose(STEEL.field_strength(there), line, rtol=0.01, atol=5.0)
+
+
+@orders
+def test_a_field_is_its_own_tangent(order):
+    """Where the last tangent touched the law at the field itself nothing is drawn back, nothing is lacking."""
+    model, _, u, column, sign = state(order)
+    local = u[column] * sign
+    touching, lacking, share = drawn_back(model, local, local)
+    assert_allclose(share, 1.0, atol=1e-10)
+    assert_allclose(touching.tangent, model.iron.at(local).tangent, rtol=1e-9)
+    assert np.abs(lacking).max() < 1e-9 * np.abs(touching.forces).max()
 
 
 @orders
@@ -65,6 +135,15 @@ def test_solution_of_the_factorised_tangent(order):
     step = 1e-5 * np.abs(u).max() / np.abs(answer).max()
     slope = (problem.residual(u - step * answer) - problem.residual(u + step * answer)) / (2 * step)
     assert_allclose(slope, load, atol=2e-3 * np.abs(load).max())
+
+
+@orders
+def test_numbering_is_that_of_scikit_fem(order):
+    mesh = model_of(reference_machine()).section.mesh
+    dofs, size = element_dofs(mesh, order)
+    wanted = Dofs(mesh, order.element)
+    assert size == wanted.N
+    assert np.array_equal(dofs, wanted.element_dofs)
 
 
 def test_entries_are_those_of_scipy():
@@ -117,3 +196,9 @@ def test_a_pattern_serves_its_neighbours():
     assert all(topology.pattern(turn) is pattern for turn in (9, 10, 11)) and topology.pattern(12) is not pattern
     keys = pattern.columns * pattern.size + pattern.rows
     assert all((keys[pattern.band_positions[turn]] == pattern.bands[turn].keys).all() for turn in (8, 9, 10, 11))
+
+
+def test_loads_of_no_magnets_on_linear_functions():
+    model = model_of(reference_machine())
+    lower = lower_order(model.topology.facets, np.empty((0, model.size)))
+    assert lower.shape == (0, model.coarse_model.size)

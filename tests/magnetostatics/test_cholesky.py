@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
+from threadpoolctl import ThreadpoolController
 
-from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.cholesky import _BLAS, SymmetricSystem, one_thread
 
 
 def lattice(width: int, height: int) -> sp.csc_matrix:
@@ -87,3 +88,18 @@ def test_entries_of_the_columns_of_a_sparse_factor(name):
         below = np.flatnonzero(pattern[column + 1 :, column]) + column + 1
         pattern[np.ix_(below, below)] = True
     assert system.column_counts.tolist() == np.tril(pattern).sum(axis=0).tolist()
+
+
+def test_one_thread_inside_and_as_many_as_before_outside():
+    """Of every library that is known, also where something fails inside."""
+
+    def threads() -> list[int]:
+        return [library.get_num_threads() for library in _BLAS]
+
+    with ThreadpoolController().limit(limits=2, user_api="blas"):
+        before = threads()
+        assert max(before) == 2
+        with pytest.raises(ZeroDivisionError), one_thread():
+            assert threads() == [1] * len(before)
+            raise ZeroDivisionError
+        assert threads() == before

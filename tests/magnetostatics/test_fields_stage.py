@@ -8,6 +8,7 @@ from figures.whole_field import null_field, whole_field
 from geometry.family import Combination, MatchedMachine, StatedMachine
 from magnetostatics.fields_stage import fields_stage, null_points
 from magnetostatics.model import OperatingPoint
+from magnetostatics.newton import NewtonSettings
 from magnetostatics.probes import probe_reader
 from magnetostatics.rotation import STATES, solve_rotation
 from magnetostatics.torque import arkkio_torque
@@ -40,16 +41,18 @@ def test_mean_ripple_and_cogging_of_the_reference(found):
 def test_half_a_period_stands_for_the_whole(machine, monkeypatch):
     """The other half as solved: every torque, and every probe in the same tooth beside the largest of them."""
     monkeypatch.setattr("magnetostatics.rotation.COGGING_STEPS", 1)
-    seen, model = solve_rotation("turn", CASE, machine, InThisProcess()), CASE.model(machine)
+    model = CASE.model(machine, NewtonSettings(1e-9))
+    monkeypatch.setattr("magnetostatics.arc.Arc.model", lambda arc: model)
+    seen = solve_rotation("turn", CASE, machine, InThisProcess())
     period = seen.one_period.sel(state="nominal")
     count = seen.data.sizes["angle"]
     assert period.sizes["angle"] == 2 * count + 1
     assert float(period.angle[-1] - period.angle[0]) == pytest.approx(2 * np.pi / 5)
     for k in (count, count + 2, 2 * count):
         solution = model.solve(OperatingPoint(float(period.angle[k]), CASE.nominal_density, 0.0, CASE.packing))
-        assert float(period.torque[k]) == pytest.approx(arkkio_torque(solution), rel=1e-4)
+        assert float(period.torque[k]) == pytest.approx(arkkio_torque(solution), rel=1e-6)
         probes = np.array(list(probe_reader(model).read(solution).values()))
-        assert_allclose(period.flux_density[k], probes, rtol=0, atol=1e-4 * probes.max())
+        assert_allclose(period.flux_density[k], probes, rtol=0, atol=1e-6 * probes.max())
 
 
 def test_every_angle_is_as_solved_alone(found):

@@ -56,7 +56,7 @@ def worst_difference(solution, variation) -> float:
     model, point = variation.at(solution.model, solution.point, 0.0)
     here = model.solve(point, start=solution)
     found = sensitivities(here, {"it": variation}, read)["it"]
-    change, ends = 1000 * variation.step, []
+    change, ends = 300 * variation.step, []
     for signed in (change, -change):
         other, there = variation.at(model, point, signed)
         ends.append(read(other.solve(there, start=here)))
@@ -75,7 +75,7 @@ MATERIAL = {
     "recoil permeability of one magnet": OneMagnet(5, "recoil_permeability"),
     "turns of a coil": CoilTurns(4),
     "severity of a cut edge": Materials(lambda _, d: damaged(0.5e-3, 0.3 + d), 1e-6),
-    "depth of a cut edge": Materials(lambda _, d: damaged(0.5e-3 + d, 0.3), 1e-9),
+    "depth of a cut edge": Materials(lambda _, d: damaged(0.5e-3 + d, 0.3), 3e-9),
 }
 
 

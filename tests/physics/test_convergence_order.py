@@ -96,8 +96,7 @@ def solve_square(mesh: MeshTri, law: Reluctivity, order: TriangleOrder):
     """(elements with fine quadrature, degrees of freedom a) of the manufactured problem; elements, law and Newton's
     method are the solver's own."""
     dofs, size = element_dofs(mesh, order)
-    corners = mesh.p[:, mesh.t]
-    elements, fine = Elements.of(order, corners, dofs), Elements.of(fine_quadrature(order), corners, dofs)
+    elements, fine = (Elements.of(one, mesh.p, mesh.t, dofs) for one in (order, fine_quadrature(order)))
     fixed = mesh.boundary_facets()
     is_free = np.ones(size, dtype=bool)
     is_free[np.unique(mesh.facets[:, fixed])] = False
@@ -186,7 +185,7 @@ def _potential_error(solution, field) -> float:
     radius = np.hypot(*mesh.p[:, mesh.t].mean(axis=1))
     machine = model.section.machine
     which = np.flatnonzero((radius > machine.mid_gap_radius) & (radius < machine.slot_bottom_radius))
-    elements = Elements.of(fine_quadrature(model.order), mesh.p[:, mesh.t[:, which]], model.elements.dofs[:, which])
+    elements = Elements.of(fine_quadrature(model.order), mesh.p, mesh.t[:, which], model.elements.dofs[:, which])
     found = np.einsum("iq,ie->qe", elements.order.values, solution.a[elements.dofs])
     x, y = elements.points
     amplitude = np.array([field.potential(r) for r in np.hypot(x, y).ravel()]).reshape(x.shape)
