@@ -60,8 +60,9 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
 
 
 def _until_exact(search: Search, progress: Progress) -> None:
-    """Sets of effects; once more where exact models let another set lead, whose neighbours nobody has looked at, and
-    where an unknown function had ended the search, but not beside a model that is exact."""
+    """Sets of effects; once more where exact models let another set lead, whose neighbours nobody has looked at, or
+    bring a promise within reach, and where an unknown function had ended the search, but not beside a model that is
+    exact."""
     heap: list[Promise] = []
     settled: set[Set] = set()
     expand(search, search.fitted[frozenset()], heap)
@@ -69,8 +70,21 @@ def _until_exact(search: Search, progress: Progress) -> None:
         _effects_alone(search, heap, settled, progress)
         ended = search.is_beaten
         _exactly(search, progress)
-        if search.is_beaten or (not ended and search.ranked[0] in settled):
+        is_settled = search.ranked[0] in settled and not _reaches(search, heap)
+        if search.is_beaten or (is_settled and not ended):
             break
+
+
+def _reaches(search: Search, heap: list[Promise]) -> bool:
+    """Whether a promise is within reach of the best, now that exact models are known; all are given their new order."""
+    if len(search.exact) == 1 or len(search.fitted) > FITS:  # nothing but the null is exact
+        return False
+    heap[:] = [p for p in heap if p.every in search.guessed and p.label not in search.failed]
+    for promise in heap:
+        promise.order = -promised_of(search, promise.every)
+    heapify(heap)
+    best = max(search.log_posterior(search.ranked[0]), search.best_beside)
+    return any(-promise.order >= best - REACH for promise in heap[:1])
 
 
 def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progress: Progress) -> None:
@@ -135,13 +149,18 @@ def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise |
     the larger set, nor of a hundred others that hold it."""
     least = search.log_posterior(search.ranked[0]) - REACH
     open_ones = [p for p in heap if p.every < promise.every and p.every in search.guessed]
-    leading = [p for p in open_ones if search.guessed[p.every] + search.beliefs.log_prior(p.every) >= least]
+    leading = [p for p in open_ones if _guess(search, p.every) >= least]
     if not leading:
         return None
     first = min(leading, key=lambda p: (len(p.every), p.order, p.label))
     heap.remove(first)
     heapify(heap)
     return first
+
+
+def _guess(search: Search, every: Set) -> float:
+    """ln posterior of a set that was not fitted [nats]."""
+    return search.guessed[every] + search.exactness(every) + search.beliefs.log_prior(every)
 
 
 def _has_paled(search: Search, promise: Promise) -> bool:

@@ -214,8 +214,9 @@ def start_from(
 
 
 def promised_of(search: Search, every: Set) -> float:
-    """ln posterior that a set promises: its guess, and a share of what it would gain over all that was fitted of it."""
-    guess = search.guessed[every]
+    """ln posterior that a set promises: its guess, what an exact base model would give it, and a share of what it would
+    gain over all that was fitted of it."""
+    guess = search.guessed[every] + search.exactness(every)
     before = max(search.log_evidence(names) for names in search.fitted if names <= every)
     return guess + SLACK * max(guess - before, 0.0) + search.beliefs.log_prior(every)
 

@@ -75,11 +75,18 @@ def _group_of(p: Posterior, name: str, sure: float, taken: frozenset[str]) -> fr
     """The effect and what may stand for it, most probable first, until one of them is there for sure."""
     group = frozenset((name,))
     while p.any_of(group) < sure:
-        others = [n for n in p.names if n not in group and n not in taken]
+        others = [n for n in p.names if n not in group and n not in taken and _stands_for(p, n, name)]
         if len(group) == MOST or not others:
             return None
         group |= {max(others, key=lambda n: p.any_of(group | {n}))}
     return group
+
+
+def _stands_for(p: Posterior, other: str, name: str) -> bool:
+    """Whether an effect takes the place of this one of the leading set rather than of another of it: of all, it is
+    found beside this one least."""
+    beside = lambda leading: p.all_of((frozenset((other,)), frozenset((leading,)))) / p.of(leading)  # noqa: E731
+    return min(sorted(p.leading), key=beside) == name
 
 
 def _of_groups(p: Posterior, groups: tuple[frozenset[str], ...]) -> Verdict:

@@ -592,6 +592,21 @@ def test_a_set_is_made_exact_where_it_might_gain_as_much_as_another_with_one_of_
     assert search_module._next_exact(search) == (mine if is_next else None)
 
 
+@pytest.mark.parametrize(("behind", "reaches"), [(10.0, True), (14.0, False)])
+def test_a_promise_is_worth_what_an_exact_model_would_give_it(tmp_path, behind, reaches):
+    """The leader gained ten nats by an exact model, which a set with the same effect and one more gains as well."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    first, more = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave2", "wave3"))
+    search = searching(bench, {frozenset(): null_of(bench), first.names: first})
+    search.of_expansion = frozenset(("wave2",))
+    search.guessed = {more: first.log_evidence - behind + np.log(19)}  # of one effect more
+    promise = Promise(np.inf, "wave2 with wave3", more, (), bench.null.x, np.zeros(1), 0.0)
+    assert not search_module._reaches(search, [promise]), "nothing is exact yet"
+    search.exact[first.names] = 10.0
+    assert search_module._reaches(search, [promise]) == reaches
+    assert promise.order == pytest.approx(-search_module._guess(search, more))
+
+
 def test_probabilities_of_a_search_add_up_to_one(bench):
     found = searched(bench, LIBRARY).posterior
     assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)

@@ -71,6 +71,13 @@ def test_something_unknown_lends_no_probability_to_a_name():
     assert found.names == () and found.kind == "cannot_tell"
 
 
+def test_an_effect_stands_for_the_one_that_it_is_never_found_beside():
+    """i in the place of b; beside g it is often found, and it cannot stand for both."""
+    given = p({"b+g": 0.3, "i+g+e": 0.28, "i+g+f": 0.27, "i": 0.12, "b+h": 0.03})
+    assert given.leading == {"b", "g"}
+    assert printed(given, 0.95) == (frozenset("bi"),)
+
+
 def random_posterior(random):
     names = "abcdef"
     sets = list(dict.fromkeys(frozenset(n for n in names if random.random() < 0.3) for _ in range(12)))
