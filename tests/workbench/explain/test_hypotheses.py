@@ -592,6 +592,18 @@ def test_a_set_is_made_exact_where_it_might_gain_as_much_as_another_with_one_of_
     assert search_module._next_exact(search) == (mine if is_next else None)
 
 
+@pytest.mark.parametrize(("behind", "is_next"), [(12.0, True), (120.0, False)])
+def test_what_leads_without_one_of_its_effects_is_made_exact_though_its_field_is_the_same(tmp_path, behind, is_next):
+    """The leader gained fifty nats by an exact model; what is left out may have made good what the expansion lacks."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    part = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    whole = replace(part, log_evidence=part.log_evidence + 50 + behind)
+    search = searching(bench, {frozenset(): null_of(bench), part.names: part, part.names | {"wave3"}: whole})
+    search.of_expansion = part.names
+    search.exact[part.names | {"wave3"}] = 50.0
+    assert search_module._next_exact(search) == (part.names if is_next else None)
+
+
 @pytest.mark.parametrize(("behind", "reaches"), [(10.0, True), (14.0, False)])
 def test_a_promise_is_worth_what_an_exact_model_would_give_it(tmp_path, behind, reaches):
     """The leader gained ten nats by an exact model, which a set with the same effect and one more gains as well."""
