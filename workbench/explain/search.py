@@ -27,6 +27,7 @@ LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was tho
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion
 DOUBT = 8.0  # nats that an exact model may give an effect of which no fit is exact: up to 7.5 were seen
+ROUNDS = 3  # of sets and exact models at most
 PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give a part of it besides
 
 
@@ -66,7 +67,7 @@ def _until_exact(search: Search, progress: Progress) -> None:
     heap: list[Promise] = []
     settled: set[Set] = set()
     expand(search, search.fitted[frozenset()], heap)
-    while True:
+    for _ in range(ROUNDS):
         _effects_alone(search, heap, settled, progress)
         ended = search.is_beaten
         _exactly(search, progress)
