@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from workbench.believed import FALSE_ALARMS
+from workbench.believed import NAMED
 
 
 @dataclass(frozen=True)
@@ -352,7 +352,7 @@ class Diagnosis:
     p_something_remains: float = 0.0
     p_sets: Mapping[str, float] = field(default_factory=dict)
     alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    sure: float = 1.0 - FALSE_ALARMS
+    sure: float = NAMED
     abstention_power: Mapping[float, float] = field(default_factory=dict)
     detection_limits: tuple[DetectionLimit, ...] = ()
     next_measurements: tuple[NextMeasurement, ...] = ()

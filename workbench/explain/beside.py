@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from heapq import heappush
 
 import numpy as np
 
-from workbench.explain.explore import Beliefs, Explanation, explored
+from workbench.explain.explore import Explanation, explored
 from workbench.explain.hypotheses import Beside, beside_unknown
 from workbench.explain.tried import (
     REACH,
@@ -41,7 +40,6 @@ def weigh_unknown(search: Search, progress: Progress) -> None:
     for number, promise in enumerate(sorted(heap)[:most]):
         if number < BESIDE or -promise.order >= best() - REACH:
             _fit_beside(search, promise)
-    cap(search.guessed_beside, search.beliefs, best())
 
 
 def weigh(search: Search, names: Set) -> None:
@@ -77,14 +75,3 @@ def _fit_beside(search: Search, promise: Promise) -> None:
     search.guessed_beside.pop(every, None)
     if every in search.fitted or fit_set(search, promise):
         weigh(search, every)
-
-
-def cap(
-    guessed: dict[Set, float], beliefs: Beliefs, best: float, added: Callable[[Set], float] = lambda names: 0.0
-) -> None:
-    """A guess that was not followed up counts for no more than the best that was fitted (ln posterior).
-
-    added: what is added to the guess of a set [nats]
-    """
-    for names in guessed:
-        guessed[names] = min(guessed[names], best - beliefs.log_prior(names) - added(names))

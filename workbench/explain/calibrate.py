@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 
 from effects.parameter import parameters_of
-from workbench.believed import FALSE_ALARMS, LIKELY, MISSING, PLAIN, SPARE
+from workbench.believed import FALSE_ALARMS, LIKELY, MISSING, NAMED, PLAIN, SPARE
 from workbench.explain.explore import Beliefs, Names, Posterior, explored, posterior
 from workbench.explain.verdict import Thresholds
 from workbench.findings import DetectionLimit
@@ -135,7 +135,7 @@ def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]
     empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
     quiet = min(1.0 - MISSING, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
-    sure = max(1.0 - FALSE_ALARMS, -_lowest([-p for p in wrong], FALSE_ALARMS))
+    sure = max(NAMED, -_lowest([-p for p in wrong], FALSE_ALARMS))
     if spare_readings(simulator.bench) < SPARE:
         return Thresholds(sure, quiet, False), dict.fromkeys(POWER_SIZES, 0.0)
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}

@@ -11,7 +11,7 @@ from heapq import heapify, heappop, heappush
 from effects.base import Effect
 from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
-from workbench.explain.beside import cap, weigh, weigh_unknown
+from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
 from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
@@ -39,7 +39,6 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
     _until_exact(search, progress)
-    cap(search.guessed, search.beliefs, search.log_posterior(search.ranked[0]), search.exactness)
     weigh_unknown(search, progress)
     _exactly(search, progress)
     return search
@@ -150,18 +149,13 @@ def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise |
     the larger set, nor of a hundred others that hold it."""
     least = search.log_posterior(search.ranked[0]) - REACH
     open_ones = [p for p in heap if p.every < promise.every and p.every in search.guessed]
-    leading = [p for p in open_ones if _guess(search, p.every) >= least]
+    leading = [p for p in open_ones if search.believed(p.every) >= least]
     if not leading:
         return None
     first = min(leading, key=lambda p: (len(p.every), p.order, p.label))
     heap.remove(first)
     heapify(heap)
     return first
-
-
-def _guess(search: Search, every: Set) -> float:
-    """ln posterior of a set that was not fitted [nats]."""
-    return search.guessed[every] + search.exactness(every) + search.beliefs.log_prior(every)
 
 
 def _has_paled(search: Search, promise: Promise) -> bool:

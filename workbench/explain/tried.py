@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from heapq import heapify
 from math import exp, log
 
@@ -154,6 +154,10 @@ class Search:
         """Up to what all share [nats]."""
         return self.log_evidence(names) + self.beliefs.log_prior(names)
 
+    def believed(self, names: Set) -> float:
+        """ln posterior of a set that was not fitted [nats]."""
+        return self.guessed[names] + self.exactness(names) + self.beliefs.log_prior(names)
+
     @property
     def is_beaten(self) -> bool:
         """Whether an unknown function is so much better than all that was fitted that it would be seen plainly."""
@@ -195,9 +199,18 @@ class Search:
     def posterior(self) -> Posterior:
         """Probabilities of everything that was fitted or guessed."""
         guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
-        alone = guessed | {names: self.log_evidence(names) for names in self.fitted}
+        alone = {names: self.log_evidence(names) for names in self.fitted}
         beside = {names: self.log_evidence_beside(names) for names in self.beside}
-        return posterior(alone, {**self.guessed_beside, **beside}, self.beliefs)
+        capped = partial(_no_more_than_the_best, beliefs=self.beliefs)
+        return posterior(capped(guessed, alone), capped(self.guessed_beside, beside), self.beliefs)
+
+
+def _no_more_than_the_best(
+    guessed: Mapping[Set, float], fitted: Mapping[Set, float], beliefs: Beliefs
+) -> dict[Set, float]:
+    """ln evidence of all sets; one that was only guessed counts for no more than the best that was fitted."""
+    best = max((evidence + beliefs.log_prior(names) for names, evidence in fitted.items()), default=-np.inf)
+    return {n: min(guess, best - beliefs.log_prior(n)) for n, guess in guessed.items()} | fitted
 
 
 def label_of(names: Set) -> str:
@@ -216,9 +229,9 @@ def start_from(
 def promised_of(search: Search, every: Set) -> float:
     """ln posterior that a set promises: its guess, what an exact base model would give it, and a share of what it would
     gain over all that was fitted of it."""
-    guess = search.guessed[every] + search.exactness(every)
     before = max(search.log_evidence(names) for names in search.fitted if names <= every)
-    return guess + SLACK * max(guess - before, 0.0) + search.beliefs.log_prior(every)
+    gain = search.believed(every) - search.beliefs.log_prior(every) - before
+    return search.believed(every) + SLACK * max(gain, 0.0)
 
 
 def fit_set(search: Search, promise: Promise) -> bool:

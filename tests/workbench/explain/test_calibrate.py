@@ -5,7 +5,7 @@ import pytest
 from numpy.random import default_rng
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
-from workbench.believed import FALSE_ALARMS, LIKELY, UNKNOWN_RATE
+from workbench.believed import FALSE_ALARMS, LIKELY, NAMED, UNKNOWN_RATE
 from workbench.data.campaign import read_campaign
 from workbench.explain.calibrate import Simulated, Simulator, detection_limits, thresholds_of
 from workbench.explain.explore import beliefs_of
@@ -103,7 +103,7 @@ def test_a_printed_sentence_is_true_as_often_as_its_probability(simulator, poste
 
 def test_thresholds_keep_false_alarms_and_false_names_rare(simulator):
     thresholds, power = thresholds_of(simulator)
-    assert thresholds.sure >= 1 - FALSE_ALARMS and 0 < thresholds.quiet <= LIKELY and thresholds.can_tell
+    assert thresholds.sure >= NAMED and 0 < thresholds.quiet <= LIKELY and thresholds.can_tell
     assert power[10.0] >= power[3.0] > 0.0
     empty = simulator.posteriors(simulator.empty(1000), 1)
     alarms = np.mean([p.nothing < thresholds.quiet for p in empty])

@@ -618,6 +618,18 @@ def test_a_promise_is_worth_what_an_exact_model_would_give_it(tmp_path, behind, 
     assert search_module._reaches(search, [promise]) == reaches
 
 
+def test_what_was_only_guessed_does_not_lead(tmp_path):
+    """Whatever an exact model that became known last would give it: an eccentric machine was said to have three effects
+    more that nobody had fitted."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    first, more = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8])), frozenset(("wave2", "wave3"))
+    search = searching(bench, {frozenset(): null_of(bench), first.names: first})
+    search.of_expansion = frozenset(("wave2",))
+    search.guessed = {more: first.log_evidence + 40.0}
+    search.exact[first.names] = 10.0
+    assert search.posterior.of("wave3") == pytest.approx(0.5, abs=0.02)
+
+
 def test_probabilities_of_a_search_add_up_to_one(bench):
     found = searched(bench, LIBRARY).posterior
     assert sum(found.alone.values()) + sum(found.beside.values()) == pytest.approx(1.0)

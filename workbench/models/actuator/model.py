@@ -49,7 +49,6 @@ CREEP = 0.05  # m/s or rad/s, at which the friction of a held output is read: be
 SLOW = 0.1  # 2 pi f L over R + shunt up to which a force loop is answered; it errs by half its square
 
 
-
 class ActuatorModel(BaseModel):
     """The base model of the actuator bench; see the module for the kinds it answers."""
 
