@@ -30,7 +30,7 @@ from workbench.models.machine.coordinates import (
     all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import LoadedState, MachineField, complete, idle, read, solve_in_turn
+from workbench.models.machine.field import LoadedState, MachineField, complete, read, solve_idle
 
 BATCH = 12  # coordinates whose changed field models are kept in memory at a time
 NO_LOAD_FAMILIES = ((BOTH, MAGNET, SLOT), (STATOR,), (ROTOR,))
@@ -151,8 +151,7 @@ def no_load_slopes(fields: MachineField, family: tuple[str, ...]) -> dict[str, n
     nominal = fields.nominal
     own = [c for c in smooth_coordinates(nominal) if c.breaks in family]
     steps = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
-    points = [idle(2 * np.pi * n / fields.edges) for n in range(fields.edges // steps)]
-    solutions, window = solve_in_turn(fields.model(nominal, whole=True), points), {}
+    solutions, window = solve_idle(fields.model(nominal, whole=True), fields.edges // steps, fields.edges), {}
     for batch in (own[k : k + BATCH] for k in range(0, len(own), BATCH)):
         window |= _slopes(solutions, {c.name: CoordinateVariation(fields, c, nominal, True) for c in batch})
     found = {}
