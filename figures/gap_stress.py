@@ -52,7 +52,8 @@ def _waves(axes: Axes, found: Rotation) -> None:
     shown = moving(found.waves("overload"))[:_WAVES]
     height = 0.8 / len(STATES)
     for number, state in enumerate(STATES):
-        sizes = [amplitude_of(found.waves(state), wave) / _MPA for wave in shown]
+        waves = found.waves(state)
+        sizes = [amplitude_of(waves, wave) / _MPA for wave in shown]
         places = np.arange(len(shown)) + (number - 1) * height
         axes.barh(places, sizes, height, color=_COLOURS[state], label=state.replace("_", " "))
     orders = [f"{wave.spatial_order}, {wave.temporal_order}".replace("-", "\N{MINUS SIGN}") for wave in shown]

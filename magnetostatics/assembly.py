@@ -11,7 +11,7 @@ from functools import cached_property, reduce
 
 import numpy as np
 
-from magnetostatics.cholesky import SymmetricSystem
+from magnetostatics.cholesky import FactorMemory, SymmetricSystem
 from magnetostatics.passes import add_scattered, addresses, found_in, merged, symmetric_product
 from magnetostatics.two_level import Lower
 
@@ -79,23 +79,30 @@ class JoinedPattern:
     It holds the entries of all these turns, so that they share the analysis, which costs more than a factorisation;
     four neighbouring turns together make the factorisation 3 % slower.
     bands: addresses of the rotor side of the gap, by number of edges
+    memory: of the factor, shared with other patterns that are factorised in turn; None for its own
     """
 
-    def __init__(self, fixed: FixedPattern, bands: dict[int, Entries]) -> None:
+    def __init__(self, fixed: FixedPattern, bands: dict[int, Entries], memory: FactorMemory | None = None) -> None:
         band_keys = reduce(lambda known, band: merged(known, band.keys)[0], bands.values(), np.empty(0, np.int64))
         keys, fixed_position, _ = merged(fixed.keys, band_keys)
-        self.fixed, self.bands, self.size = fixed, bands, fixed.size
-        self.columns, rows = np.divmod(keys, self.size)
+        self.fixed, self.bands, self.size, self._memory = fixed, bands, fixed.size, memory
+        columns, rows = np.divmod(keys, self.size)
         self.rows = rows.astype(np.uint32)  # unsigned: compiled code need not ask whether they count from the end
-        self.column_starts = np.searchsorted(self.columns, np.arange(self.size + 1)).astype(np.uint32)
-        self.linear_position = fixed_position[fixed.linear]
+        self.column_starts = np.searchsorted(columns, np.arange(self.size + 1)).astype(np.uint32)
+        self.linear_position = fixed_position.astype(np.uint32)[fixed.linear]
         self.iron_places = fixed_position.astype(np.int32)[fixed.iron][fixed.iron_entries.places]
         self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Index of the column of every entry, (k,)."""
+        counts: np.ndarray = np.diff(self.column_starts.astype(np.int64))
+        return np.repeat(np.arange(self.size), counts)
 
     @cached_property
     def system(self) -> SymmetricSystem:
         """The matrix to factorise; every design and current with this pattern shares the analysis."""
-        return SymmetricSystem(self.rows, self.columns, self.size)
+        return SymmetricSystem(self.rows, self.columns, self.size, self._memory)
 
 
 class JoinedSystem:
@@ -116,7 +123,7 @@ class JoinedSystem:
         return symmetric_product(self.pattern.column_starts, self.pattern.rows, self._linear, u)
 
     def factorise(self, iron_tangent: np.ndarray) -> SymmetricSystem:
-        """Factorise linear part plus iron. Good until the next call for the same pattern.
+        """Factorise linear part plus iron. Good until the next call for a pattern with the same memory.
 
         iron_tangent: local iron entries [m/H], (K, E)
         """

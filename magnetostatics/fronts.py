@@ -89,8 +89,8 @@ def _indexed(
         "child": families[0],
         "sibling": families[1],
         "entry_starts": entries[0][starts],
-        "entry_sources": entries[1],
-        "entry_places": _entry_places(starts, row_starts, rows, entries, pairs[1]),
+        "entry_sources": entries[1].astype(np.uint32),
+        "entry_places": _entry_places(starts, row_starts, rows, entries, pairs[1]).astype(np.uint32),
     }
 
 

@@ -134,6 +134,56 @@ def blended(solutions: Sequence[FieldSolution], weights: np.ndarray) -> FieldSol
     return replace(solutions[0], a=a, coarse=blended(below, weights) if below else None)
 
 
+class _Drawn:
+    """What a section and the order of its elements determine whatever it is made of."""
+
+    def __init__(self, section: CrossSection, topology: Topology) -> None:
+        self.section, self.topology = section, topology
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Of the whole mesh."""
+        mesh = self.section.mesh
+        return Elements.of(self.topology.order, mesh.p, mesh.t, self.topology.dofs)
+
+    @cached_property
+    def phase_loads(self) -> np.ndarray:
+        """See ``FieldModel.phase_loads``, (3, n)."""
+        sides = self._coils_of_sides
+        factors = np.array([coil.sign * coil.turns * way for coil, way in sides])
+        return self._spread([coil.phase for coil, _ in sides], factors, 3)
+
+    @cached_property
+    def coil_loads(self) -> np.ndarray:
+        """See ``FieldModel.coil_loads``, (coils, n)."""
+        sides, coils = self._coils_of_sides, self.section.layout.coils
+        rows = {coil.index: row for row, coil in enumerate(coils)}
+        return self._spread([rows[coil.index] for coil, _ in sides], np.array([way for _, way in sides]), len(coils))
+
+    @property
+    def _coils_of_sides(self) -> list[tuple[Coil, int]]:
+        """(coil, direction) of every coil side in the sector."""
+        return [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
+
+    def _spread(self, rows: list[int], factors: np.ndarray, count: int) -> np.ndarray:
+        """Loads (count, n) of a factor [A] spread evenly over each coil side, summed into the row of each."""
+        regions = [self.topology.regions[f"slot_{slot}_{side}"] for slot, side in self.section.coil_sides]
+        side = np.repeat(np.arange(len(regions)), [len(region) for region in regions])
+        elements = self.elements.take(np.concatenate(regions))
+        area = np.bincount(side, weights=elements.weights.sum(0))
+        local = elements.integrals() * ((factors / area)[side] / self.section.half_slots_per_coil_side)
+        return _scattered(elements.dofs, local, np.asarray(rows)[side], count, self.topology.size)
+
+
+def _scattered(dofs: np.ndarray, local: np.ndarray, rows: np.ndarray, count: int, size: int) -> np.ndarray:
+    """Local vectors (F, E) added up to ``count`` vectors (count, size), all [any unit].
+
+    dofs: indices (F, E); rows: index of the vector that every element counts in (E,)
+    """
+    place = rows * size + dofs
+    return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * size).reshape(count, -1)
+
+
 class FieldModel:
     """Assembles and solves the field of one meshed cross-section with given materials.
 
@@ -160,7 +210,12 @@ class FieldModel:
     @cached_property
     def elements(self) -> Elements:
         """Of the whole mesh."""
-        return Elements.of(self.order, self.section.mesh.p, self.section.mesh.t, self.topology.dofs)
+        return self._drawn.elements
+
+    @cached_property
+    def _drawn(self) -> _Drawn:
+        """What depends on the section alone; models with other materials share it."""
+        return _Drawn(self.section, self.topology)
 
     @cached_property
     def iron(self) -> Iron:
@@ -194,6 +249,8 @@ class FieldModel:
         """The same problem with moved nodes (``geometry.morph``) or other materials, sharing the topology."""
         other = FieldModel(section or self.section, materials or self.materials, self.settings, topology=self.topology)
         other._coarse_topology = self._coarse_topology
+        if other.section is self.section:
+            other._drawn = self._drawn
         return other
 
     @property
@@ -210,27 +267,25 @@ class FieldModel:
     @cached_property
     def magnet_loads(self) -> np.ndarray:
         """integral nu (B_rx dv/dy - B_ry dv/dx) of every magnet in the sector (magnets, n) [A]."""
+        return self._magnet_loads(together=False)
+
+    def _magnet_loads(self, together: bool) -> np.ndarray:
+        """Of every magnet (magnets, n), or the sum of all (1, n) [A]."""
         numbers = range(self.section.magnets)
         if not numbers:
-            return np.empty((0, self.size))
+            return np.zeros((int(together), self.size))
         regions = [self.topology.regions[f"magnet_{m}"] for m in numbers]
         sizes, elements = [len(region) for region in regions], self.elements.take(np.concatenate(regions))
         points = np.split(elements.points, np.cumsum(sizes)[:-1], axis=2)
         x, y = np.concatenate([self._strength(m, points[m]) for m in numbers], axis=2)
-        return self._scattered(elements.dofs, elements.forces(-y, x), np.repeat(numbers, sizes), len(numbers))
+        rows = np.repeat(np.zeros(len(numbers), int) if together else numbers, sizes)
+        count = 1 if together else len(numbers)
+        return _scattered(elements.dofs, elements.forces(-y, x), rows, count, self.size)
 
     def _strength(self, number: int, points: np.ndarray) -> np.ndarray:
         """nu B_r of a magnet at some points [m], (2, ...), x and y [A/m] in one (2, ...)."""
         magnet = self.materials.magnet_at(number)
         return magnet.remanence / (MU_0 * magnet.recoil_permeability) * np.stack(self._direction(number, points))
-
-    def _scattered(self, dofs: np.ndarray, local: np.ndarray, rows: np.ndarray, count: int) -> np.ndarray:
-        """Local vectors (F, E) added up to ``count`` vectors (count, n), all [any unit].
-
-        dofs: indices (F, E); rows: index of the vector that every element counts in (E,)
-        """
-        place = rows * self.size + dofs
-        return np.bincount(place.ravel(), weights=local.ravel(), minlength=count * self.size).reshape(count, -1)
 
     def magnet_elements(self, number: int) -> Elements:
         """The elements of a magnet."""
@@ -259,31 +314,13 @@ class FieldModel:
         1 A is spread evenly over each coil side, so that the product with a is its mean. A coil whose turns are not as
         designed counts with its relative turns.
         """
-        sides = self._coils_of_sides
-        factors = np.array([coil.sign * coil.turns * way for coil, way in sides])
-        return self._spread([coil.phase for coil, _ in sides], factors, 3)
+        return self._drawn.phase_loads
 
     @cached_property
     def coil_loads(self) -> np.ndarray:
         """Load per ampere in one turn of every single coil (coils, n), dimensionless, in +z where it goes; what of it
         is in the sector."""
-        sides, coils = self._coils_of_sides, self.section.layout.coils
-        rows = {coil.index: row for row, coil in enumerate(coils)}
-        return self._spread([rows[coil.index] for coil, _ in sides], np.array([way for _, way in sides]), len(coils))
-
-    @property
-    def _coils_of_sides(self) -> list[tuple[Coil, int]]:
-        """(coil, direction) of every coil side in the sector."""
-        return [self.section.layout.coil_at(*side) for side in self.section.coil_sides]
-
-    def _spread(self, rows: list[int], factors: np.ndarray, count: int) -> np.ndarray:
-        """Loads (count, n) of a factor [A] spread evenly over each coil side, summed into the row of each."""
-        regions = [self.topology.regions[f"slot_{slot}_{side}"] for slot, side in self.section.coil_sides]
-        side = np.repeat(np.arange(len(regions)), [len(region) for region in regions])
-        elements = self.elements.take(np.concatenate(regions))
-        area = np.bincount(side, weights=elements.weights.sum(0))
-        local = elements.integrals() * ((factors / area)[side] / self.section.half_slots_per_coil_side)
-        return self._scattered(elements.dofs, local, np.asarray(rows)[side], count)
+        return self._drawn.coil_loads
 
     def load(self, point: OperatingState) -> np.ndarray:
         """Right-hand side (n,) [A] of magnets and currents."""
@@ -291,7 +328,7 @@ class FieldModel:
 
     @cached_property
     def _all_magnets_load(self) -> np.ndarray:
-        return self.magnet_loads.sum(0)
+        return self._magnet_loads(together=True)[0]
 
     # ---- the linear part and the turning rotor -----------------------------------------------------------------
 
@@ -440,6 +477,10 @@ class _CoarseModel(FieldModel):
         return lower_order(self.topology.facets, self._fine.magnet_loads)
 
     @cached_property
+    def _all_magnets_load(self) -> np.ndarray:
+        return lower_order(self.topology.facets, self._fine._all_magnets_load)
+
+    @cached_property
     def phase_loads(self) -> np.ndarray:
         """As of the fine model, on the linear functions (3, n), dimensionless."""
         return lower_order(self.topology.facets, self._fine.phase_loads)
@@ -550,7 +591,7 @@ class _RefinedProblem(_Problem):
 class TangentSystem:
     """Answers how the field changes: small load in, small change of the potential out.
 
-    It is good until the model, or another one that shares its topology, is solved at about the same turn of the rotor.
+    It is good until the model, or another one that shares its topology, is solved or has its tangent made again.
     """
 
     problem: _Problem
@@ -560,6 +601,13 @@ class TangentSystem:
         """Change of the potential (n,) for a change of the load: (n,) on all, or (m,) on the free unknowns [A]."""
         reduced = load if len(load) == self.problem.model.unknowns.count else self.problem.reduce(load)
         return self.problem.expand(self.system.solve(reduced))
+
+    def responses(self, loads: np.ndarray) -> np.ndarray:
+        """Changes of the potential [Wb/m], (k, n), for several changes of the load at once.
+
+        loads: on the free unknowns [A], (k, m)
+        """
+        return np.stack([self.problem.expand(u) for u in self.system.solve(loads.T).T])
 
 
 def _check_magnets(section: CrossSection, materials: MachineMaterials) -> None:

@@ -216,7 +216,7 @@ def addresses(
     """
     count, elements = len(pairs[0]), dofs.shape[1]
     lower, upper = np.empty(count * elements, np.int64), np.empty(count * elements, np.int64)
-    signs, free = np.empty((count, elements)), np.empty(count * elements, np.int64)
+    signs, free = np.empty((count, elements), np.int8), np.empty(count * elements, np.int64)
     found = 0
     for k in range(count):
         for e in range(elements):
@@ -224,7 +224,7 @@ def addresses(
             lower[k * elements + e] = max(column[first], column[second])
             upper[k * elements + e] = min(column[first], column[second])
             signs[k, e] = dof_sign[first] * dof_sign[second]
-            if signs[k, e] != 0.0:
+            if signs[k, e] != 0:
                 free[found] = k * elements + e
                 found += 1
     order = _sorted_by(upper, _sorted_by(lower, free[:found], size), size)

@@ -50,12 +50,13 @@ def ahead(solution: FieldSolution, variations: dict[str, Variation]) -> dict[str
 
     For results that several solutions make together, such as a loss over a period. variations: see ``sensitivities``
     """
+    if not variations:
+        return {}
     here = solution.model.residual(solution.point, solution.a)
-    tangent = solution.model.tangent(solution)
-
-    def one_step(variation: Variation) -> FieldSolution:
-        model, point = variation.at(solution.model, solution.point, variation.step)
-        change = tangent.response(model.residual(point, solution.a) - here)
-        return replace(solution, model=model, point=point, a=solution.a + change)
-
-    return {name: one_step(variation) for name, variation in variations.items()}
+    changed = [v.at(solution.model, solution.point, v.step) for v in variations.values()]
+    loads = np.stack([model.residual(point, solution.a) - here for model, point in changed])
+    changes = solution.model.tangent(solution).responses(loads)
+    return {
+        name: replace(solution, model=model, point=point, a=solution.a + change)
+        for name, (model, point), change in zip(variations, changed, changes)
+    }

@@ -12,6 +12,7 @@ import numpy as np
 
 from geometry.cross_section import CrossSection
 from magnetostatics.assembly import Entries, FixedPattern, JoinedPattern
+from magnetostatics.cholesky import FactorMemory
 from magnetostatics.elements import TriangleOrder, element_dofs
 from magnetostatics.unknowns import number_unknowns
 
@@ -34,6 +35,7 @@ class Topology:
         self.band_dofs = self.dofs[:, self.rotor_band]
         self.band_nodes, self.band_corners = np.unique(section.mesh.t[:, self.rotor_band], return_inverse=True)
         self._patterns: dict[int, JoinedPattern] = {}
+        self._memory = FactorMemory()  # of the factor made last: it alone is several times as large as its pattern
         self._turned: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     @cached_property
@@ -81,7 +83,7 @@ class Topology:
                 self._patterns.pop(next(iter(self._patterns)))
             turns = range(group * _TURNS, (group + 1) * _TURNS)
             bands = {turn: self._band_entries(turn) for turn in turns}
-            self._patterns[group] = JoinedPattern(self.fixed_pattern, bands)
+            self._patterns[group] = JoinedPattern(self.fixed_pattern, bands, self._memory)
         return self._patterns[group]
 
     def _band_entries(self, edges: int) -> Entries:

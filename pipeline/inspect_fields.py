@@ -125,9 +125,9 @@ def show(fields: Fields) -> None:
     if len(fields) > 1:
         place = {"pointa": (0.62, 0.94), "pointb": (0.97, 0.94)}
         chosen = partial(_add_named, plotter, fields)
-        plotter.add_text_slider_widget(chosen, list(fields), value=0, **place)  # type: ignore[arg-type]  # as below
+        plotter.add_text_slider_widget(chosen, list(fields), value=0, **place)
     # pyvista's decorator hides from the type checker that these are methods.
-    plotter.view_xy()  # type: ignore[call-arg]
+    plotter.view_xy()
     plotter.show()
 
 

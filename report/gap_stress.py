@@ -70,13 +70,13 @@ def _ripple_row(found: Rotation, state: str) -> dict[str, object]:
 
 def waves_table(found: Rotation) -> pd.DataFrame:
     """Waves by their size at the overload current, with those of the other states, in drawing units."""
-    states = {state: found.waves(state) for state in STATES}
+    states, least = {state: found.waves(state) for state in STATES}, _SMALL * found.mean_stress
     return pd.DataFrame(
         [
             {"spatial_order": wave.spatial_order, "temporal_order": wave.temporal_order}
             | {f"{state}_MPa": amplitude_of(waves, wave) / _MPA for state, waves in states.items()}
             for wave in states["overload"]
-            if wave.amplitude > _SMALL * found.mean_stress
+            if wave.amplitude > least
         ]
     )
 
@@ -90,7 +90,8 @@ def _cogging(found: GapStress) -> str:
 
 
 def _stress(found: Rotation) -> str:
-    spoken_of = [wave for wave in moving(found.waves("overload")) if wave.amplitude > _SMALL * found.mean_stress]
+    least = _SMALL * found.mean_stress
+    spoken_of = [wave for wave in moving(found.waves("overload")) if wave.amplitude > least]
     bending = [wave for wave in spoken_of if wave.spatial_order]
     lowest = min(bending, key=lambda wave: (abs(wave.spatial_order), -wave.amplitude))
     return (

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from threadpoolctl import ThreadpoolController
 
-from magnetostatics.cholesky import _BLAS, SymmetricSystem, one_thread
+from magnetostatics.cholesky import _BLAS, FactorMemory, SymmetricSystem, one_thread
 
 
 def lattice(width: int, height: int) -> sp.csc_matrix:
@@ -24,11 +24,11 @@ def scattered(size: int, share: float) -> sp.csc_matrix:
     return (matrix + sp.diags(abs(matrix).sum(axis=0).A1 + 1.0)).tocsc()
 
 
-def factorised(matrix: sp.csc_matrix) -> SymmetricSystem:
+def factorised(matrix: sp.csc_matrix, memory: FactorMemory | None = None) -> SymmetricSystem:
     lower = sp.tril(matrix, format="csc")
     lower.sort_indices()
     columns = np.repeat(np.arange(matrix.shape[0]), np.diff(lower.indptr))
-    system = SymmetricSystem(lower.indices.astype(np.int64), columns, matrix.shape[0])
+    system = SymmetricSystem(lower.indices.astype(np.int64), columns, matrix.shape[0], memory)
     system.factorise(lower.data)
     return system
 
@@ -55,6 +55,19 @@ def test_several_loads_and_one_give_the_same():
     system, loads = factorised(lattice(20, 30)), np.random.default_rng(4).standard_normal((600, 5))
     one_by_one = np.stack([system.solve(load) for load in loads.T], axis=1)
     assert_allclose(system.solve(loads), one_by_one, rtol=1e-13)
+
+
+def test_systems_in_one_memory_answer_until_another_one_is_factorised():
+    """The larger one takes a longer room, the smaller one after it a part of that."""
+    memory, sizes = FactorMemory(), ((9, 9), (20, 30), (5, 4))
+    for size in sizes:
+        load = np.arange(1.0, size[0] * size[1] + 1)
+        system = factorised(lattice(*size), memory)
+        assert_allclose(system.solve(load), factorised(lattice(*size)).solve(load), rtol=1e-14)
+    before = factorised(lattice(*sizes[1]), memory)
+    factorised(lattice(*sizes[2]), memory)
+    with pytest.raises(RuntimeError, match="gave way to that of another"):
+        before.solve(np.ones(600))
 
 
 def test_new_values_on_the_same_pattern():

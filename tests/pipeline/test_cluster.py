@@ -32,7 +32,7 @@ FILES = {
 
 @pytest.fixture(scope="module")
 def cluster():
-    pool = DaskCluster(3)
+    pool = DaskCluster(2)
     yield pool
     pool.end()
 

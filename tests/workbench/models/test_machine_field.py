@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.workbench.models.machine_case import COARSE, MIDDLE, drawn, field
+from tests.workbench.models.machine_case import COARSE, MIDDLE, PLAN, drawn, field
 from workbench.models.machine.expansion import no_load_slopes
-from workbench.models.machine.field import LoadedState, idle, read
+from workbench.models.machine.field import LoadedState, MachineField, idle, read
+from workbench.models.machine.pieces import Fields, Machinery
 
 PHASES = np.array([[(coil.phase == i) * coil.sign for coil in field().layout.coils] for i in range(3)])
 
@@ -115,3 +116,26 @@ def test_positive_current_makes_outward_flux_in_its_own_coils():
     loaded = field().loaded(drawn(), [LoadedState(0.3, (20.0, 0.0, 0.0)), LoadedState(0.3, (0.0, 0.0, 0.0))])
     change = (loaded[0] - loaded[1])[1:]
     assert change[0] > 0 > change[1]
+
+
+def test_samples_of_the_drawing_are_solved_once_until_they_are_forgotten():
+    mine = MachineField(drawn(), COARSE)
+    first = mine.no_load(drawn())
+    assert mine.no_load(drawn()) is first
+    mine.forget()
+    again = mine.no_load(drawn())
+    assert again is not first and (again == first).all()
+
+
+def test_only_the_mesh_that_is_solved_on_keeps_its_memory():
+    fields = Fields(Machinery(drawn(), PLAN))
+    fields.loaded.model(drawn(), whole=False)
+    assert fields.only(fields.idle) is fields.idle and fields.loaded._meshes == {}
+
+
+def test_of_machines_with_meshes_of_their_own_the_last_one_is_kept():
+    """Beside the one whose magnets touch, which all others share."""
+    mine = MachineField(drawn(), COARSE)
+    for arc in (1.0, 0.9, 0.8):
+        mine.model(drawn().with_machine(magnet_arc_fraction=arc), whole=False)
+    assert [machine.magnet_arc_fraction for machine, _ in mine._meshes] == [1.0, 0.8]

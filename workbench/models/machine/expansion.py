@@ -30,9 +30,10 @@ from workbench.models.machine.coordinates import (
     all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import LoadedState, MachineField, complete, idle, read, solve_in_turn
+from workbench.models.machine.field import LoadedState, MachineField, complete, read, solve_idle
 
 BATCH = 12  # coordinates whose changed field models are kept in memory at a time
+_IDLE_BATCH = 6  # on the finer mesh without current
 NO_LOAD_FAMILIES = ((BOTH, MAGNET, SLOT), (STATOR,), (ROTOR,))
 LEAST_DIRECTIONS = 5  # of a shift, to know how its square goes with the direction
 
@@ -151,9 +152,8 @@ def no_load_slopes(fields: MachineField, family: tuple[str, ...]) -> dict[str, n
     nominal = fields.nominal
     own = [c for c in smooth_coordinates(nominal) if c.breaks in family]
     steps = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
-    points = [idle(2 * np.pi * n / fields.edges) for n in range(fields.edges // steps)]
-    solutions, window = solve_in_turn(fields.model(nominal, whole=True), points), {}
-    for batch in (own[k : k + BATCH] for k in range(0, len(own), BATCH)):
+    solutions, window = solve_idle(fields.model(nominal, whole=True), fields.edges // steps, fields.edges), {}
+    for batch in (own[k : k + _IDLE_BATCH] for k in range(0, len(own), _IDLE_BATCH)):
         window |= _slopes(solutions, {c.name: CoordinateVariation(fields, c, nominal, True) for c in batch})
     found = {}
     for group in _families(own):

@@ -26,7 +26,7 @@ from geometry.morph import Defect, Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.cut_edge import CutEdge
-from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingState
+from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingState, blended
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.torque import maxwell_torque
 from materials.altered_steel import ScaledSaturation, hardened, stacked
@@ -68,8 +68,9 @@ class MachineField:
         steel: Callable[[str], Reluctivity] = load_steel,
     ):
         self.nominal, self.density, self.steel = nominal, density, steel
-        self._meshes: dict[tuple, tuple[CrossSection, Morpher, FieldModel]] = {}
+        self._meshes: dict[tuple, tuple[CrossSection, Morpher, FieldModel]] = {}  # the nominal ones and the last other
         self._starts: dict[tuple, list[FieldSolution]] = {}  # of the nominal machine at the states asked last
+        self._drawn: np.ndarray | None = None  # samples of the nominal machine without current
 
     @property
     def layout(self) -> WindingLayout:
@@ -100,6 +101,7 @@ class MachineField:
         drawn = base if self._shares_mesh(machine) else replace(base, magnet_arc_fraction=machine.magnet_arc_fraction)
         key = drawn, whole
         if key not in self._meshes:
+            self._meshes = {known: mesh for known, mesh in self._meshes.items() if known[0] in (base, drawn)}
             section = mesh_cross_section(drawn, self.layout, self.density, whole)
             materials = materials_of(self.nominal, self.steel(self.nominal.steel))
             first = FieldModel(section, _all_alike(materials), _TIGHT)
@@ -114,18 +116,27 @@ class MachineField:
         """Give the memory of all meshes and factorisations back."""
         self._meshes.clear()
         self._starts.clear()
+        self._drawn = None
 
     # ---- samples ------------------------------------------------------------------------------------------------
 
     def no_load(self, design: MachineAsBuilt) -> np.ndarray:
-        """Samples without current at equal angles over a revolution from angle zero on (edges, 1 + coils)."""
+        """Samples without current at equal angles over a revolution from angle zero on (edges, 1 + coils); those of
+        the nominal machine, which every node asks for, are kept."""
+        if design != self.nominal:
+            return self._no_load(design)
+        if self._drawn is None:
+            self._drawn = self._no_load(design)
+        return self._drawn
+
+    def _no_load(self, design: MachineAsBuilt) -> np.ndarray:
         return self.over_revolution(design, [read(s) for s in self.no_load_window(design)])
 
     def no_load_window(self, design: MachineAsBuilt) -> list[FieldSolution]:
         """Solutions without current over the angles that the symmetry of the design leaves."""
         steps, _ = self._no_load_window(design)
         model = self.model(design, not is_symmetric(design))
-        return solve_in_turn(model, [idle(2 * pi * n / self.edges) for n in range(steps)])
+        return solve_idle(model, steps, self.edges)
 
     def over_revolution(self, design: MachineAsBuilt, window: Sequence[np.ndarray]) -> np.ndarray:
         """Samples of a revolution (edges, 1 + coils) from those of the window, or their derivatives by something that
@@ -174,12 +185,14 @@ class MachineField:
 
     @property
     def slot_pitch(self) -> Symmetry:
-        steps = self.edges // self.nominal.machine.slots
-        return Symmetry(steps, lambda sample: np.append(sample[0], np.roll(sample[1:], 1)))
+        coils = np.arange(self.nominal.machine.slots)
+        place = np.append(0, 1 + np.roll(coils, 1))
+        return Symmetry(self.edges // len(coils), lambda sample: sample[place])
 
     @property
     def pole_pitch(self) -> Symmetry:
-        return Symmetry(self.edges // self.nominal.machine.poles, lambda sample: np.append(sample[0], -sample[1:]))
+        sign = np.append(1.0, -np.ones(self.nominal.machine.slots))
+        return Symmetry(self.edges // self.nominal.machine.poles, lambda sample: sign * sample)
 
 
 @dataclass(frozen=True)
@@ -215,6 +228,22 @@ def solve_in_turn(model: FieldModel, points: Sequence[OperatingState]) -> list[F
     for point in points:
         solutions.append(model.solve(point, solutions[-1] if solutions else None))
     return solutions
+
+
+def solve_idle(model: FieldModel, steps: int, edges: int) -> list[FieldSolution]:
+    """Solutions without current at the first angles of a revolution of ``edges`` equal steps, each started from the
+    line through the two before it."""
+    solutions: list[FieldSolution] = []
+    for n in range(steps):
+        solutions.append(model.solve(idle(2 * pi * n / edges), _continued(solutions)))
+    return solutions
+
+
+def _continued(solutions: Sequence[FieldSolution]) -> FieldSolution | None:
+    """What comes after solutions at equal steps, on a line through the last two; the only one; or nothing."""
+    if len(solutions) > 1:
+        return blended(solutions[-2:], np.array([-1.0, 2.0]))
+    return solutions[0] if solutions else None
 
 
 def coil_ampere_turns(design: MachineAsBuilt, layout: WindingLayout, currents: np.ndarray) -> np.ndarray:

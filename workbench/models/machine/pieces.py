@@ -69,6 +69,13 @@ class Fields:
         meshes = (machinery.plan.base, machinery.plan.idle, machinery.plan.loaded)
         self.base, self.idle, self.loaded = (MachineField(self.nominal, m, machinery.steel) for m in meshes)
 
+    def only(self, field: MachineField) -> MachineField:
+        """One of the three, the memory of the others given back: the pieces of one mesh are solved after each other."""
+        for other in (self.base, self.idle, self.loaded):
+            if other is not field:
+                other.forget()
+        return field
+
 
 class Piece:
     """Some of the field solutions; ``name`` tells it from all others of the machine."""
@@ -100,9 +107,10 @@ class NoLoadValues(NoLoadPiece):
     name: str = "no load"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        fine = fields.base.no_load(fields.nominal)
+        base = coefficients(fields.idle.no_load(fields.nominal))
+        fine = coefficients(fields.only(fields.base).no_load(fields.nominal))
         fields.base.forget()
-        return {"fine": coefficients(fine), "base": coefficients(fields.idle.no_load(fields.nominal))}
+        return {"fine": fine, "base": base}
 
 
 @dataclass(frozen=True)
@@ -116,7 +124,7 @@ class NoLoadSlopes(NoLoadPiece):
         return f"no load slopes {self.family[-1]}"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        slopes = no_load_slopes(fields.idle, self.family)
+        slopes = no_load_slopes(fields.only(fields.idle), self.family)
         return {f"slope {name}": coefficients(rows) for name, rows in slopes.items()}
 
 
@@ -131,7 +139,7 @@ class NoLoadNode(NoLoadPiece):
         return f"no load {self.node.name}"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        found = no_load_node(fields.idle, self.node)
+        found = no_load_node(fields.only(fields.idle), self.node)
         return {name: np.array([coefficients(one) for one in rows]) for name, rows in found.items()}
 
 
@@ -153,7 +161,7 @@ class LoadedFine(Piece):
     name: str = "loaded fine"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        fine = fields.base.loaded(fields.nominal, states)
+        fine = fields.only(fields.base).loaded(fields.nominal, states)
         fields.base.forget()
         return {"fine": fine}
 
@@ -165,10 +173,11 @@ class LoadedBeside(Piece):
     name: str = "loaded"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        here = fields.loaded.loaded(fields.nominal, states)
-        turned = [self._at(fields.loaded, states, [_turned(s, step) for s in states]) - here for step in ANGLE_STEPS]
+        field = fields.only(fields.loaded)
+        here = field.loaded(fields.nominal, states)
+        turned = [self._at(field, states, [_turned(s, step) for s in states]) - here for step in ANGLE_STEPS]
         sides = ([_scaled(s, sign * _SCALE_STEP) for s in states] for sign in (1, -1))
-        up, down = (self._at(fields.loaded, states, side) for side in sides)
+        up, down = (self._at(field, states, side) for side in sides)
         scale = [(up - down) / (2 * _SCALE_STEP), (up - 2 * here + down) / _SCALE_STEP**2]
         return {"base": here, "angle": np.stack(turned, axis=1), "scale": np.stack(scale, axis=1)}
 
@@ -191,7 +200,7 @@ class LoadedSlopes(Piece):
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         own = smooth_coordinates(fields.nominal)[self.batch * BATCH : (self.batch + 1) * BATCH]
-        return {f"slope {name}": rows for name, rows in loaded_slopes(fields.loaded, states, own).items()}
+        return {f"slope {name}": rows for name, rows in loaded_slopes(fields.only(fields.loaded), states, own).items()}
 
 
 @dataclass(frozen=True)
@@ -201,7 +210,7 @@ class LoadedCoils(Piece):
     name: str = "loaded coils"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        return {f"slope {name}": rows for name, rows in coil_slopes(fields.loaded, states).items()}
+        return {f"slope {name}": rows for name, rows in coil_slopes(fields.only(fields.loaded), states).items()}
 
 
 @dataclass(frozen=True)
@@ -215,7 +224,7 @@ class LoadedNode(Piece):
         return f"loaded {self.node.name}"
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        return loaded_node(fields.loaded, states, self.node)
+        return loaded_node(fields.only(fields.loaded), states, self.node)
 
 
 @dataclass(frozen=True)
