@@ -15,10 +15,34 @@ from pathlib import Path
 import ngsolve
 import numpy as np
 from netgen.geom2d import SplineGeometry
-from ngsolve import GridFunction, Integrate, Mesh, atan2, cos, dx, grad, sin, sqrt, x, y
+from ngsolve import BaseVector, GridFunction, InnerProduct, Integrate, Mesh, dx, grad, sin, sqrt, x, y
 from ngsolve_worker import Problem
 
 GRADING = 0.4  # of edges from one to the next
+TURNED = 0.1  # of the slope of the energy along a step, by which it may have turned at its end
+LEAST_SHARE = 1e-3
+
+
+class Damped(Problem):
+    """Newton's steps halved where they overshoot: whole ones circle round saturated bridges.
+
+    The solution has the least energy W(a), which is convex, and the residual is -dW/da. A step s leads down,
+    residual . s > 0, and is too long where that slope has turned at its end, residual(a + s) . s < 0.
+    """
+
+    def share(self, a: GridFunction, step: BaseVector, residual: BaseVector) -> float:
+        """The largest of 1, 1/2, 1/4, ... at which the slope has not turned by more than a tenth."""
+        share, slope = 1.0, InnerProduct(residual, step)
+        while share > LEAST_SHARE and self.slope(a.vec, share, step) < -TURNED * slope:
+            share /= 2
+        return share
+
+    def slope(self, a: BaseVector, share: float, step: BaseVector) -> float:
+        """Of minus the energy along a step [J/m], where a share of it is taken."""
+        there, force = a.CreateVector(), a.CreateVector()
+        there.data = a + share * step
+        self.form.Apply(there, force)
+        return InnerProduct(self.load.vec, step) - InnerProduct(force, step)
 
 
 def meshed(outline: dict, case: dict) -> Mesh:
@@ -51,16 +75,6 @@ def add_curve(drawn: SplineGeometry, numbers: list[int], which: int, outline: di
     drawn.Append(curve, leftdomain=left, rightdomain=right, bc=outline["boundary"][which].item() or "inside")
 
 
-def with_directions(case: dict) -> dict:
-    """Remanences as functions of the place: a direction turns with the angle from the axis of its magnet."""
-    found = {}
-    for name, (strength, axis, direction, turn) in case["remanences"].items():
-        off = atan2(y * np.cos(axis) - x * np.sin(axis), x * np.cos(axis) + y * np.sin(axis))
-        angle = direction + turn * off
-        found[name] = (strength * cos(angle), strength * sin(angle))
-    return case | {"remanences": found}
-
-
 def with_densities(case: dict, mesh: Mesh) -> dict:
     """Current densities of the ampere-turns in every coil side, and the area of one."""
     areas = {name: Integrate(ngsolve.CF(1) * dx(name), mesh) for name in case["coil_sides"]}
@@ -84,7 +98,7 @@ def virtual_work(problem: Problem, a: GridFunction) -> float:
 
 def solved(mesh: Mesh, case: dict) -> dict:
     """One state of the machine on a mesh."""
-    problem = Problem(with_densities(with_directions(case), mesh), mesh)
+    problem = Damped(with_densities(case, mesh), mesh)
     a, residuals = problem.newton()
     return {
         "torque": virtual_work(problem, a),

@@ -58,7 +58,7 @@ def _description(case: FieldCase, tolerance: float, points: int) -> dict:
         "regions": case.mesh.region_names,
         "iron": ["stator_iron", "rotor_iron"],
         "current_densities": case.current_densities,
-        "remanences": case.remanences,
+        "remanences": case.turning_remanences,
         "recoil_permeability": case.materials.magnet.recoil_permeability,
         "coil_sides": case.coil_sides,
         "side_area": case.section.half_slot_area,

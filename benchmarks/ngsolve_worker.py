@@ -17,6 +17,7 @@ import numpy as np
 from ngsolve import (
     H1,
     TRIG,
+    BaseVector,
     BilinearForm,
     BitArray,
     BSpline,
@@ -30,8 +31,11 @@ from ngsolve import (
     OuterProduct,
     Periodic,
     Projector,
+    atan2,
+    cos,
     dx,
     grad,
+    sin,
     sqrt,
     x,
     y,
@@ -72,7 +76,7 @@ class Problem:
         """integral j v + integral nu (B_rx dv/dy - B_ry dv/dx), assembled."""
         v, case = self.space.TestFunction(), self.case
         j = self.mesh.MaterialCF(case["current_densities"], default=0)
-        b_r = self.mesh.MaterialCF({name: tuple(b) for name, b in case["remanences"].items()}, default=(0, 0))
+        b_r = self.mesh.MaterialCF({name: remanence(*b) for name, b in case["remanences"].items()}, default=(0, 0))
         form = LinearForm(self.space)
         form += j * v * self.over(*case["current_densities"])
         if case["remanences"]:
@@ -86,7 +90,7 @@ class Problem:
         return 1 / (self.case["mu_0"] * self.mesh.MaterialCF(recoil, default=1))
 
     def newton(self) -> tuple[GridFunction, list[float]]:
-        """Whole Newton steps from zero field, and the relative residual after each."""
+        """Newton's method from zero field, and the relative residual after each step."""
         a, on_free = GridFunction(self.space), Projector(self.free, True)
         residual, step = a.vec.CreateVector(), a.vec.CreateVector()
         residual.data = on_free * self.load.vec
@@ -94,11 +98,15 @@ class Problem:
         while not residuals or (residuals[-1] > self.case["tolerance"] and len(residuals) < MOST_STEPS):
             self.form.AssembleLinearization(a.vec)
             step.data = self.form.mat.Inverse(self.free, inverse="sparsecholesky") * residual
-            a.vec.data += step
+            a.vec.data += self.share(a, step, residual) * step
             self.form.Apply(a.vec, step)
             residual.data = on_free * (self.load.vec - step)
             residuals.append(Norm(residual) / scale)
         return a, residuals
+
+    def share(self, a: GridFunction, step: BaseVector, residual: BaseVector) -> float:
+        """What is taken of a Newton step: all of it."""
+        return 1.0
 
     def ring_torque(self, a: GridFunction) -> float:
         """Ring average of the stress over the stator half of the gap; on a rotor outside with the other sign."""
@@ -123,6 +131,12 @@ class Problem:
         sides = {name: sign if number == phase else 0 for name, (number, sign) in self.case["coil_sides"].items()}
         turns = self.mesh.MaterialCF(sides, default=0)
         return self.case["sectors"] / self.case["side_area"] * Integrate(turns * a * self.over(*sides), self.mesh)
+
+
+def remanence(strength: float, axis: float, direction: float, turn: float) -> tuple:
+    """Of a magnet as a function of the place [T]: from the axis on its direction turns by so much per angle [rad]."""
+    off = atan2(y * np.cos(axis) - x * np.sin(axis), x * np.cos(axis) + y * np.sin(axis))
+    return strength * cos(direction + turn * off), strength * sin(direction + turn * off)
 
 
 def clip(values: np.ndarray) -> None:

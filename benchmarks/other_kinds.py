@@ -8,6 +8,7 @@ Writes results/reference/benchmarks/other_kinds.csv and own_meshes.csv.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from threadpoolctl import threadpool_limits
 from benchmarks import own_meshes
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT, relative
-from benchmarks.drawn_kinds import drawn
+from benchmarks.drawn_kinds import drawn, halbach
 from benchmarks.ngsolve_run import solve_ngsolve
 from benchmarks.reference_case import FieldCase, State
 from benchmarks.tables import write_table
@@ -45,6 +46,12 @@ class Row:
     torque_difference: float
     flux_difference: float
     potential_difference: float
+
+
+def machines() -> Iterator[tuple[str, MachineFile]]:
+    """All that are compared on the same triangles."""
+    yield from drawn()
+    yield halbach()
 
 
 def case_of(found: MachineFile, order: str = "P2") -> FieldCase:
@@ -80,7 +87,7 @@ def compared(name: str, found: MachineFile) -> Row:
 def main() -> None:
     """Compare, print and write."""
     with threadpool_limits(1):
-        write_table(TABLE, (compared(name, found) for name, found in drawn()))
+        write_table(TABLE, (compared(name, found) for name, found in machines()))
         own_meshes.main()
 
 

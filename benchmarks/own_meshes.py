@@ -29,8 +29,7 @@ from study.machine_file import MachineFile
 TABLE = PROJECT / "results" / "reference" / "benchmarks" / "own_meshes.csv"
 WITH_MAGNETS, WITHOUT = 0.5, -0.8  # rad, current angles
 FULL, NONE = "full current", "no current"
-# Not yet: whole Newton steps of the peer do not converge at saturated barriers; two more drawings of the V.
-LEFT_OUT = frozenset({"FluxBarriers", "OutlineRotor", "RibbedVShape", "OutlineMagnets"})
+LEFT_OUT = frozenset({"OutlineRotor"})  # the peer's own torque moves by 0.12 % between its two meshes
 COARSER = 2.0  # edges of the peer's other mesh
 
 

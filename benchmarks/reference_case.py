@@ -25,6 +25,7 @@ FINE_LAW = 1e-5  # relative error of the straight lines through the sampled relu
 SHORT_LAW = 1e-3  # the same, 123 points: peers search their tables point by point; torque moves by 2e-5
 _HIGHEST_FLUX_DENSITY = 4.0  # T, end of the sampled law; iterations that overshoot it follow its last line
 _SAMPLING_GRID = 400_001
+_BESIDE = 1e-3  # rad
 _PARALLEL = 1e-12  # rad, between two points of a magnet
 
 
@@ -130,6 +131,21 @@ class FieldCase:
     def remanences(self) -> dict[str, tuple[float, float]]:
         """Remanence vector [T] of every magnet with the rotor turned, by region. Parallel magnetisation only."""
         return {f"magnet_{m}": self._remanence(m) for m in range(self.section.magnets)}
+
+    @property
+    def turning_remanences(self) -> dict[str, tuple[float, float, float, float]]:
+        """Of every magnet with the rotor turned, by region: strength [T], angle of its middle, direction there and what
+        it turns by per angle from there [rad]. Parallel, radial or Halbach magnetisation."""
+        return {f"magnet_{m}": self._turning_remanence(m) for m in range(self.section.magnets)}
+
+    def _turning_remanence(self, number: int) -> tuple[float, float, float, float]:
+        section = self.section
+        x, y = section.mesh.p[:, section.mesh.t[:, section.mesh.subdomains[f"magnet_{number}"]]].mean(axis=(1, 2))
+        middle, turned = np.arctan2(y, x), self.state.point.angle
+        rays = np.array([middle, middle + _BESIDE])
+        here, beside = section.magnetisation_angle(number, np.hypot(x, y) * np.array([np.cos(rays), np.sin(rays)]))
+        strength = section.polarity(number) * self.materials.magnet.remanence
+        return strength, float(middle) + turned, float(here) + turned, float(beside - here) / _BESIDE
 
     def _remanence(self, number: int) -> tuple[float, float]:
         section, corners = self.section, self.section.mesh.t[:, self.section.mesh.subdomains[f"magnet_{number}"]]

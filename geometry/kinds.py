@@ -6,17 +6,16 @@ in a file of his own, ``my_rotor.py:MyRotor``.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from importlib import import_module
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 
 from geometry import rotors, stators
 from geometry.errors import GeometryError
+from geometry.own_kinds import module_name
 from geometry.parts import Part, Rotor, Stator
 
 
@@ -47,6 +46,11 @@ class Kinds:
         found = getattr(_loaded(file), name, None)
         if not (isinstance(found, type) and issubclass(found, self.base)):
             raise GeometryError(f"{file} has no class {name} that is a {self.base.__name__} of geometry.parts")
+        if not is_dataclass(found) or found.__hash__ is None:
+            raise GeometryError(f"{name} in {file} is not frozen: write @dataclass(frozen=True) above it")
+        if lacking := _lacking(found, self.base):
+            what = f"{self.base.__name__} in geometry.parts says what is asked"
+            raise GeometryError(f"{name} in {file} lacks {', '.join(lacking)}; {what}")
         return found
 
 
@@ -62,14 +66,23 @@ def _kind_of(module: ModuleType, base: type[Part]) -> type[Part]:
     return kind
 
 
+def _lacking(found: type[Part], base: type[Part]) -> list[str]:
+    """Names that a part must have of its own: neither fields nor another thing than in the base."""
+    stated = {one.name for one in fields(found)}  # type: ignore[arg-type]  # a part is a dataclass
+    return [name for name in base.asked if name not in stated and _of(found, name) is _of(base, name)]
+
+
+def _of(cls: type[Part], name: str) -> object:
+    return getattr(cls, name, None)
+
+
 def _loaded(file: Path) -> ModuleType:
-    spec = spec_from_file_location(file.stem, file)
-    if not file.is_file() or spec is None or spec.loader is None:
+    if not file.is_file() or file.suffix != ".py":
         raise GeometryError(f"there is no Python file {file}; its path counts from the folder of the machine's file")
-    module = module_from_spec(spec)
-    sys.modules[file.stem] = module  # where the dataclass of the part looks up its annotations
-    spec.loader.exec_module(module)
-    return module
+    try:
+        return import_module(module_name(file))
+    except Exception as error:  # whatever the file does
+        raise GeometryError(f"{file} cannot be loaded: {type(error).__name__}: {error}") from error
 
 
 STATORS = _kinds("stator", stators, Stator)

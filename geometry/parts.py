@@ -46,8 +46,10 @@ class Part:
 
     of_any_sign: names of its numbers that need not be positive
     of_the_model: names of those that nothing is built by, only solved
+    asked: names of what every concrete part must say of itself
     """
 
+    asked: ClassVar[tuple[str, ...]] = ("rim_radius", "draw", "check")
     of_any_sign: ClassVar[frozenset[str]] = frozenset()
     of_the_model: ClassVar[frozenset[str]] = frozenset()
 
@@ -89,6 +91,7 @@ class Part:
 class Stator(Part):
     """Regions iron, opening, copper (half a slot), and others of air; the axis is that of a tooth."""
 
+    asked: ClassVar[tuple[str, ...]] = ("slots", *Part.asked, "slot_radii", "tooth_probe", "back_iron_probe")
     slots: int
 
     @property
@@ -145,6 +148,7 @@ class Rotor(Part):
     Without magnets the axis is that of high permeance. Further magnets of half a pitch are magnet_1, magnet_2, ...
     """
 
+    asked: ClassVar[tuple[str, ...]] = ("poles", *Part.asked, "direction")
     poles: int
 
     @property

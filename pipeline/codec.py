@@ -18,6 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
+from geometry.own_kinds import is_loaded
 from pipeline.modules import module_file
 
 _PLAIN = (str, int, bool, type(None))
@@ -105,8 +106,8 @@ def _decoded_record(content: dict[str, Any], datasets: Datasets | None) -> Any:
 
 
 def _own(module: str) -> str:
-    """The name of a module, refused where it is not of the project or its tests."""
-    if module_file(module) is None:
+    """The name of a module, refused where it is not of the project, its tests or a user's file that was named."""
+    if module_file(module) is None and not is_loaded(module):
         raise CodecError(f"{module} is not a module of this project")
     return module
 

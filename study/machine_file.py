@@ -341,7 +341,7 @@ def _field(table: _Table, section: str, one: Field[Any], key: str, stated: Mappi
     if "tuple" in str(one.type):
         return _numbers(table, section, key, value)
     number = _number(table, section, key, value)
-    if one.type == "int":
+    if one.type in ("int", int):  # a text where the file of the class postpones its annotations
         if number != int(number):
             raise table.wrong(section, f"{key} = {value!r} is not a whole number")
         return int(number)

@@ -8,13 +8,13 @@ import pytest
 
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT
-from benchmarks.drawn_kinds import drawn
-from benchmarks.other_kinds import TABLE, case_of
+from benchmarks.drawn_kinds import halbach
+from benchmarks.other_kinds import TABLE, case_of, machines
 from geometry.kinds import ROTORS
 from geometry.magnetisation import RadialMagnetisation
 from study.machine_file import read_machine
 
-MACHINES = tuple(drawn())
+MACHINES = tuple(machines())
 WITHIN = 1e-5  # relative
 
 
@@ -24,8 +24,9 @@ def table():
 
 
 def test_every_kind_was_compared():
-    kinds = {kind.__name__ for kind in ROTORS.known.values()}
-    assert {kind for kind, _ in table()} == kinds
+    """And Halbach magnets."""
+    assert {kind for kind, _ in table()} == {kind.__name__ for kind in ROTORS.known.values()}
+    assert halbach()[0] in {name for _, name in table()}
 
 
 def test_both_codes_agree():
@@ -49,7 +50,7 @@ def test_the_potential_is_zero_on_the_circles_that_the_parts_name(name, grounded
     assert set(np.round(radius, 9).ravel().tolist()) == grounded
 
 
-def test_magnets_that_are_not_parallel_are_refused():
+def test_magnets_that_are_not_parallel_are_refused_where_one_vector_is_told():
     found = read_machine("outrunner_9_12")
     radial = replace(found.machine.rotor, magnetisation=RadialMagnetisation())
     case = case_of(replace(found, machine=replace(found.machine, rotor=radial)))

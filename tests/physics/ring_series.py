@@ -115,6 +115,20 @@ def solve_layers(order: int, layers) -> LayeredField:
     return LayeredField(order, layers, np.linalg.solve(matrix, right).reshape(-1, 2))
 
 
+def turning_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction: float, turn: float):
+    """(R_k, T_k) [T] of alternating magnets whose direction falls behind the radius by turn times the angle from their
+    middle: 0 radial, 1 parallel, p Halbach with the gap outside, -p inside.
+
+    R + j T = B exp(-j turn phi) over an arc,    R_k = 2 p B/pi (s(k - turn) + s(k + turn)),    s(n) = sin(n h)/n
+    """
+    if (order // pole_pairs) % 2 == 0 or order % pole_pairs:
+        return 0.0, 0.0
+    half = arc_fraction * pi / (2 * pole_pairs)
+    below, above = (half * np.sinc(n * half / pi) for n in (order - turn, order + turn))
+    scale = 2 * pole_pairs / pi * remanence
+    return scale * (below + above), 1j * scale * (below - above)
+
+
 def magnet_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction: float, parallel: bool):
     """(R_k, T_k) [T] of alternating magnets, magnet 0 centred on phi = 0; zero unless k is an odd multiple of p."""
     if (order // pole_pairs) % 2 == 0 or order % pole_pairs:

@@ -1,11 +1,18 @@
 """Machines of any kind from a file: every key in SI where it belongs, and one sentence about anything wrong."""
 
+import pickle
 import shutil
+import sys
+from subprocess import run
 
 import pytest
 
 from electrical.end_turn import Lap, ToothCoil, Wave
+from geometry.errors import GeometryError
 from geometry.kinds import ROTORS, STATORS
+from geometry.own_kinds import module_name
+from pipeline.codec import CodecError, decoded, digest, encoded
+from pipeline.modules import PROJECT
 from study.errors import StudyError
 from study.machine_file import MACHINES, part_keys, read_machine
 from tests.magnetostatics.other_machines import OUTRUNNER, V_SHAPE
@@ -105,6 +112,61 @@ def test_an_own_class_that_is_none(written, tmp_path):
     (tmp_path / "mine.py").write_text("class Mine:\n    pass\n")
     with pytest.raises(StudyError, match="has no class Mine that is a Rotor"):
         read_machine(written('"outer_magnets"', '"mine.py:Mine"'))
+
+
+OWN = """
+from dataclasses import dataclass
+from geometry.parts import Length, MagnetsOfRoundCore
+
+@dataclass(frozen=True)
+class Mine(MagnetsOfRoundCore):
+    poles: int
+    outer_radius: Length
+
+    def draw(self, rim):
+        return None
+
+    def check(self):
+        pass
+"""
+NOT_OWN = {
+    "a verb": (("def check", "def look"), "lacks check; Rotor in geometry.parts says what is asked"),
+    "two": (("MagnetsOfRoundCore", "Rotor"), "lacks rim_radius, direction"),
+    "poles": (("poles: int", "pole_number: int"), "lacks poles"),
+    "thawed": (("(frozen=True)", ""), "is not frozen: write @dataclass(frozen=True) above it"),
+    "no dataclass": (("@dataclass(frozen=True)", ""), "is not frozen"),
+    "a slip": (("return None", "return None)"), "cannot be loaded: SyntaxError"),
+    "an import": (("import Length", "import Lenght"), "cannot be loaded: ImportError"),
+}
+
+
+@pytest.mark.parametrize(("change", "words"), NOT_OWN.values(), ids=NOT_OWN)
+def test_what_an_own_class_lacks_is_said_in_one_sentence(tmp_path, change, words):
+    (tmp_path / "mine.py").write_text(OWN.replace(*change))
+    with pytest.raises(GeometryError) as caught:
+        ROTORS.named("mine.py:Mine", tmp_path)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_an_own_class_is_found_again_by_another_process_and_after_an_edit_is_another(tmp_path):
+    """Workers and stored results know it by the name of its module alone."""
+    file = tmp_path / "numpy.py"  # which hides nothing
+    file.write_text(OWN)
+    mine = ROTORS.named("numpy.py:Mine", tmp_path)
+    there = run([sys.executable, "-c", "import pickle, sys; print(pickle.load(sys.stdin.buffer))"],
+                input=pickle.dumps(mine(8, 0.02)), capture_output=True, check=True, cwd=PROJECT)  # fmt: skip
+    assert there.stdout.decode().strip() == "Mine(poles=8, outer_radius=0.02)"
+    assert decoded(encoded(mine(8, 0.02))) == mine(8, 0.02)
+    file.write_text(OWN.replace("return None", "return rim"))
+    edited = ROTORS.named("numpy.py:Mine", tmp_path)
+    assert edited(8, 0.02) != mine(8, 0.02) and digest(edited(8, 0.02)) != digest(mine(8, 0.02))
+
+
+def test_a_stored_result_runs_no_file_that_nobody_named(tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(OWN)
+    with pytest.raises(CodecError, match="is not a module of this project"):
+        decoded({"dataclass": f"{module_name(file)}:Mine", "fields": {"poles": 8, "outer_radius": 0.02}})
 
 
 def test_a_name_that_is_no_file_lists_what_there_is():
