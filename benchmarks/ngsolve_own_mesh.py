@@ -16,7 +16,7 @@ import numpy as np
 
 from benchmarks.ngsolve_run import PYTHON
 from benchmarks.processes import PeerError, run
-from benchmarks.reference_case import sampled_law
+from benchmarks.reference_case import sampled_law, turning_remanence
 from benchmarks.whole_outline import GAP, WholeOutline, whole_outline
 from geometry.cross_section import CrossSection
 from magnetostatics.model import MachineMaterials
@@ -28,7 +28,6 @@ _RESIDUAL = 1e-8  # relative to the load
 _ACROSS_TOOTH = 2.0  # edges
 _AROUND_GAP, _FEW_SLOTS, _AROUND_GAP_OF_FEW = 400, 12, 600  # edges; a small machine is cheap
 _LAW = 1e-4  # relative, of the straight lines between points of the steel's law
-_BESIDE = 1e-3  # rad
 
 
 @dataclass(frozen=True)
@@ -96,15 +95,9 @@ def _description(
 
 
 def _remanences(section: CrossSection, materials: MachineMaterials, angle: float) -> dict[str, tuple[float, ...]]:
-    """Strength [T] of every magnet, axis of its pole, direction on that axis and what it turns by per angle [rad]."""
-    rotor, found = section.machine.rotor, {}
-    for number in range(section.machine.repeats * rotor.magnets_per_pitch):
-        pitch, which = divmod(number, rotor.magnets_per_pitch)
-        axis = pitch * rotor.pitch
-        here, beside = rotor.direction(np.array([axis, axis + _BESIDE]), axis, which)
-        strength = section.polarity(number) * materials.magnet.remanence
-        found[f"magnet_{number}"] = strength, axis + angle, float(here) + angle, float(beside - here) / _BESIDE
-    return found
+    """Of every magnet of the whole machine."""
+    numbers = range(section.machine.repeats * section.machine.rotor.magnets_per_pitch)
+    return {f"magnet_{m}": turning_remanence(section, materials, m, angle) for m in numbers}
 
 
 def _edge_lengths(section: CrossSection, regions: Sequence[str]) -> dict[str, float]:

@@ -134,18 +134,10 @@ class FieldCase:
 
     @property
     def turning_remanences(self) -> dict[str, tuple[float, float, float, float]]:
-        """Of every magnet with the rotor turned, by region: strength [T], angle of its middle, direction there and what
-        it turns by per angle from there [rad]. Parallel, radial or Halbach magnetisation."""
-        return {f"magnet_{m}": self._turning_remanence(m) for m in range(self.section.magnets)}
-
-    def _turning_remanence(self, number: int) -> tuple[float, float, float, float]:
-        section = self.section
-        x, y = section.mesh.p[:, section.mesh.t[:, section.mesh.subdomains[f"magnet_{number}"]]].mean(axis=(1, 2))
-        middle, turned = np.arctan2(y, x), self.state.point.angle
-        rays = np.array([middle, middle + _BESIDE])
-        here, beside = section.magnetisation_angle(number, np.hypot(x, y) * np.array([np.cos(rays), np.sin(rays)]))
-        strength = section.polarity(number) * self.materials.magnet.remanence
-        return strength, float(middle) + turned, float(here) + turned, float(beside - here) / _BESIDE
+        """Of every magnet with the rotor turned, by region, see ``turning_remanence``."""
+        angle = self.state.point.angle
+        numbers = range(self.section.magnets)
+        return {f"magnet_{m}": turning_remanence(self.section, self.materials, m, angle) for m in numbers}
 
     def _remanence(self, number: int) -> tuple[float, float]:
         section, corners = self.section, self.section.mesh.t[:, self.section.mesh.subdomains[f"magnet_{number}"]]
@@ -167,6 +159,21 @@ class FieldCase:
     def torque_ring(self) -> tuple[float, float]:
         """Of the sliding circle and of the stator's rim [m], between which lies the stator half of the air gap."""
         return self.section.machine.mid_gap_radius, self.section.machine.stator.rim_radius
+
+
+def turning_remanence(
+    section: CrossSection, materials: MachineMaterials, number: int, angle: float
+) -> tuple[float, float, float, float]:
+    """Strength [T] of a magnet of the whole machine, angle of the axis of its pole, direction there and what that turns
+    by per angle from there [rad].
+
+    angle: of the rotor [rad]
+    """
+    axis = number // section.machine.rotor.magnets_per_pitch * section.machine.rotor.pitch
+    rays = axis + np.array([0.0, _BESIDE])
+    here, beside = section.magnetisation_angle(number, np.stack([np.cos(rays), np.sin(rays)]))
+    strength = section.polarity(number) * materials.magnet.remanence
+    return strength, axis + angle, float(here) + angle, float(beside - here) / _BESIDE
 
 
 @lru_cache

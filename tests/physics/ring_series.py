@@ -14,7 +14,7 @@ H_phi = 0 on the innermost circle, where the iron ends, and a = 0 on the outermo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sin
+from math import pi
 
 import numpy as np
 
@@ -115,9 +115,9 @@ def solve_layers(order: int, layers) -> LayeredField:
     return LayeredField(order, layers, np.linalg.solve(matrix, right).reshape(-1, 2))
 
 
-def turning_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction: float, turn: float):
-    """(R_k, T_k) [T] of alternating magnets whose direction falls behind the radius by turn times the angle from their
-    middle: 0 radial, 1 parallel, p Halbach with the gap outside, -p inside.
+def magnet_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction: float, turn: float):
+    """(R_k, T_k) [T] of alternating magnets, magnet 0 centred on phi = 0. Their direction falls behind the radius by
+    turn times the angle from their middle: 0 radial, 1 parallel, p Halbach with the gap outside, -p inside.
 
     R + j T = B exp(-j turn phi) over an arc,    R_k = 2 p B/pi (s(k - turn) + s(k + turn)),    s(n) = sin(n h)/n
     """
@@ -129,32 +129,20 @@ def turning_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction
     return scale * (below + above), 1j * scale * (below - above)
 
 
-def magnet_harmonic(order: int, pole_pairs: int, remanence: float, arc_fraction: float, parallel: bool):
-    """(R_k, T_k) [T] of alternating magnets, magnet 0 centred on phi = 0; zero unless k is an odd multiple of p."""
-    if (order // pole_pairs) % 2 == 0 or order % pole_pairs:
-        return 0.0, 0.0
-    half = arc_fraction * pi / (2 * pole_pairs)
-    scale = 2 * pole_pairs / pi * remanence
-    if not parallel:
-        return scale * 2 * sin(order * half) / order, 0.0
-    below, above = sin((order - 1) * half) / (order - 1), sin((order + 1) * half) / (order + 1)
-    return scale * (below + above), 1j * scale * (below - above)  # -B sin(phi) = Re T exp(j k phi)
-
-
-def zhu_howe_radial(order, pole_pairs, remanence, arc_fraction, parallel, permeability, core, magnet, bore, r):
+def zhu_howe_radial(order, pole_pairs, remanence, arc_fraction, turn, permeability, core, magnet, bore, r):
     """B_r,k(r) [T] between smooth iron of infinite permeability, internal rotor, order k = n p > 1.
 
     core, magnet, bore: radii R_r, R_m, R_s [m]
     Source: Zhu, Howe, Bolte, Ackermann, "Instantaneous magnetic field distribution in brushless permanent magnet DC
     motors, part I", IEEE Trans. Magn. 29 (1993), eqs 12-22; mu_r M_n is here (R_k + k T_k) / mu_0.
     """
-    radial, tangential = magnet_harmonic(order, pole_pairs, remanence, arc_fraction, parallel)
+    radial, tangential = magnet_harmonic(order, pole_pairs, remanence, arc_fraction, turn)
     tangential = (1j * tangential).real  # amplitude of sin(k phi)
     total = radial + order * tangential
-    a3 = (order - 1 / order) * radial / total + 1 / order
     k, mu = order, permeability
+    of_a3 = (k - 1 / k) * radial + total / k  # their A_3 times the total, which may be zero
     inner, outer, both = core / magnet, magnet / bore, core / bore
-    above = (a3 - 1) + 2 * inner ** (k + 1) - (a3 + 1) * inner ** (2 * k)
+    above = (of_a3 - total) + 2 * total * inner ** (k + 1) - (of_a3 + total) * inner ** (2 * k)
     below = (mu + 1) / mu * (1 - both ** (2 * k)) - (mu - 1) / mu * (outer ** (2 * k) - inner ** (2 * k))
     shape = (r / bore) ** (k - 1) * outer ** (k + 1) + (magnet / r) ** (k + 1)
-    return total / mu * k / (k**2 - 1) * above / below * shape
+    return k / (k**2 - 1) / mu * above / below * shape
