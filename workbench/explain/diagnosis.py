@@ -170,29 +170,29 @@ def ranking(search: Search, p: Posterior) -> tuple[Ranked, ...]:
     """Every effect that was tried, most probable first."""
     null = search.fitted[frozenset()]
     before = _errors(null)
-    names = sorted(search.signatures.effects, key=lambda n: (-p.of(n), -_gain(search, n), n))
-    return tuple(_ranked(search, name, p.of(name), before) for name in names)
+    gains = _gains(search)
+    names = sorted(search.signatures.effects, key=lambda n: (-p.of(n), -gains[n], n))
+    return tuple(_ranked(search, name, p.of(name), gains[name], before) for name in names)
 
 
-def _gain(search: Search, name: str) -> float:
-    """ln p that the best explanation with the effect gains over nothing."""
-    null = search.log_evidence(frozenset())
-    fits = [search.log_evidence(names) for names in search.fitted if name in names]
-    return max(fits, default=search.guessed.get(frozenset((name,)), -np.inf)) - null
+def _gains(search: Search) -> dict[str, float]:
+    """ln p that the best fit with each effect gains over nothing; without any, what the effect alone promised."""
+    evidences, null = search.evidences, search.log_evidence(frozenset())
+    fits = {name: [evidences[names] for names in search.fitted if name in names] for name in search.signatures.effects}
+    alone = {name: evidences.get(frozenset((name,)), -np.inf) for name in fits}
+    return {name: max(found, default=alone[name]) - null for name, found in fits.items()}
 
 
-def _ranked(search: Search, name: str, probability: float, before: tuple[float, float | None]) -> Ranked:
+def _ranked(search: Search, name: str, probability: float, gain: float, before: tuple[float, float | None]) -> Ranked:
     title = search.signatures.found[name][0].effect.title
     best = next((names for names in search.ranked if name in names), None)
     if best is None:
-        return Ranked(name, title, probability, _gain(search, name), {}, before[0], before[0], before[1], before[1])
+        return Ranked(name, title, probability, gain, {}, before[0], before[0], before[1], before[1])
     hypothesis = search.fitted[best]
     after = _errors(hypothesis)
     bounds = tuple(p for effect in hypothesis.effects if effect.name() == name for p in _on_bounds(effect))
     sizes = estimates(hypothesis, search.weights(name))[name]
-    return Ranked(
-        name, title, probability, _gain(search, name), sizes, before[0], after[0], before[1], after[1], bounds
-    )
+    return Ranked(name, title, probability, gain, sizes, before[0], after[0], before[1], after[1], bounds)
 
 
 def _errors(hypothesis: Hypothesis) -> tuple[float, float | None]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from heapq import heapify
 from math import exp, log
 
@@ -198,19 +198,20 @@ class Search:
     @property
     def posterior(self) -> Posterior:
         """Probabilities of everything that was fitted or guessed."""
-        guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
-        alone = {names: self.log_evidence(names) for names in self.fitted}
         beside = {names: self.log_evidence_beside(names) for names in self.beside}
-        capped = partial(_no_more_than_the_best, beliefs=self.beliefs)
-        return posterior(capped(guessed, alone), capped(self.guessed_beside, beside), self.beliefs)
+        return posterior(self.evidences, self._with_guesses(self.guessed_beside, beside), self.beliefs)
 
+    @property
+    def evidences(self) -> dict[Set, float]:
+        """ln evidence of everything that was fitted or guessed without an unknown function [nats]."""
+        guessed = {names: guess + self.exactness(names) for names, guess in self.guessed.items()}
+        return self._with_guesses(guessed, {names: self.log_evidence(names) for names in self.fitted})
 
-def _no_more_than_the_best(
-    guessed: Mapping[Set, float], fitted: Mapping[Set, float], beliefs: Beliefs
-) -> dict[Set, float]:
-    """ln evidence of all sets; one that was only guessed counts for no more than the best that was fitted."""
-    best = max((evidence + beliefs.log_prior(names) for names, evidence in fitted.items()), default=-np.inf)
-    return {n: min(guess, best - beliefs.log_prior(n)) for n, guess in guessed.items()} | fitted
+    def _with_guesses(self, guessed: Mapping[Set, float], fitted: Mapping[Set, float]) -> dict[Set, float]:
+        """ln evidence of all sets; one that was only guessed counts for no more than the best that was fitted."""
+        prior = self.beliefs.log_prior
+        best = max((evidence + prior(names) for names, evidence in fitted.items()), default=-np.inf)
+        return {names: min(guess, best - prior(names)) for names, guess in guessed.items()} | fitted
 
 
 def label_of(names: Set) -> str:
