@@ -126,7 +126,6 @@ def show(fields: Fields) -> None:
         place = {"pointa": (0.62, 0.94), "pointb": (0.97, 0.94)}
         chosen = partial(_add_named, plotter, fields)
         plotter.add_text_slider_widget(chosen, list(fields), value=0, **place)
-    # pyvista's decorator hides from the type checker that these are methods.
     plotter.view_xy()
     plotter.show()
 
