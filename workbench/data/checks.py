@@ -308,7 +308,16 @@ def _strongest(angle: np.ndarray, values: np.ndarray, most: int) -> int | None:
     return 1 + int(np.argmin(left)) if min(left) < 0.5 * float(rest @ rest) else None
 
 
-_OF_A_CAMPAIGN = (_constants, _between_lines, _positions, _same_readings)
+def _known_exactly(campaign: Campaign) -> list[str]:
+    if campaign.tolerances or not campaign.device:
+        return []
+    return [
+        "[tolerance] is empty: the device counts as exactly as drawn, and what it is off by is taken for an effect; "
+        "say how well its inputs are known"
+    ]
+
+
+_OF_A_CAMPAIGN = (_known_exactly, _constants, _between_lines, _positions, _same_readings)
 _OF_A_TABLE = (
     _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
 )  # fmt: skip

@@ -1,4 +1,5 @@
-"""Keys of ``[device]`` by the model that reads them, for drafts and the manual. The models decide what they take."""
+"""Keys of ``[device]`` by the model that reads them, and how well such devices and instruments are usually known: for
+drafts and the manual. The models decide what they take."""
 
 from __future__ import annotations
 
@@ -91,3 +92,45 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("poles", "the same", False),
     ),
 }
+
+
+@dataclass(frozen=True)
+class Spread:
+    """key: of ``[tolerance]`` or ``[systematic]``;  size: as a file spells it;  source: where the figure comes from"""
+
+    key: str
+    size: str
+    source: str
+
+
+# Of a device that nobody has described better. Without any, what a device is off by would be taken for an effect.
+TOLERANCES: Final[dict[str, tuple[Spread, ...]]] = {
+    "damper": (
+        Spread("force_constant_N_per_A", "sigma_rel = 0.02", "assumed: remanence +-2 %, air gap"),
+        Spread("internal_resistance_ohm", "sigma_rel = 0.02", "assumed: wire and leads"),
+        Spread("moving_mass_kg", "sigma_rel = 0.02", "assumed: drawn parts"),
+        Spread("viscous_damping_Ns_per_m", "sigma_rel = 0.3", "assumed: seals and grease scatter"),
+    ),
+    "dq": (
+        Spread("psi_m_Vs", "sigma_rel = 0.02", "assumed: remanence +-2 %, air gap"),
+        Spread("inductance_d_mH", "sigma_rel = 0.1", "assumed: air gap, end turns, saturation"),
+        Spread("inductance_q_mH", "sigma_rel = 0.1", "assumed: air gap, end turns, saturation"),
+        Spread("resistance_mohm", "sigma_rel = 0.02", "assumed: wire and end turns"),
+    ),
+    "machine": (
+        Spread("remanence", "sigma_rel = 0.02", "assumed: grades are sold within +-2 to 3 %"),
+        Spread("airgap_mm", "sigma = 0.02", "assumed: ground rotor and bore"),
+        Spread("active_length_mm", "sigma = 0.1", "assumed: stack of sheets"),
+    ),
+}
+# Of instruments of which no certificate is at hand, by the quantities that they read.
+CALIBRATIONS: Final[dict[tuple[str, ...], Spread]] = {
+    ("force",): Spread("force_gain", 'sigma = 0.005, kind = "gain"', "assumed: load cell of class 0.5"),
+    ("torque",): Spread("torque_gain", 'sigma = 0.005, kind = "gain"', "assumed: torque cell of class 0.5"),
+    ("voltage", "v_*"): Spread("voltage_gain", 'sigma = 0.005, kind = "gain"', "assumed: recorder and probes"),
+    ("current", "i_*"): Spread("current_gain", 'sigma = 0.005, kind = "gain"', "assumed: clamps of class 0.5"),
+    ("angle_mech",): Spread("encoder_zero_deg", 'sigma = 0.5, kind = "offset"', "assumed: zeroed by hand"),
+}
+# Zeros of cells drift by some share of the largest load: the quantity and the error of its zero.
+ZEROS: Final[dict[str, str]] = {"force": "force_offset", "torque": "torque_offset"}
+ZERO_DRIFT: Final = 0.001  # of the largest reading, assumed: load and torque cells of class 0.1 in their zero

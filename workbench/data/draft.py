@@ -7,16 +7,22 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatch
 from pathlib import Path
 
+import numpy as np
+
 from disk import write_atomically
-from workbench.data.device_keys import DEVICE_KEYS
-from workbench.data.guess import Guess, guesses, likely_kind, likely_model, noise_of
+from workbench.data.column_units import FACTORS
+from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
+from workbench.data.guess import Guess, guesses, likely_kind, likely_model
 from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw
+from workbench.data.scatter import noise_of
 from workbench.data.schema import FILE, campaign_file
 from workbench.errors import WorkbenchError
 
+_OF_THE_LARGEST = f"assumed: {100 * ZERO_DRIFT:g} % of the largest reading"
 _BOOKKEEPING = ("scan", "repeat", "holdout")
 _HEAD = """# A campaign: what was measured, and how well it is known. Fill in every "?"; see docs/campaign.md.
 [campaign]
@@ -24,11 +30,8 @@ id = {id}  # names the folder of the results
 repeats = {repeats}  # two or more show the size of the noise
 holdout = {{ rule = "by region" }}  # operating conditions that no fit sees, to test the prediction
 """
-_TOLERANCE = """
-[tolerance]  # inputs of the model that are uncertain:  {example} = {{ sigma_rel = 0.01, source = "drawing" }}
-
-[systematic]  # errors shared by all rows of an instrument:  {error} = {{ sigma = 0.002, kind = "gain" }}
-"""
+_TOLERANCE = "[tolerance]  # how well the device is known: what has none counts as exact; better your own figures"
+_SYSTEMATIC = "[systematic]  # errors that all rows of an instrument share; better those of its certificate"
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +58,8 @@ def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
     repeats = max(_repeats(sheet) for sheet in sheets)
     name = re.sub(r"[^\w.-]+", "-", folder.name).strip("-.") or "campaign"
     head = _HEAD.format(id=_text(name), repeats=repeats)
-    device = _device(likely_model([sheet.kind for sheet in sheets], quantities)) if like is None else _taken_over(like)
+    model = likely_model([sheet.kind for sheet in sheets], quantities)
+    device = _device(model, quantities, _zeros(sheets)) if like is None else _taken_over(like)
     return head + device + "".join(_table(path.name, sheet) for path, sheet in zip(paths, sheets))
 
 
@@ -105,17 +109,43 @@ def _repeats(sheet: _Sheet) -> int:
 # ---- the device ----------------------------------------------------------------------------------------------------
 
 
-def _device(model: str) -> str:
-    if model not in DEVICE_KEYS:
-        return f'\n[device]\nmodel = "?"  # {", ".join(DEVICE_KEYS)}, and the keys it needs\n' + _TOLERANCE.format(
-            example="airgap_mm", error="torque_gain"
-        )
-    needed = [f'{key.key} = "?"  # {key.meaning}' for key in DEVICE_KEYS[model] if key.needed]
-    others = [f"# {key.key} =   # {key.meaning}" for key in DEVICE_KEYS[model] if not key.needed]
-    example = DEVICE_KEYS[model][2].key
-    error = {"damper": "force_gain", "dq": "current_gain"}.get(model, "torque_gain")
-    lines = ["", "[device]  # as drawn", f"model = {_text(model)}", *needed, *others]
-    return "\n".join(lines) + "\n" + _TOLERANCE.format(example=example, error=error)
+def _device(model: str, quantities: Sequence[str], zeros: Sequence[Spread]) -> str:
+    """Keys to fill in, and how well such devices and the instruments of these quantities are usually known.
+
+    zeros: of the instruments of these files
+    """
+    if model in DEVICE_KEYS:
+        keys = [f'{key.key} = "?"  # {key.meaning}' for key in DEVICE_KEYS[model] if key.needed]
+        keys += [f"# {key.key} =   # {key.meaning}" for key in DEVICE_KEYS[model] if not key.needed]
+        lines = ["[device]  # as drawn", f"model = {_text(model)}", *keys]
+    else:
+        lines = ["[device]", f'model = "?"  # {", ".join(DEVICE_KEYS)}, and the keys it needs']
+    lines += ["", _TOLERANCE, *map(_spread, TOLERANCES.get(model, ()))]
+    gains = [spread for read, spread in CALIBRATIONS.items() if _reads(read, quantities)]
+    lines += ["", _SYSTEMATIC, *map(_spread, [*gains, *zeros])]
+    return "\n" + "\n".join(lines) + "\n"
+
+
+def _spread(spread: Spread) -> str:
+    return f"{spread.key} = {{ {spread.size}, source = {_text(spread.source)} }}"
+
+
+def _zeros(sheets: Sequence[_Sheet]) -> list[Spread]:
+    """Errors of the zeros of load and torque cells, by the largest reading of all files."""
+    largest: dict[str, tuple[float, float, str]] = {}
+    for guess, values in ((g, sheet.raw.values(g.place)) for sheet in sheets for g in sheet.columns):
+        readings = np.abs(values[np.isfinite(values)])
+        if guess.quantity in ZEROS and guess.unit in FACTORS and readings.size:
+            here = (readings.max() * FACTORS[guess.unit], ZERO_DRIFT * float(readings.max()), guess.unit)
+            largest[guess.quantity] = max(here, largest.get(guess.quantity, here))
+    return [
+        Spread(ZEROS[name], f'sigma = {size:.2g}, kind = "offset", unit = "{unit}"', _OF_THE_LARGEST)
+        for name, (_, size, unit) in largest.items()
+    ]
+
+
+def _reads(patterns: Sequence[str], quantities: Sequence[str]) -> bool:
+    return any(fnmatch(quantity, pattern) for quantity in quantities for pattern in patterns)
 
 
 def _taken_over(folder: Path) -> str:
@@ -173,22 +203,24 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     unit = _text(guess.unit or "?")
     if not KINDS[sheet.kind].is_response(quantity):
         return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}'
-    size = _size(guess, sheet)
-    note = "" if size is None else "  # u_random: scatter of neighbours; better the data sheet's"
-    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size or _text("?")} }}{note}'
+    size, note = _noise(guess, sheet)
+    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size} }}{note}'
 
 
-def _size(guess: Guess, sheet: _Sheet) -> str | None:
-    conditions = [
-        other for other in sheet.columns
-        if other.quantity and other.quantity != "time" and not KINDS[sheet.kind].is_response(other.quantity)
-    ]  # fmt: skip
-    axes = [sheet.raw.values(other.place) for other in _main_axis_first(conditions, sheet.kind)]
-    size = noise_of(sheet.raw.values(guess.place), axes)
-    return None if size is None else f"{size:.2g}"
+def _noise(guess: Guess, sheet: _Sheet) -> tuple[str, str]:
+    """Uncertainty of a reading as the file is to say it, and a comment on where it comes from."""
+    books = [sheet.raw.values(g.place) for g in sheet.columns if g.quantity in _BOOKKEEPING]
+    conditions = {g.quantity: sheet.raw.values(g.place) for g in _settings(sheet)}
+    found = noise_of(sheet.raw.values(guess.place), conditions, books)
+    if found is None:
+        return _text("?"), ""
+    return found[0], f"  # u_random: scatter of {found[1]}; better the data sheet's"
 
 
-def _main_axis_first(conditions: Sequence[Guess], kind: str) -> list[Guess]:
-    """Rows are sorted by the first of these within all others."""
-    axes = KINDS[kind].axes
-    return sorted(conditions, key=lambda g: axes.index(g.quantity) if g.quantity in axes else len(axes))
+def _settings(sheet: _Sheet) -> list[Guess]:
+    """What was set in a table; rows are sorted by the first of these within all others. Temperatures are only logged
+    where the kind does not ask for them."""
+    kind = KINDS[sheet.kind]
+    axes = [g for axis in kind.axes for g in sheet.columns if fnmatch(g.quantity, axis)]
+    others = [g for g in sheet.columns if g not in axes and g.quantity not in ("", "time", *_BOOKKEEPING)]
+    return axes + [g for g in others if not kind.is_response(g.quantity) and not g.quantity.endswith("_T")]

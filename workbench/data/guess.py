@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from typing import Final
 
-import numpy as np
-
 from workbench.data.kinds import KINDS, Kind
 from workbench.data.raw_table import Heading, RawTable
 
@@ -20,7 +18,8 @@ _PHASES: Final = {
     "i1": "a", "i2": "b", "i3": "c", "va": "a", "vb": "b", "vc": "c",
 }  # fmt: skip
 _BOOKS: Final = {
-    "repeat": ("repeat", "repetition", "wiederholung", "lauf", "run", "durchgang"), "scan": ("scan", "sweep"),
+    "repeat": ("repeat", "repetition", "rep", "run", "trial", "wiederholung", "wdh", "wdhlg", "lauf", "durchgang"),
+    "scan": ("scan", "sweep"),
     "direction": ("direction", "richtung", "drehrichtung"), "holdout": ("holdout",),
 }  # fmt: skip
 # Words of a heading -> quantity, for headings without a unit that is known.
@@ -39,6 +38,13 @@ _UNITS: Final = {
     "Wb": ("", "psi"), "H": ("", "l"), "ohm": ("resistance", "r"), "m": ("displacement", ""),
     "Ns_per_m": ("damping", ""), "s": ("time", ""),
 }  # fmt: skip
+_LINES: Final = {"i_a", "i_b", "i_c"}
+_RATIOS: Final[dict[str, tuple[set[str], ...]]] = {
+    "efficiency": ({"efficiency"}, {"eta"}, {"wirkungsgrad"}),
+    "power_factor": ({"power", "factor"}, {"pf"}, {"cos"}, {"cosphi"}, {"leistungsfaktor"}),
+}
+_SHAFT: Final = {"mech", "mechanical", "mechanisch", "mechanische", "shaft", "welle"}  # that power follows from torque
+_THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _SCALED: Final = re.compile(r"^(?:m|k|u|M|c)(?=[A-Z]|ohm|Ohm|m_per_s|m$|s$)")
 
 
@@ -59,9 +65,15 @@ def guesses(raw: RawTable) -> list[Guess]:
         quantity = "time" if raw.holds_times(place) else _quantity(heading)
         if any(quantity == other.quantity for other in found):
             quantity = ""
-        unit = "s" if raw.holds_times(place) else heading.unit
+        unit = "s" if raw.holds_times(place) else heading.unit or _usual_unit(quantity, heading)
         found.append(Guess(place, heading, quantity, unit))
-    return _shunted(found)
+    return _of_a_line(_shunted(found))
+
+
+def _usual_unit(quantity: str, heading: Heading) -> str:
+    if quantity in _RATIOS:
+        return "1"
+    return "degC" if quantity.endswith("_T") and _words(heading.name)[-1] == "c" else ""
 
 
 def _shunted(found: list[Guess]) -> list[Guess]:
@@ -71,14 +83,30 @@ def _shunted(found: list[Guess]) -> list[Guess]:
     return [Guess(g.place, g.heading, "shunt", g.unit) if g.quantity == "resistance" else g for g in found]
 
 
+def _of_a_line(found: list[Guess]) -> list[Guess]:
+    """One current of three beside a speed or a torque, and no angle: a meter's RMS."""
+    quantities = {g.quantity for g in found}
+    if "angle_mech" in quantities or not {"speed", "torque"} & quantities or len(quantities & _LINES) != 1:
+        return found
+    return [Guess(g.place, g.heading, "current", g.unit) if g.quantity in _LINES else g for g in found]
+
+
+def _words(text: str) -> list[str]:
+    return [w for w in re.split(r"[^a-z0-9]+", text.lower().translate(_PLAIN)) if w]
+
+
 def _quantity(heading: Heading) -> str:
     if is_known(heading.name):
         return heading.name
-    words = [w for w in re.split(r"[^a-z0-9]+", heading.name.lower().translate(_PLAIN)) if w]
+    words = _words(heading.name)
+    if (ratio := next((name for name, asked in _RATIOS.items() if any(a <= set(words) for a in asked)), "")) != "":
+        return ratio
+    if "power" in (_UNITS.get(_base(heading.unit), ("",))[0], *(_WORDS.get(w) for w in words)) and _SHAFT & set(words):
+        return ""
     for book, names in _BOOKS.items():
-        if not heading.unit and set(words) & set(names):
+        if heading.unit in ("", "1") and set(words) & set(names):
             return book
-    if heading.unit in ("degC", "K", "degF"):
+    if heading.unit in ("degC", "K", "degF") or (words[:1] and words[0] in _THERMAL and words[-1] == "c"):
         return _temperature(words)
     return _by_unit(heading.unit, words) or next((_WORDS[w] for w in words if w in _WORDS), "")
 
@@ -145,17 +173,3 @@ def likely_model(kinds: Sequence[str], quantities: Sequence[str]) -> str:
     if {"v_d", "v_q", "v_ll"} & set(quantities) or any(kind.startswith("dq") for kind in kinds):
         return "dq"
     return "machine" if set(quantities) & {"v_a", "angle_mech", "i_a", "r_a"} else "?"
-
-
-def noise_of(values: np.ndarray, axes: Sequence[np.ndarray]) -> float | None:
-    """Standard uncertainty of one reading from neighbouring rows, None for few rows: third differences along the last
-    axis, robust, and the step of the digits over the square root of twelve."""
-    order = np.lexsort(axes) if len(axes) else np.arange(len(values))
-    sorted_values = values[order]
-    good = sorted_values[np.isfinite(sorted_values)]
-    if len(good) < 12:
-        return None
-    rough = 1.4826 * float(np.median(np.abs(np.diff(good, 3)))) / np.sqrt(20.0)
-    steps = np.diff(np.unique(good))
-    digits = float(steps.min()) / np.sqrt(12.0) if steps.size else 0.0
-    return max(rough, digits) or None

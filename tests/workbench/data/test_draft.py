@@ -5,14 +5,19 @@ import re
 import numpy as np
 import pytest
 
+from effects.library import library
 from pipeline.cli import main
 from tests.workbench.toy_bench import written
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
+from workbench.data.checks import checks_of
 from workbench.data.draft import write_draft
 from workbench.data.guess import guesses, likely_kind
 from workbench.data.raw_table import table_of_text
+from workbench.data.scatter import noise_of
 from workbench.errors import WorkbenchError
+from workbench.explain.diagnosis import diagnose
+from workbench.explain.verdict import NOTHING_MISSING
 from workbench.models.bases import nominal_model
 
 KNOWN = {
@@ -53,7 +58,7 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
     campaign = read_campaign(tmp_path)
     (table,) = campaign.tables
     assert table.kind == "damping_velocity" and table.rows == 41 and table.conditions["shunt"].max() == 1e6
-    (score,) = compare(nominal_model(campaign), campaign, {}).scoreboard
+    (score,) = compare(nominal_model(campaign), campaign, library()).scoreboard
     # the scatter of neighbours says the size of the noise to within a quarter, 32 fitted readings its square to a half
     assert 0.3 < score.chi2_per_n < 1.25**2 * 1.5
     assert path.read_bytes() == before
@@ -72,6 +77,12 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
             ["i_d", "i_q", "speed", "v_d", "v_q", "torque"],
             "dq_operation",
         ),
+        (
+            "Drehzahl [1/min],Moment [Nm],i_a [Arms],P_mech [W],P_el [kW],cos phi [-],Wirkungsgrad,t_winding_C",
+            ["speed", "torque", "current", "", "power", "power_factor", "efficiency", "winding_T"],
+            "dyno_map",
+        ),
+        ("Wdh [-],v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
         ("Kraft [kN],zweite Kraft [N],v [m/s]", ["force", "", "velocity"], "damping_velocity"),
     ],
 )
@@ -80,6 +91,61 @@ def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
     found = guesses(table_of_text(f"{text}\n{row}\n", "f.csv"))
     assert [guess.quantity for guess in found] == quantities
     assert likely_kind(quantities) == kind
+
+
+def test_units_that_headings_leave_out_are_the_usual_ones():
+    found = guesses(table_of_text("eta,pf,t_winding_C,Strom [Aeff],angle\n0.9,0.8,30,2,5\n", "f.csv"))
+    assert [guess.unit for guess in found] == ["1", "1", "degC", "A", ""]
+
+
+@pytest.mark.parametrize("floor, share", [(0.3, 0.008), (1.0, 0.0)])
+@pytest.mark.parametrize("wild", [0.0, 30.0])
+def test_repeated_rows_show_the_noise_and_whether_it_grows(floor, share, wild):
+    random, places = np.random.default_rng(3), np.tile(np.linspace(-300, 300, 200), 2)
+    readings = places + (floor + share * np.abs(places)) * random.standard_normal(400)
+    readings[::40] += wild  # one in forty
+    said, shown_by = noise_of(readings, {"velocity": places}, [np.repeat([0.0, 1.0], 200)])
+    numbers = [float(n) for n in re.findall(r"[\d.]+", said)]
+    truth = [floor, share] if share else [floor]
+    assert shown_by == "repeated rows" and numbers == pytest.approx(truth, rel=0.35)  # two standard deviations of one
+    assert ("abs(y)" in said) == bool(share)
+
+
+def test_without_repeats_neighbours_show_the_noise_and_few_rows_none():
+    random, places = np.random.default_rng(4), np.linspace(0, 1, 400)
+    said, shown_by = noise_of(np.sin(places) + 0.01 * random.standard_normal(400), {"velocity": places})
+    assert shown_by == "neighbours" and float(said) == pytest.approx(0.01, rel=0.2)
+    assert noise_of(np.arange(5.0), {"velocity": np.arange(5.0)}) is None and noise_of(np.ones(20), {}) is None
+
+
+def test_what_is_logged_about_a_setting_is_one_condition():
+    """Two scans at 30 A, whose current and speed are logged with a scatter."""
+    random, angle = np.random.default_rng(5), np.tile(np.arange(0.0, 360.0, 6.0), 2)
+    logged = {
+        "angle_mech": angle,
+        "i_a": 30 + 0.03 * random.standard_normal(120),
+        "speed": np.repeat([999.6, 1000.3], 60),
+    }
+    readings = 20 * np.sin(5 * np.radians(angle)) + 0.02 * random.standard_normal(120)
+    said, shown_by = noise_of(readings, logged, [np.repeat([0.0, 1.0], 60)])
+    assert shown_by == "repeated rows" and float(said) == pytest.approx(0.02, rel=0.35)
+
+
+def test_what_a_device_is_usually_off_by_is_no_effect(tmp_path):
+    """The damper of the file pulls 1.7 % less and drags 30 % more than drawn."""
+    path = german_file(tmp_path)
+    write_draft([path])
+    draft = (tmp_path / "campaign.toml").read_text(encoding="utf-8")
+    for key, value in {**KNOWN, "force_constant_N_per_A": 61, "viscous_damping_Ns_per_m": 15}.items():
+        draft = draft.replace(f'{key} = "?"', f"{key} = {value}")
+    (tmp_path / "campaign.toml").write_text(draft, encoding="utf-8")
+    usual = read_campaign(tmp_path)
+    assert checks_of(usual) == () and diagnose(nominal_model(usual), usual, library()).verdict == NOTHING_MISSING
+    exactly = draft[: draft.index("[tolerance]")] + draft[draft.index("[[table]]") :]
+    (tmp_path / "campaign.toml").write_text(exactly, encoding="utf-8")
+    exact = read_campaign(tmp_path)
+    said = diagnose(nominal_model(exact), exact, library())
+    assert said.verdict != NOTHING_MISSING and "[tolerance] is empty" in said.checks[0]
 
 
 def test_a_device_is_taken_over_from_another_campaign(tmp_path):

@@ -1,0 +1,85 @@
+"""How far single readings of a laboratory's file scatter, by what stands in it. Only drafts are written from this."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.optimize import nnls
+
+_FEWEST_ROWS = 12  # whose third differences show a noise
+_FEWEST_REPEATS = 6  # differences between repeated rows that do
+_FEWEST_TO_GROW = 20  # of them that show whether it grows with the reading
+_ROUNDS = 20
+_SAME_SETTING = 0.005  # relative: what is logged of one setting lies no further apart
+
+
+def noise_of(
+    values: np.ndarray, conditions: Mapping[str, np.ndarray], books: Sequence[np.ndarray] = ()
+) -> tuple[str, str] | None:
+    """Standard uncertainty of one reading, as a campaign file spells it, and what shows it; None for few rows.
+
+    Differences between rows under the same conditions, or third differences along the first condition.
+
+    books: what only tells repeats and scans from one another
+    """
+    good = np.isfinite(values)
+    settings = [_settings(column[good], name) for name, column in conditions.items()]
+    values, places = values[good], np.column_stack([np.zeros(good.sum()), *settings])
+    again = _of_repeats(values, places)
+    if again is not None or len(values) < _FEWEST_ROWS:
+        return again
+    order = np.lexsort((*places.T, *(book[good] for book in books)))
+    size = max(_robust(np.diff(values[order], 3)) / np.sqrt(20.0), _of_digits(values))
+    return (f"{size:.2g}", "neighbours") if size else None
+
+
+def _settings(values: np.ndarray, name: str) -> np.ndarray:
+    """A condition as it was set (n,): of what is logged with a scatter about few settings the least of each, angles and
+    sweeps as they are."""
+    order = np.argsort(values)
+    below, above = values[order][:-1], values[order][1:]
+    near = above <= below + _SAME_SETTING * np.abs(below)
+    which = np.cumsum(np.append(True, ~near)) - 1
+    least, most = values[order][np.searchsorted(which, which)], values[order]
+    if name == "angle_mech" or (most > least + 2 * _SAME_SETTING * np.abs(least)).any():
+        return values
+    settings = np.empty(len(values))
+    settings[order] = least
+    return settings
+
+
+def _of_repeats(values: np.ndarray, places: np.ndarray) -> tuple[str, str] | None:
+    """From rows under the same conditions, None where there are few or all readings are alike."""
+    order = np.lexsort(places.T)
+    again = (places[order][1:] == places[order][:-1]).all(1)  # open circuits, which are infinite, are alike
+    if again.sum() < _FEWEST_REPEATS:
+        return None
+    apart, level = np.diff(values[order])[again] / np.sqrt(2.0), np.abs(values[order])[1:][again]
+    size, least = _robust(apart), _of_digits(values)
+    floor, share = _growing(np.abs(apart), level) if again.sum() >= _FEWEST_TO_GROW else (size, 0.0)
+    if size > least and share * level.max() > floor:
+        return f'"{max(floor, least):.2g} + {share:.2g}*abs(y)"', "repeated rows"
+    return (f"{max(size, least):.2g}", "repeated rows") if max(size, least) else None
+
+
+def _growing(sizes: np.ndarray, level: np.ndarray) -> tuple[float, float]:
+    """a and b of a standard deviation a + b level, from absolute deviations; wild ones count as three of them."""
+    shapes = np.column_stack([np.ones(len(level)), level])
+    deviation = np.full(len(level), _robust(sizes))
+    for _ in range(_ROUNDS):
+        weight = 1.0 / np.maximum(deviation, 1e-3 * deviation.max() + 1e-300)
+        seen = np.minimum(sizes, 3.0 * deviation) * np.sqrt(np.pi / 2.0)
+        found = nnls(shapes * weight[:, None], seen * weight)[0]
+        deviation = shapes @ found
+    return float(found[0]), float(found[1])
+
+
+def _robust(differences: np.ndarray) -> float:
+    """Standard deviation of normal numbers with this median of sizes."""
+    return 1.4826 * float(np.median(np.abs(differences)))
+
+
+def _of_digits(values: np.ndarray) -> float:
+    steps = np.diff(np.unique(values))
+    return float(steps.min()) / np.sqrt(12.0) if steps.size else 0.0
