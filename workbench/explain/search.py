@@ -197,8 +197,7 @@ def _next_exact(search: Search) -> Set | None:
     rivals = [n for n in others if search.log_posterior(n) + _doubt(search, n) > most]
     least = most - REACH - PART_GAINS * max(search.exact[leader], 0.0)
     parts = [n for n in search.ranked if n < leader and len(n) == len(leader) - 1 and search.log_posterior(n) >= least]
-    parts = [n for n in parts if n & search.of_expansion and n not in search.exact]
-    return next(iter(parts + rivals), None)
+    return next(iter([n for n in parts if n not in search.exact] + rivals), None)
 
 
 def _doubt(search: Search, names: Set) -> float:

@@ -116,11 +116,16 @@ class Search:
 
     def exactness(self, names: Set) -> float:
         """What an exact base model would give a set that has none: as much as the exact one that is most like it in
-        effects that the expansion is concerned with."""
+        effects that the expansion is concerned with. The null says nothing of sets that leave the device as it is: it
+        is exact from the beginning, their tolerances stand elsewhere."""
         if names in self.exact or len(self.exact) == 1:  # nothing but the null is
             return 0.0
         mine = names & self.of_expansion
-        unlike = lambda e: (-len(e & mine), len(e & self.of_expansion ^ mine), len(e ^ names), sorted(e))  # noqa: E731
+
+        def unlike(exact: Set) -> tuple:
+            field = exact & self.of_expansion
+            return -len(field & mine), len(field ^ mine), not exact, len(exact ^ names), sorted(exact)
+
         return self.exact[min(self.exact, key=unlike)]
 
     @cached_property
