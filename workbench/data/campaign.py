@@ -232,7 +232,7 @@ class _WholeTable:
         if column.role in ("scan", "repeat") and np.isnan(values).all():
             return self.raw.labels(column.place)
         if column.name == "shunt":
-            values[values == np.inf] = OPEN_CIRCUIT / factor(column.unit, self.name)
+            values[values == np.inf] = OPEN_CIRCUIT / factor(column.unit, f"{self.name}, {column.name}")
         return np.where(np.isinf(values), np.nan, values)
 
     def numbers(self, role: str) -> np.ndarray | None:

@@ -5,6 +5,7 @@ Temperatures stay in degrees Celsius (names end in ``_T``) and frequencies in he
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import Final
 
 import numpy as np
@@ -35,8 +36,9 @@ def factor(unit: str, where: str) -> float:
         WorkbenchError: the unit is not known.
     """
     if unit not in FACTORS:
-        known = ", ".join(sorted(FACTORS))
-        raise WorkbenchError(f"{where}: the unit {unit!r} is not known; use one of {known}.")
+        close = get_close_matches(unit, FACTORS, n=5, cutoff=0.5)
+        near = f"the nearest are {', '.join(close)}; all" if close else "all"
+        raise WorkbenchError(f"{where}: the unit {unit!r} is not known; {near} stand in docs/campaign.md.")
     return FACTORS[unit]
 
 
@@ -45,12 +47,12 @@ def to_inside(values: np.ndarray, name: str, unit: str, where: str) -> np.ndarra
     if name.endswith("_T") and unit in OFFSETS:
         scale, offset = OFFSETS[unit]
         return scale * (values + offset)
-    return values * factor(unit, where)
+    return values * factor(unit, f"{where}, {name}")
 
 
 def difference(unit: str, name: str, where: str) -> float:
     """Factor of a difference or an uncertainty to the unit used inside."""
-    return OFFSETS[unit][0] if name.endswith("_T") and unit in OFFSETS else factor(unit, where)
+    return OFFSETS[unit][0] if name.endswith("_T") and unit in OFFSETS else factor(unit, f"{where}, {name}")
 
 
 def for_people(name: str) -> tuple[str, float]:

@@ -85,7 +85,7 @@ def test_a_complex_response_shares_the_size_of_both_parts(tmp_path):
     "old, new, says",
     [
         ('unit = "deg", role', "role", "has no unit"),
-        ('unit = "deg"', 'unit = "degr"', "'degr' is not known"),
+        ('unit = "deg"', 'unit = "degr"', "angle: the unit 'degr' is not known; the nearest are deg"),
         ("angle = {", "angle_rad = {", "is not there; found angle"),
         ('role = "condition", u', 'role = "input", u', "use condition, response"),
         (', u_random = "1 + 0.01*abs(y)"', "", "has no u_random"),
