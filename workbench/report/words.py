@@ -47,7 +47,8 @@ def number(value: float | None, digits: int = 3) -> str:
     """A number without idle zeros or an exponent it can do without: ``0.4``, ``−12.3``, ``3812``, ``–`` for none."""
     if value is None or not isfinite(value):
         return number_text(value)
-    places = 0 if value == 0 else digits - 1 - floor(log10(abs(value)))
+    rounded = float(f"{value:.{digits}g}")
+    places = 0 if rounded == 0 else digits - 1 - floor(log10(abs(rounded)))
     text = f"{value:.0f}" if -_DIGITS_AT_MOST < places < 0 else f"{value:.{digits}g}"
     return text.replace("-", "\N{MINUS SIGN}")
 

@@ -57,7 +57,16 @@ def reading(comparison, title):
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.4, "0.4"), (-12.34, "−12.3"), (3811.6, "3812"), (14921.0, "14921"), (0.0, "0"), (None, "–"), (np.nan, "–")],
+    [
+        (0.4, "0.4"),
+        (-12.34, "−12.3"),
+        (3811.6, "3812"),
+        (14921.0, "14921"),
+        (999.7, "1000"),
+        (0.0, "0"),
+        (None, "–"),
+        (np.nan, "–"),
+    ],
 )
 def test_numbers_have_three_digits_and_no_needless_exponent(value, text):
     assert number(value) == text
