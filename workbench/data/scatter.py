@@ -24,6 +24,8 @@ def noise_of(
     books: what only tells repeats and scans from one another
     """
     good = np.isfinite(values)
+    if not good.any():
+        return None
     settings = [_settings(column[good], name) for name, column in conditions.items()]
     values, places = values[good], np.column_stack([np.zeros(good.sum()), *settings])
     again = _of_repeats(values, places)
