@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from workbench.compare.views import ChannelView, order_spectra, scalings, sequences
+from workbench.compare.views import ChannelView, channel_fit, order_spectra, scalings, sequences
 from workbench.data.stack import stacked
-from workbench.data.table import Response, Table
+from workbench.data.table import OPEN_CIRCUIT, Response, Table
 
 TURN = np.linspace(0, 2 * np.pi, 180, endpoint=False)
 RANDOM = np.random.default_rng(11)
@@ -71,3 +71,9 @@ def test_a_residual_that_goes_with_temperature_is_seen_over_temperature():
     over = {s.axis.name: s for s in sequences(view("drag", conditions, "torque", 0.01 * (warm - 50), 0.1))}
     assert over["magnet_T"].p_value < 0.01 < over["sample"].p_value
     assert over["magnet_T"].trend == pytest.approx(6.0, abs=0.8)
+
+
+def test_an_open_circuit_is_called_so():
+    velocity, shunt = (v.ravel() for v in np.meshgrid(np.linspace(0.1, 0.4, 8), [3.0, OPEN_CIRCUIT]))
+    found = channel_fit(view("damping_velocity", {"velocity": velocity, "shunt": shunt}, "force", 0 * shunt, 0.1))
+    assert set(found.series) == {"shunt 3 ohm", "shunt open"}

@@ -19,7 +19,7 @@ from effects.base import Effect
 from workbench.data.column_units import for_people
 from workbench.data.kinds import KINDS
 from workbench.data.stack import Channel
-from workbench.data.table import Table
+from workbench.data.table import OPEN_CIRCUIT, Table
 from workbench.findings import (
     Axis,
     ChannelFit,
@@ -134,9 +134,14 @@ def _series(view: ChannelView, along: str) -> tuple[str, ...]:
     for name in view.varying:
         values = np.round(view.table.conditions[name], 9)
         if name != along and len(np.unique(values)) <= LEVELS:
-            axis, factor = axis_of(name)
-            parts.append([f"{name} {factor * v:g} {axis.unit}".strip() for v in values])
+            parts.append([_level(name, value) for value in values])
     return tuple(", ".join(row) for row in zip(*parts)) if parts else ("",) * view.channel.size
+
+
+def _level(name: str, value: float) -> str:
+    axis, factor = axis_of(name)
+    is_open = name == "shunt" and value >= OPEN_CIRCUIT
+    return f"{name} open" if is_open else f"{name} {factor * value:g} {axis.unit}".strip()
 
 
 def regime_map(view: ChannelView) -> RegimeMap | None:

@@ -149,8 +149,8 @@ def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[
     words = f"the data speak {_nats(odds)} the effect"
     if old.blocks:
         words += (
-            f"; chi2/n of conditions left out of the fit, region by region, goes from {old.chi2_per_n:.3g} to "
-            f"{new.chi2_per_n:.3g}"
+            f"; chi2/n of conditions left out of the fit, region by region, goes from {old.chi2_per_n:.4g} to "
+            f"{new.chi2_per_n:.4g}"
         )
     else:
         words += "; these conditions have no regions, so that prediction beyond them was not tested"
