@@ -41,6 +41,7 @@ RESULTS = PROJECT / "results" / "reference" / "blind_score"
 WORK = PROJECT / "results" / "blind"
 WORKER = Path(__file__).parent / "blind_worker.py"
 SCORED = {"damper": 320, "dq": 320, "machine": 160}  # campaigns of each bench
+_LAST_LINES = 4  # of what a diagnosis said that ended with an error: where it was, and what happened
 LONGEST = 1800  # s that one diagnosis may take before it counts as an error
 
 
@@ -81,8 +82,8 @@ def diagnosed(task: Mapping[str, str]) -> dict:
         except subprocess.TimeoutExpired:
             return {"error": f"no answer after {LONGEST} s", "wall_s": perf_counter() - start}
         if end.returncode:
-            last = end.stderr.decode(errors="replace").strip().splitlines()[-1:] or [f"status {end.returncode}"]
-            return {"error": last[0], "wall_s": perf_counter() - start}
+            lines = end.stderr.decode(errors="replace").strip().splitlines() or [f"status {end.returncode}"]
+            return {"error": " | ".join(map(str.strip, lines[-_LAST_LINES:])), "wall_s": perf_counter() - start}
         return json.loads(out.read_text(encoding="utf-8"))
 
 
