@@ -30,7 +30,7 @@ from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.bench import CONDITION_STEP
 from workbench.likelihood.noise import Noise, measured_noise
-from workbench.likelihood.nuisance import Nuisance
+from workbench.likelihood.nuisance import Calibration
 from workbench.likelihood.own_errors import left_open, numerical
 from workbench.likelihood.predictor import STEP
 from workbench.likelihood.whitening import Whitener, whitener
@@ -142,7 +142,7 @@ class Prediction:
         return Prediction(stack, reading, sd, whitened, self.calibration)
 
 
-def predicted(known: Known, calibrations: Sequence[Nuisance], tables: Sequence[Table]) -> Prediction:
+def predicted(known: Known, calibrations: Sequence[Calibration], tables: Sequence[Table]) -> Prediction:
     """What a known device should show in some tables, the instruments' own calibration found from them."""
     stack, c = stacked(tables), np.zeros(len(calibrations))
     shapes = numerical(known.nominal, stack)
@@ -177,13 +177,12 @@ class _Asked:
     """A known device at the new instruments."""
 
     known: Known
-    calibrations: tuple[Nuisance, ...]
+    calibrations: tuple[Calibration, ...]
 
     def model_at(self, step: np.ndarray, c: np.ndarray) -> Model:
         model = self.known.model_at(step)
-        for nuisance, z in zip(self.calibrations, c):
-            model = nuisance.apply(model, z)
-        return model
+        errors = (nuisance.at(z) for nuisance, z in zip(self.calibrations, c.tolist()))
+        return replace(model, effects=(*model.effects, *errors))
 
     def around(self, stack: Stack, c: np.ndarray) -> _Around:
         """The prediction at some calibration, with its derivatives."""

@@ -16,7 +16,6 @@ from effects.parameter import parameters_of
 from workbench.data.column_units import split_unit
 from workbench.data.table import Campaign, Systematic, Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.model import Model
 
 
 @dataclass(frozen=True)
@@ -28,9 +27,6 @@ class TolerancedInput:
     @property
     def name(self) -> str:
         return self.tolerance.name
-
-    def apply(self, model: Model, z: float) -> Model:
-        return replace(model, design=model.base.with_tolerance(model.design, self.tolerance, z))
 
 
 @dataclass(frozen=True)
@@ -44,9 +40,8 @@ class InstrumentError:
     def name(self) -> str:
         return self.systematic.name
 
-    def apply(self, model: Model, z: float) -> Model:
-        value = {next(iter(parameters_of(self.effect))): self.systematic.sigma * z}
-        return replace(model, effects=model.effects + (replace(self.effect, **value),))
+    def at(self, z: float) -> InstrumentEffect:
+        return replace(self.effect, **{next(iter(parameters_of(self.effect))): self.systematic.sigma * z})
 
 
 @dataclass(frozen=True)
@@ -81,9 +76,8 @@ class DeclaredError:
     def name(self) -> str:
         return self.systematic.name
 
-    def apply(self, model: Model, z: float) -> Model:
-        error = ColumnError(self.systematic.kind, self.columns, self.systematic.sigma * z)
-        return replace(model, effects=model.effects + (error,))
+    def at(self, z: float) -> InstrumentEffect:
+        return ColumnError(self.systematic.kind, self.columns, self.systematic.sigma * z)
 
 
 @dataclass(frozen=True)
@@ -110,7 +104,8 @@ class EffectParameters:
         return self.effect.at(np.array(now) + x)
 
 
-Nuisance = TolerancedInput | InstrumentError | DeclaredError
+Calibration = InstrumentError | DeclaredError
+Nuisance = TolerancedInput | Calibration
 
 
 def nuisances_of(

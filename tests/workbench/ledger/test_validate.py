@@ -196,7 +196,8 @@ def truth():
 def drawn(truth, random):
     """Readings of a device and an instrument as uncertain as they are said to be, and the same without noise."""
     step = random.multivariate_normal(np.zeros(2), truth.known.covariance)
-    model = truth.gain.apply(truth.known.model_at(step), random.standard_normal())
+    model = truth.known.model_at(step)
+    model = replace(model, effects=(*model.effects, truth.gain.at(random.standard_normal())))
     exact = model.answers(truth.table)["force"]
     response = replace(truth.table.responses["force"], values=exact + NOISE * random.standard_normal(len(exact)))
     return replace(truth.table, responses={"force": response}), exact
