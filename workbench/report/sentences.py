@@ -356,7 +356,7 @@ def verdict_sentence(d: Diagnosis) -> str:
         "effect": lambda: f"What is missing is {names[0]}{_size(d)}.",
         "group": lambda: f"What is missing is one of {listed(names, 'or')}; these data cannot tell which.{_besides(d)}",
         "pair": lambda: f"Two effects are missing together: {listed(names)}.",
-        "several": lambda: f"{_COUNTS[len(names)]} effects are missing together: {listed(names)}.",
+        "several": lambda: f"{_COUNTS.get(len(names), len(names))} effects are missing together: {listed(names)}.",
         "partial": lambda: f"{_explains(names)} a part{_size(d)}{_rest(d)}.{_besides(d)}",
         "none_of_these": lambda: _none_of_these(d),
         "cannot_tell": lambda: _cannot_tell(d),
@@ -368,7 +368,7 @@ def _convention(names: list[str]) -> str:
     return f"The data look as if read by another convention: {listed(names)}. No effect is named until this is settled."
 
 
-_COUNTS = {2: "Two", 3: "Three", 4: "Four"}
+_COUNTS = {3: "Three", 4: "Four", 5: "Five", 6: "Six"}
 
 
 def _explains(names: list[str]) -> str:

@@ -198,6 +198,14 @@ def test_every_verdict_is_a_plain_sentence(diagnosis):
         assert words in sentence and sentence.endswith("Probability 95 %.")
 
 
+@pytest.mark.parametrize("count", range(3, 9))
+def test_any_number_of_effects_is_said(diagnosis, count):
+    """A machine bench names four beside the friction that every bench has."""
+    names = tuple(f"effect_{k}" for k in range(count))
+    sentence = verdict_sentence(replace(diagnosis, verdict="several", names=names))
+    assert f"{listed([f'effect {k}' for k in range(count)])}." in sentence
+
+
 def test_every_verdict_says_what_its_probability_is_of(diagnosis):
     said = {verdict: meaning(of(diagnosis, verdict)) for verdict in NINE}
     assert all(words.startswith("The probability is that of the statement that") for words in said.values())
