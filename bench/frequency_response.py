@@ -18,9 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import ShortTimeFFT
-from scipy.signal.windows import hann
-from scipy.stats import f as fisher
+import scipy
 
 from bench.errors import RecordError
 from bench.record import Record
@@ -76,13 +74,14 @@ def frequency_response(record: Record, cause: np.ndarray, answer: np.ndarray, se
             f"{record.name}: expected {_FEWEST_SEGMENTS} segments of {segment:g} s or more for an averaged spectrum, "
             f"found {max(count, 0)} in {record.duration:.3g} s; record longer or state a shorter segment."
         )
-    transform = ShortTimeFFT(hann(length, sym=False), hop, 1 / record.step, scale_to="psd")
+    window = scipy.signal.windows.hann(length, sym=False)
+    transform = scipy.signal.ShortTimeFFT(window, hop, 1 / record.step, scale_to="psd")
     whole = slice(transform.lower_border_end[1], transform.upper_border_begin(record.samples)[1])
     x, y = (transform.stft(one - one.mean())[:, whole] for one in (cause, answer))
     return _of_segments(transform.f[1:], x[1:], y[1:], x.shape[1] / _shared(transform))
 
 
-def _shared(transform: ShortTimeFFT) -> float:
+def _shared(transform: scipy.signal.ShortTimeFFT) -> float:
     """How many overlapping segments say as much as one that shares nothing: 1 + 2 rho^2 (Welch 1967), half overlap."""
     window = transform.win
     rho = float(window[transform.hop :] @ window[: -transform.hop] / (window @ window))
@@ -95,6 +94,6 @@ def _of_segments(frequency: np.ndarray, x: np.ndarray, y: np.ndarray, averages: 
     s_xy = np.sum(np.conj(x) * y, axis=1)
     coherence = np.abs(s_xy) ** 2 / (s_xx * s_yy)
     n = 2 * averages
-    share = 2 / (n - 2) * fisher.ppf(_CONFIDENCE, 2, n - 2)
+    share = 2 / (n - 2) * scipy.stats.f.ppf(_CONFIDENCE, 2, n - 2)
     radius = np.sqrt(share * (1 - coherence) * s_yy / s_xx)
     return FrequencyResponse(frequency, s_xy / s_xx, s_yy / np.conj(s_xy), coherence, averages, radius)

@@ -19,14 +19,14 @@ from math import exp
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from bench.errors import RecordError
 from bench.memory import memory_of
 
 Model = Callable[[Mapping[str, float]], Sequence[np.ndarray]]  # values by name -> answer to every record
 
-NINETY = float(norm.ppf(0.95))  # standard deviations of a 90 % interval
+NINETY = float(ndtri(0.95))  # standard deviations of a 90 % interval
 NOT_IDENTIFIED = 0.5  # relative standard deviation beyond which the records do not say a parameter's size
 _STEP = 1e-4  # of a logarithm, for derivatives: between the rounding of an integrator and the curvature of the model
 _AT_BOUND = 1e-3  # distance of a logarithm from its bound

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import log10, pi
 
 import numpy as np
-from scipy.signal import freqs_zpk, lfilter
+import scipy
 
 from bench.errors import RecordError
 from bench.record import Record
@@ -50,7 +50,7 @@ def a_weighting(frequency: np.ndarray) -> np.ndarray:
 
     def answer(at: np.ndarray) -> np.ndarray:
         """Response before it is made 1 at 1 kHz, complex, (n,); at: [Hz], (n,)."""
-        return freqs_zpk([0.0] * 4, poles, 1.0, 2 * pi * np.atleast_1d(at))[1]
+        return scipy.signal.freqs_zpk([0.0] * 4, poles, 1.0, 2 * pi * np.atleast_1d(at))[1]
 
     return (answer(np.asarray(frequency).ravel()) / np.abs(answer(np.array([1000.0])))).reshape(np.shape(frequency))
 
@@ -65,7 +65,7 @@ def sound_levels(record: Record) -> SoundLevels:
     spectrum = np.fft.rfft(pressure) * a_weighting(np.fft.rfftfreq(record.samples, record.step))
     weighted = np.fft.irfft(spectrum, record.samples)
     keep = np.exp(-record.step / FAST)
-    mean_square = lfilter([1 - keep], [1, -keep], np.square(weighted))
+    mean_square = scipy.signal.lfilter([1 - keep], [1, -keep], np.square(weighted))
     fast = 10 * np.log10(np.maximum(mean_square, 1e-30) / REFERENCE_PRESSURE**2)
     settled = record.time >= 5 * FAST
     return SoundLevels(record.name, _level(weighted), _level(pressure), float(fast[settled].max()), record.time, fast)

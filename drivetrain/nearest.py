@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from drivetrain.asked import Check, Requirement
 from drivetrain.capability import ActuatorDesign, together
@@ -99,7 +99,7 @@ class _Asked:
     def of_a_spread(self) -> np.ndarray:
         """x of many spread over the range, of which the least margin is largest."""
         reach = np.log(LEVER_RANGE)
-        spread = reach * (2 * qmc.Sobol(len(self.levers), scramble=False).random_base2(_SPREAD) - 1)
+        spread = reach * (2 * scipy.stats.qmc.Sobol(len(self.levers), scramble=False).random_base2(_SPREAD) - 1)
         return np.asarray(spread[int(self.margins(spread).min(axis=0).argmax())])
 
     def least_margin(self, x: np.ndarray) -> float:

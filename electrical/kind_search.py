@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from math import inf, lcm, pi, sqrt
 
 import numpy as np
+import scipy
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from electrical.driven_machine import BegunMachine, DrivenMachine
 from geometry.areas import part_areas
@@ -106,7 +106,7 @@ class KindTask:
 
 def kind_search_stage(stated: StatedDesign, search: KindSearch, workers: Workers) -> KindOutcome:
     """Sample, then better the best. Raises NoDesignError where nothing holds the limit."""
-    places = qmc.Sobol(len(search.moves) + 1, seed=0).random(search.samples)
+    places = scipy.stats.qmc.Sobol(len(search.moves) + 1, seed=0).random(search.samples)
     tasks = {f"design {k}": KindTask(stated, search, tuple(place)) for k, place in enumerate(places.tolist())}
     found = workers.map("sweep", solve_place, tasks)
     built = {name: one for name, one in found.items() if one is not None}

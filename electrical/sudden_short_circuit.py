@@ -16,7 +16,7 @@ speed is constant, and dampers are left out (magnets and sheet have none that co
 from __future__ import annotations
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 from electrical.flux_map_machine import FluxMapMachine
 
@@ -40,6 +40,7 @@ def first_peak(machine: FluxMapMachine, speed: float, i_d: float, i_q: float) ->
 
     size = float(np.hypot(i_d, i_q)) + machine.reach
     turn = np.linspace(0.0, 2 * np.pi, _STEPS)
-    found = solve_ivp(rate, (0.0, turn[-1]), [i_d, i_q], t_eval=turn, rtol=_TOLERANCE, atol=_TOLERANCE * size)
+    tolerances = {"rtol": _TOLERANCE, "atol": _TOLERANCE * size}
+    found = scipy.integrate.solve_ivp(rate, (0.0, turn[-1]), [i_d, i_q], t_eval=turn, **tolerances)
     worst = int(np.argmin(found.y[0]))
     return float(found.y[0, worst]), float(found.y[1, worst])

@@ -424,7 +424,8 @@ class FieldModel:
     def tangent(self, solution: FieldSolution) -> TangentSystem:
         """The tangent matrix at a solution of this model, factorised."""
         problem = _Problem(self, solution.point, self.load(solution.point))
-        return TangentSystem(problem, problem.factorise(problem.free_values(solution.a)))
+        u = problem.free_values(solution.a)
+        return TangentSystem(problem, u, problem.factorise(u))
 
     @cached_property
     def coarse_model(self) -> FieldModel:
@@ -595,7 +596,13 @@ class TangentSystem:
     """
 
     problem: _Problem
+    at: np.ndarray  # the free unknowns (m,) that it was made at [Wb/m]
     system: SymmetricSystem
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Load minus field forces there (m,) [A]; it costs little, for the iron is known."""
+        return self.problem.residual(self.at)
 
     def response(self, load: np.ndarray) -> np.ndarray:
         """Change of the potential (n,) for a change of the load: (n,) on all, or (m,) on the free unknowns [A]."""

@@ -52,10 +52,11 @@ def ahead(solution: FieldSolution, variations: dict[str, Variation]) -> dict[str
     """
     if not variations:
         return {}
-    here = solution.model.residual(solution.point, solution.a)
+    tangent = solution.model.tangent(solution)
+    here = tangent.residual
     changed = [v.at(solution.model, solution.point, v.step) for v in variations.values()]
     loads = np.stack([model.residual(point, solution.a) - here for model, point in changed])
-    changes = solution.model.tangent(solution).responses(loads)
+    changes = tangent.responses(loads)
     return {
         name: replace(solution, model=model, point=point, a=solution.a + change)
         for name, (model, point), change in zip(variations, changed, changes)

@@ -171,6 +171,8 @@ class _Problem:
         return np.vstack([-self.slopes(x)[1] / self.limit, np.transpose(rules)])
 
     def _rules(self, x: np.ndarray) -> np.ndarray:
+        if not self.freedom.rules:  # most searches have none, and each look asks
+            return np.empty(0)
         machine = self.machine(x)
         layout = self.solver.judge.case.layout(machine)
         return np.array([rule.room(machine, layout) for rule in self.freedom.rules])

@@ -18,6 +18,8 @@ from processes import Pool, Processes
 from study.errors import StudyError
 
 REPORT = "report.html"
+# What stages load at first use: workers share it instead of loading it each.
+SHARED = ("scipy.integrate", "scipy.signal")
 
 
 def add_pool(parser: argparse.ArgumentParser) -> None:
@@ -57,7 +59,7 @@ def pool_of(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
         raise StudyError(f"--jobs {options.jobs}: give one process or more.")
     modules = tuple({stage.function.__module__: None for stage in graph.stages})
     dask = options.executor == "dask"
-    pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, modules)
+    pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, (*modules, *SHARED))
     try:
         yield pool
     except BaseException:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 from thermal.errors import ThermalError
 from thermal.network import Body, Temperatures
@@ -59,7 +59,7 @@ def course(
         warming = (network.vector(heat) + inflow - matrix @ state[:-2]) / network.capacities
         return np.array([*warming, sum(heat.values()), network.delivered(temperature)])
 
-    found = solve_ivp(
+    found = scipy.integrate.solve_ivp(
         rates,
         (0.0, duration),
         np.array([*first.vector(start), 0.0, 0.0]),

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from math import lcm, pi
 
 import numpy as np
-from scipy.signal import resample
+import scipy
 
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.defects import DynamicEccentricity, MagnetPosition, StaticEccentricity, deformed
@@ -182,7 +182,7 @@ def peak_to_peak(waveforms: np.ndarray) -> np.ndarray:
 
     waveforms: [any unit], (..., n); peak_to_peak: [the same], (...,)
     """
-    return np.ptp(resample(waveforms, _FINER * waveforms.shape[-1], axis=-1), axis=-1)
+    return np.ptp(scipy.signal.resample(waveforms, _FINER * waveforms.shape[-1], axis=-1), axis=-1)
 
 
 def _orders(waveform: np.ndarray) -> np.ndarray:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.signal import bilinear, lfilter
 
 # Numerator and denominator in descending powers of s, thesis eq. 3.23 (fit by Zuo and Nayfeh).
 WEIGHTING = ((80.03, 989.0, 0.02108), (1.0, 78.92, 2412.0, 5614.0))
@@ -25,4 +25,4 @@ def weighted_acceleration(acceleration: np.ndarray, step: float) -> np.ndarray:
 
     acceleration: [m/s^2], samples along the last axis, (..., t)
     """
-    return lfilter(*bilinear(*WEIGHTING, fs=1 / step), acceleration, axis=-1)
+    return scipy.signal.lfilter(*scipy.signal.bilinear(*WEIGHTING, fs=1 / step), acceleration, axis=-1)

@@ -7,7 +7,7 @@ from math import exp, pi, sqrt
 from pathlib import Path
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from vehicle.errors import VehicleError, require_positive
 from vehicle.tables import read_columns
@@ -99,7 +99,7 @@ class IsoRoad(Road):
         count = int(np.ceil(np.max(time) / self.sample_time)) + 1
         decay = exp(-self.cutoff(speed) * self.sample_time)
         gain = self.noise_gain(speed) * (1 - decay) / self.cutoff(speed)
-        samples = lfilter([0.0, gain], [1.0, -decay], self.noise(count + 1))
+        samples = scipy.signal.lfilter([0.0, gain], [1.0, -decay], self.noise(count + 1))
         return np.interp(time, np.arange(count + 1) * self.sample_time, samples, left=0.0)
 
     @property

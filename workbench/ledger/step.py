@@ -15,7 +15,7 @@ from math import log, log1p, prod
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import chi2
+import scipy
 
 from effects.base import Effect
 from workbench.data.stack import Channel
@@ -163,7 +163,7 @@ def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[
 
 def noise_alone(rows: int) -> float:
     """chi2/n of so many rows that noise alone stays below with probability ``NOISE_BAND``."""
-    return float(chi2.ppf(NOISE_BAND, rows)) / rows
+    return float(scipy.stats.chi2.ppf(NOISE_BAND, rows)) / rows
 
 
 def _nats(odds: float) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from effects.base import Effect, InstrumentEffect
 from workbench.data.campaign import columns_of_systematics
@@ -26,7 +26,7 @@ from workbench.likelihood.nuisance import Nuisance, nuisances_of
 from workbench.models.bases import model_of_device
 from workbench.models.model import Model
 
-HALF_90 = float(norm.ppf(0.95))  # half width of a 90 % band in standard deviations
+HALF_90 = float(ndtri(0.95))  # half width of a 90 % band in standard deviations
 LEVELS = 10  # different values up to which a condition tells series apart
 
 

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.stats import norm
-from scipy.stats import t as student
+import scipy
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -35,7 +34,7 @@ FAR = 20.0  # a standard normal number is not followed beyond
 
 def prior_cost(z: np.ndarray) -> float:
     """Minus ln of Student's t density of z over the standard normal one at zero."""
-    level = student.logpdf(0.0, TAILS) - norm.logpdf(0.0)
+    level = scipy.stats.t.logpdf(0.0, TAILS) - scipy.stats.norm.logpdf(0.0)
     return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - level))
 
 

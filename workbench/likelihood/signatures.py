@@ -12,8 +12,8 @@ from itertools import product
 from math import log
 
 import numpy as np
+import scipy
 from scipy.special import logsumexp
-from scipy.stats import t as student
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -112,7 +112,8 @@ def signature(effect: Effect, change: Callable[[Effect], np.ndarray]) -> Signatu
     z, width, shape = grid(k)
     changes, possible = _changes(effect, z, change)
     tangents = np.array([_tangent(changes, possible, shape, a, width) for a in range(k)])
-    masses = np.log(student.cdf(z + width / 2, TAILS) - student.cdf(z - width / 2, TAILS)).sum(axis=1)
+    below, above = (scipy.stats.t.cdf(z + side * width / 2, TAILS) for side in (-1, 1))
+    masses = np.log(above - below).sum(axis=1)
     masses = np.where(possible, masses, -np.inf)
     return Signature(effect, z, changes, tangents, masses - logsumexp(masses), width)
 

@@ -15,8 +15,8 @@ from functools import cached_property
 from math import log
 
 import numpy as np
+import scipy
 from scipy.special import logsumexp
-from scipy.stats import rankdata
 
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
@@ -212,7 +212,7 @@ def _places(conditions: Mapping[str, np.ndarray], length: int) -> np.ndarray:
         if "angle" in name:
             columns += [np.cos(values) / TURNS[length], np.sin(values) / TURNS[length]]
         else:
-            rank = rankdata(np.round(values, 12))
+            rank = scipy.stats.rankdata(np.round(values, 12))
             columns.append((rank - rank.mean()) / rank.std() / LENGTHS[length])
     return np.array(columns).T if columns else np.zeros((len(next(iter(conditions.values()))), 1))
 
