@@ -152,6 +152,14 @@ def test_rotation_is_complete(turning, assert_readable):
     assert_readable(figure)
 
 
+def test_rotation_of_a_machine_without_magnets_has_no_cogging(turning, assert_readable):
+    figure = rotation(turning.assign(torque_no_current_Nm_per_m=0.0))
+    assert len(figure.axes) == len(rotation(turning).axes) - 1
+    assert "cogging" in words(rotation(turning)) and "cogging" not in words(figure)
+    assert "(b) flux density in the teeth" in words(figure)
+    assert_readable(figure)
+
+
 def test_probes_are_in_the_order_of_their_numbers(turning):
     assert probe_columns(turning, "tooth_") == ["tooth_0_T", "tooth_1_T", "tooth_2_T", "tooth_10_T"]
 
