@@ -109,7 +109,7 @@ def _draw_torque(axes: Axes, table: pd.DataFrame, current: str) -> None:
         if column not in table:
             continue
         mean = mean_over_period(table.angle_mech_deg.to_numpy(), table[column].to_numpy())
-        axes.plot(table.angle_mech_deg, table[column], label=f"{name}, mean {mean:.2f} Nm/m", **look)
+        axes.plot(table.angle_mech_deg, table[column], label=f"{name}, mean {mean:#.5g} Nm/m", **look)
         axes.axhline(mean, linewidth=0.9, **{**look, "linestyle": ":"})
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + _HEADROOM * (high - low))

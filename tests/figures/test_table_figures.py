@@ -146,7 +146,7 @@ def turning():
 def test_rotation_is_complete(turning, assert_readable):
     figure = rotation(turning, null_angle_deg=-24.0, q_axis_angle_deg=-21.0)
     text = words(figure)
-    assert "mean 55.00 Nm/m" in text and "mean 55.10 Nm/m" in text
+    assert "mean 55.000 Nm/m" in text and "mean 55.100 Nm/m" in text
     assert "null angle −24°" in text and "q-axis angle −21°" in text
     assert "mechanical rotor angle / °" in text and "|B| / T" in text
     assert_readable(figure)
