@@ -19,11 +19,13 @@ from geometry.rotors.outline_magnets import OutlineMagnets
 from geometry.rotors.ribbed_v_shape import RibbedVShape
 from geometry.rotors.spoke import Spoke
 from geometry.rotors.surface_magnets import SurfaceMagnets
+from pipeline.modules import PROJECT
 from study.machine_file import MachineFile, read_machine
 from units import MILLIMETRE as mm
 
 FILES = ("outrunner_9_12", "inset_ferrite_6_4", "prius_2004", "v2_48_8", "consequent_12_8", "synrm_48_4",
          "szesynrm_outline")  # fmt: skip
+OWN_MACHINE = PROJECT / "examples" / "own_machine" / "assisted.toml"
 INSIDE_OF_TWELVE_SLOTS = (
     SurfaceMagnets(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.85, PARALLEL),
     BreadLoafMagnets(8, 15.7 * mm, 12.8 * mm, 9.0 * mm, 5.0 * mm),
@@ -49,6 +51,11 @@ def halbach() -> tuple[str, MachineFile]:
     return "outrunner_9_12, Halbach", _with_rotor(
         found, replace(found.machine.rotor, magnetisation=HalbachMagnetisation())
     )
+
+
+def own() -> tuple[str, MachineFile]:
+    """A rotor that is no kind of the package, with bars of ferrite across its poles."""
+    return "one's own", read_machine(OWN_MACHINE)
 
 
 def _with_rotor(found: MachineFile, rotor: Rotor) -> MachineFile:

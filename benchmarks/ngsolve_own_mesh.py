@@ -39,12 +39,24 @@ class Peer:
     triangles: int
 
 
+@dataclass(frozen=True)
+class Fineness:
+    """By which edges are divided, and those at corners of the drawing once more, dimensionless."""
+
+    edges: float = 1.0
+    corners: float = 1.0
+
+
 def solve_on_own_mesh(
-    section: CrossSection, materials: MachineMaterials, angle: float, states: Sequence[np.ndarray], finer: float = 1.0
+    section: CrossSection,
+    materials: MachineMaterials,
+    angle: float,
+    states: Sequence[np.ndarray],
+    fineness: Fineness = Fineness(),
 ) -> tuple[Peer, ...]:
     """A machine at some ampere-turns of a coil of phases A, B, C, each (3,) [A], on one mesh.
 
-    angle: of the rotor [rad]; finer: by which edges are divided, dimensionless
+    angle: of the rotor [rad]
     Raises ValueError where stator and rotor are of two steels.
     """
     if materials.stator_steel is not materials.rotor_steel:
@@ -52,7 +64,7 @@ def solve_on_own_mesh(
     outline = whole_outline(section.machine, angle)
     with TemporaryDirectory() as name:
         folder = Path(name)
-        case = _description(section, materials, outline, angle, finer) | {"states": [s.tolist() for s in states]}
+        case = _description(section, materials, outline, angle, fineness) | {"states": [s.tolist() for s in states]}
         (folder / "case.json").write_text(json.dumps(case))
         np.savez(folder / "outline.npz", **_arrays(outline))
         run([str(PYTHON), str(_WORKER), name], folder)
@@ -67,8 +79,9 @@ def _peer(found: dict) -> Peer:
 
 
 def _description(
-    section: CrossSection, materials: MachineMaterials, outline: WholeOutline, angle: float, finer: float
+    section: CrossSection, materials: MachineMaterials, outline: WholeOutline, angle: float, fineness: Fineness
 ) -> dict:
+    finer = fineness.edges
     regions = sorted({*outline.left, *outline.right} - {""})
     b2, nu = sampled_law(materials.stator_steel, _LAW)
     return {
@@ -82,7 +95,7 @@ def _description(
         "coil_sides": {f"slot_{slot}_{side}": section.layout.coil_side(slot, side)
                        for slot in range(section.machine.slots) for side in "RL"},
         "edge_lengths": {name: length / finer for name, length in _edge_lengths(section, regions).items()},
-        "corner": _in_gap(section) / finer,
+        "corner": _in_gap(section) / finer / fineness.corners,
         "largest": section.machine.slot_pitch * section.machine.mid_gap_radius / finer,
         "gap": (section.machine.rotor.rim_radius, section.machine.stator.rim_radius),
         "sectors": 1,

@@ -15,34 +15,10 @@ from pathlib import Path
 import ngsolve
 import numpy as np
 from netgen.geom2d import SplineGeometry
-from ngsolve import BaseVector, GridFunction, InnerProduct, Integrate, Mesh, dx, grad, sin, sqrt, x, y
-from ngsolve_worker import Problem
+from ngsolve import GridFunction, Integrate, Mesh, dx, grad, sin, sqrt, x, y
+from ngsolve_worker import Damped, Problem
 
 GRADING = 0.4  # of edges from one to the next
-TURNED = 0.1  # of the slope of the energy along a step, by which it may have turned at its end
-LEAST_SHARE = 1e-3
-
-
-class Damped(Problem):
-    """Newton's steps halved where they overshoot: whole ones circle round saturated bridges.
-
-    The solution has the least energy W(a), which is convex, and the residual is -dW/da. A step s leads down,
-    residual . s > 0, and is too long where that slope has turned at its end, residual(a + s) . s < 0.
-    """
-
-    def share(self, a: GridFunction, step: BaseVector, residual: BaseVector) -> float:
-        """The largest of 1, 1/2, 1/4, ... at which the slope has not turned by more than a tenth."""
-        share, slope = 1.0, InnerProduct(residual, step)
-        while share > LEAST_SHARE and self.slope(a.vec, share, step) < -TURNED * slope:
-            share /= 2
-        return share
-
-    def slope(self, a: BaseVector, share: float, step: BaseVector) -> float:
-        """Of minus the energy along a step [J/m], where a share of it is taken."""
-        there, force = a.CreateVector(), a.CreateVector()
-        there.data = a + share * step
-        self.form.Apply(there, force)
-        return InnerProduct(self.load.vec, step) - InnerProduct(force, step)
 
 
 def meshed(outline: dict, case: dict) -> Mesh:

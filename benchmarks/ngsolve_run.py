@@ -29,14 +29,16 @@ def ngsolve_version() -> str:
     return output.split()[-1]
 
 
-def solve_ngsolve(case: FieldCase, tolerance: float, points: int = 3) -> CodeResult:
+def solve_ngsolve(case: FieldCase, tolerance: float, points: int = 3, damped: bool = False) -> CodeResult:
     """Solve with NGSolve; the cost is that of Newton's method, from zero field.
 
     tolerance: residual relative to the load; points: 3 for the quadrature of this project, more for a finer one
+    damped: whether steps that overshoot are halved, which saturated bridges need and the clock would see
     """
     with TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "case.json").write_text(json.dumps(_description(case, tolerance, points)))
+        told = _description(case, tolerance, points) | {"damped": damped}
+        (folder / "case.json").write_text(json.dumps(told))
         np.savez(folder / "mesh.npz", **_arrays(case.mesh))
         run([str(PYTHON), str(_WORKER), name], folder)
         result = json.loads((folder / "result.json").read_text())

@@ -42,6 +42,8 @@ from ngsolve import (
 )
 
 MOST_STEPS = 40
+TURNED = 0.1  # of the slope of the energy along a step, by which it may have turned at its end
+LEAST_SHARE = 1e-3
 MANY_POINTS = 6  # order of the quadrature that shows what three points leave out
 # Inside the triangle, exact to degree two; NGSolve's own three points lie on the edges.
 THREE_POINTS = IntegrationRule(points=[(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)], weights=[1 / 6] * 3)
@@ -133,6 +135,28 @@ class Problem:
         return self.case["sectors"] / self.case["side_area"] * Integrate(turns * a * self.over(*sides), self.mesh)
 
 
+class Damped(Problem):
+    """Newton's steps halved where they overshoot: whole ones circle round saturated bridges.
+
+    The solution has the least energy W(a), which is convex, and the residual is -dW/da. A step s leads down,
+    residual . s > 0, and is too long where that slope has turned at its end, residual(a + s) . s < 0.
+    """
+
+    def share(self, a: GridFunction, step: BaseVector, residual: BaseVector) -> float:
+        """The largest of 1, 1/2, 1/4, ... at which the slope has not turned by more than a tenth."""
+        share, slope = 1.0, InnerProduct(residual, step)
+        while share > LEAST_SHARE and self.slope(a.vec, share, step) < -TURNED * slope:
+            share /= 2
+        return share
+
+    def slope(self, a: BaseVector, share: float, step: BaseVector) -> float:
+        """Of minus the energy along a step [J/m], where a share of it is taken."""
+        there, force = a.CreateVector(), a.CreateVector()
+        there.data = a + share * step
+        self.form.Apply(there, force)
+        return InnerProduct(self.load.vec, step) - InnerProduct(force, step)
+
+
 def remanence(strength: float, axis: float, direction: float, turn: float) -> tuple:
     """Of a magnet as a function of the place [T]: from the axis on its direction turns by so much per angle [rad]."""
     off = atan2(y * np.cos(axis) - x * np.sin(axis), x * np.cos(axis) + y * np.sin(axis))
@@ -194,7 +218,7 @@ def main(folder: Path) -> None:
     ngsolve.SetNumThreads(1)
     arrays = dict(np.load(folder / "mesh.npz"))
     case = json.loads((folder / "case.json").read_text())
-    problem = Problem(case, Mesh(netgen_mesh(case, arrays)))
+    problem = (Damped if case["damped"] else Problem)(case, Mesh(netgen_mesh(case, arrays)))
     problem.newton()
     began = time.process_time(), time.perf_counter()
     a, residuals = problem.newton()

@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 from benchmarks import own_meshes
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT, relative
-from benchmarks.drawn_kinds import drawn, halbach
+from benchmarks.drawn_kinds import drawn, halbach, own
 from benchmarks.ngsolve_run import solve_ngsolve
 from benchmarks.reference_case import FieldCase, State
 from benchmarks.tables import write_table
@@ -52,6 +52,7 @@ def machines() -> Iterator[tuple[str, MachineFile]]:
     """All that are compared on the same triangles."""
     yield from drawn()
     yield halbach()
+    yield own()
 
 
 def case_of(found: MachineFile, order: str = "P2") -> FieldCase:
@@ -72,7 +73,7 @@ def _start(section: CrossSection, part: str) -> float:
 def compared(name: str, found: MachineFile) -> Row:
     """One machine by both codes."""
     case = case_of(found)
-    ours, peer = solve_cold(case, EXACT), solve_ngsolve(case, EXACT)
+    ours, peer = solve_cold(case, EXACT), solve_ngsolve(case, EXACT, damped=True)
     return Row(
         type(found.machine.rotor).__name__,
         name,

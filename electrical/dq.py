@@ -362,11 +362,15 @@ class _TorqueLines:
 
     @classmethod
     def of(cls, machine: DqMachine, limits: DriveLimits, levels: np.ndarray) -> _TorqueLines:
-        """Torque inverted on every line of constant i_d; then the point of least current on every line of torque."""
+        """Torque inverted on every line of constant i_d; then the point of least current on every line of torque.
+
+        No torque takes no i_q, also where i_q makes none: on i_d = 0 of a machine without magnets.
+        """
         i_d = np.linspace(*machine.direct_range(limits.current_peak), _DIRECT)
         samples = np.linspace(0.0, min(_BEYOND * limits.current_peak, machine.reach), _QUADRATURE)
         torque = machine.torque(i_d[:, None], samples)
         i_q = np.stack([np.interp(levels, row, samples, right=np.nan) for row in torque], axis=-1)
+        i_q[levels == 0] = 0.0
         i_q = _on_torque(machine, levels[:, None], np.broadcast_to(i_d, i_q.shape), i_q, samples[-1])
         lines = cls(machine, levels, i_d, i_q, np.full(len(levels), np.nan))
         return cls(machine, levels, i_d, i_q, lines._least_current())
@@ -404,7 +408,8 @@ def _on_torque(machine: DqMachine, torque: Values, i_d: Values, i_q: np.ndarray,
     for _ in range(_NEWTON_STEPS):
         psi_d, psi_q = machine.flux_linkage(i_d, i_q)
         _, (l_dq, l_qq) = np.swapaxes(machine.incremental_inductances(i_d, i_q), 0, 1)
-        step = (wanted - psi_d * i_q + psi_q * i_d) / (psi_d + l_dq * i_q - l_qq * i_d)
+        lack, slope = wanted - psi_d * i_q + psi_q * i_d, psi_d + l_dq * i_q - l_qq * i_d
+        step = np.divide(lack, slope, out=np.zeros(np.shape(lack)), where=slope != 0)
         i_q = np.clip(i_q + step, 0.0, most)
     return i_q
 

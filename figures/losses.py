@@ -16,6 +16,7 @@ from units import RPM
 _EFFICIENCIES = (0.5, 0.6, 0.7, 0.75, 0.8, 0.84, 0.86, 0.88, 0.9, 0.91, 0.92, 0.93, 0.94, 0.95, 0.96, 0.98, 1.0)
 _LOWEST_LEVEL = 0.015  # of the largest loss
 _SHOWN_TORQUE = 0.25  # of the largest, for the parts over speed
+_CROWDED = 0.08  # of the largest torque, below which the lines of all efficiencies run into each other
 
 
 @styled
@@ -28,17 +29,31 @@ def loss_maps(losses: PowerLosses, title: str) -> Figure:
     figure = new_figure(7.6)
     layout = figure.subplot_mosaic([["total", "efficiency"], ["parts", "parts"]])
     axes = [layout[name] for name in ("total", "efficiency", "parts")]
-    _map(figure, axes[0], losses, losses.total, _levels(losses.total), FIELD_MAP, "electrical loss / W")
-    axes[0].set_title("copper, iron and magnets together", loc="left")
+    total = losses.total
+    _map(figure, axes[0], losses, total, _levels(total), FIELD_MAP, "electrical loss / W", total)
+    axes[0].set_title(_counted(losses), loc="left")
     best = float(np.nanmax(losses.efficiency))
     top = next(level for level in _EFFICIENCIES if level >= best)
     levels = [level for level in _EFFICIENCIES if level <= top]
-    _map(figure, axes[1], losses, losses.efficiency, levels, DESIGN_MAP, "efficiency without friction")
+    _map(
+        figure, axes[1], losses, losses.efficiency, levels, DESIGN_MAP, "efficiency without friction", _apart(losses)
+    )
     axes[1].set_title("power out over power in", loc="left")
     _parts(axes[2], losses)
     letter(axes)
     figure.suptitle(title)
     return figure
+
+
+def _counted(losses: PowerLosses) -> str:
+    """What is lost, in words."""
+    return "copper, iron and magnets together" if np.nanmax(losses.magnet) > 0 else "copper and iron together"
+
+
+def _apart(losses: PowerLosses) -> np.ndarray:
+    """Efficiency where its lines can be told apart, NaN near no torque."""
+    crowded = np.abs(losses.torque) < _CROWDED * np.abs(losses.torque).max()
+    return np.where(crowded, np.nan, losses.efficiency)
 
 
 def _levels(values: np.ndarray) -> list[float]:
@@ -51,11 +66,12 @@ def _levels(values: np.ndarray) -> list[float]:
 
 def _map(
     figure: Figure, axes: Axes, losses: PowerLosses, values: np.ndarray, levels: Sequence[float], colours: str,
-    label: str,
+    label: str, lined: np.ndarray,
 ) -> None:  # fmt: skip
+    """Values in colours, with lines of ``lined``, the same values or NaN where no line is to run."""
     speed_rpm, torque = losses.speed[0] / RPM, losses.torque[:, 0]
     filled = axes.contourf(speed_rpm, torque, values, levels=levels, cmap=colours, extend="min")
-    lines = axes.contour(speed_rpm, torque, values, levels=levels[:-1:2], colors="white", linewidths=0.6)
+    lines = axes.contour(speed_rpm, torque, lined, levels=levels[:-1:2], colors="white", linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt=_written)
     reached = np.isfinite(losses.total)
     axes.plot(speed_rpm, _outermost(torque, reached), color=BLACK, label="largest torque")

@@ -40,7 +40,8 @@ def rotation(
     q_axis_angle_deg: float | None = None,
     current: str = "nominal",
 ) -> Figure:
-    """Torque per length by both routes, without current, and the probes in teeth, back iron and narrow rotor iron.
+    """Torque per length by both routes, without current where magnets make one, and the probes in teeth, back iron and
+    narrow rotor iron.
 
     table: columns ``angle_mech_deg``, ``torque_arkkio_Nm_per_m``, ``torque_maxwell_Nm_per_m``,
         ``torque_no_current_Nm_per_m``, ``tooth_<k>_T``, ``back_iron_<k>_T``,
@@ -49,16 +50,15 @@ def rotation(
     current: which one, in a word
     """
     table = table.sort_values("angle_mech_deg")
-    rotor = rotor_probe_columns(table)
-    panels = (1.5, 1.0, 1.2, 1.2, *((1.2,) if rotor else ()))
+    cogging, probes = bool(table[NO_CURRENT].any()), probe_groups(table)
+    panels = (1.5, *((1.0,) if cogging else ()), *(1.2 for _ in probes))
     figure = new_figure(9.6 / 4.9 * sum(panels))
     axes = figure.subplots(len(panels), 1, sharex=True, height_ratios=panels)
     _draw_torque(axes[0], table, current)
-    _draw_no_current(axes[1], table)
-    _draw_probes(axes[2], table, _numbered(table, "tooth_"), "teeth")
-    _draw_probes(axes[3], table, _numbered(table, "back_iron_"), "back iron")
-    if rotor:
-        _draw_probes(axes[4], table, {name[:-2].replace("_", " "): name for name in rotor}, "narrow iron of the rotor")
+    if cogging:
+        _draw_no_current(axes[1], table)
+    for axis, (where, columns) in zip(axes[-len(probes) :], probes.items(), strict=True):
+        _draw_probes(axis, table, columns, where)
     for axis in axes:
         _mark_angles(axis, null_angle_deg, q_axis_angle_deg)
         axis.margins(x=0.01)
@@ -67,6 +67,13 @@ def rotation(
     letter(axes)
     show_grid(*axes)
     return figure
+
+
+def probe_groups(table: pd.DataFrame) -> dict[str, dict[str, str]]:
+    """Columns of the probes by their names, of each part of the iron that has any."""
+    rotor = {name[:-2].replace("_", " "): name for name in rotor_probe_columns(table)}
+    stator = {"teeth": _numbered(table, "tooth_"), "back iron": _numbered(table, "back_iron_")}
+    return stator | ({"narrow iron of the rotor": rotor} if rotor else {})
 
 
 def probe_columns(table: pd.DataFrame, prefix: str) -> list[str]:
@@ -102,7 +109,7 @@ def _draw_torque(axes: Axes, table: pd.DataFrame, current: str) -> None:
         if column not in table:
             continue
         mean = mean_over_period(table.angle_mech_deg.to_numpy(), table[column].to_numpy())
-        axes.plot(table.angle_mech_deg, table[column], label=f"{name}, mean {mean:.2f} Nm/m", **look)
+        axes.plot(table.angle_mech_deg, table[column], label=f"{name}, mean {mean:#.5g} Nm/m", **look)
         axes.axhline(mean, linewidth=0.9, **{**look, "linestyle": ":"})
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + _HEADROOM * (high - low))
@@ -112,8 +119,7 @@ def _draw_torque(axes: Axes, table: pd.DataFrame, current: str) -> None:
 
 def _draw_no_current(axes: Axes, table: pd.DataFrame) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.8)
-    if NO_CURRENT in table:
-        axes.plot(table.angle_mech_deg, table[NO_CURRENT], color=BLACK)
+    axes.plot(table.angle_mech_deg, table[NO_CURRENT], color=BLACK)
     axes.set_ylabel("torque per length\n/ (Nm/m)")
     axes.set_title("torque per length without current (cogging)", loc="left")
 

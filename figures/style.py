@@ -106,6 +106,11 @@ def letter(axes: Iterable[Axes]) -> None:
         axis.set_title(f"({chr(ord('a') + number)}) {axis.get_title(loc='left')}", loc="left")
 
 
+def signed(value: float, digits: int) -> str:
+    """A number of so many digits with a proper minus."""
+    return f"{value:.{digits}g}".replace("-", "\N{MINUS SIGN}")
+
+
 def degrees(angle: float, digits: int = 2) -> str:
     """An angle in degrees with a proper minus, without idle zeros."""
     return f"{angle:.{digits}f}".rstrip("0").rstrip(".").replace("-", "\N{MINUS SIGN}") + "°"

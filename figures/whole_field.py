@@ -15,7 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from figures.style import degrees
+from figures.style import degrees, signed
 from geometry.cross_section import CrossSection
 from magnetostatics.case import FieldCase
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
@@ -172,7 +172,7 @@ def _(point: PhaseCurrents) -> str:
         return _NONE
     least = 1e-9 * max(map(abs, point.currents))  # rounding of a current that is none
     turns = (current * point.turns if abs(current) > least else 0.0 for current in point.currents)
-    return ", ".join(f"{one:.4g}" for one in turns) + " ampere-turns in phases A, B, C"
+    return ", ".join(signed(one, 4) for one in turns) + " ampere-turns in phases A, B, C"
 
 
 @current_in_words.register

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi, sqrt
 
+from geometry.chords import with_short_chords
 from geometry.errors import GeometryError, in_mm
 from geometry.outline import Arc, Contour, Curve, Line
 from geometry.parts import Rim
@@ -119,7 +120,7 @@ def drawing_of(regions: Mapping[str, Sequence[Face]], rim: Rim, radius: float, c
             d.arc(start, end, edges.get(curve), centre=(curve.centre.real, curve.centre.imag))
     for region, face in ((region, face) for region, faces in regions.items() for face in faces):
         d.region(region, *(names[_known_in(names, curve.start)] for curve in face.curves))
-    return d
+    return with_short_chords(d, rim.edge_length)
 
 
 def _edges_on(rim: Sequence[Curve], count: int) -> dict[Curve, int]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import atan2, hypot, lcm, log
+from math import lcm
 
+from geometry.chords import natural_edges
 from geometry.errors import GeometryError
 from geometry.half_cell import HalfCell, MeshDensity, half_cells
 from geometry.machine import Machine
@@ -52,24 +53,8 @@ def expected_triangles(cell: HalfCell, machine: DrawnMachine) -> float:
 
 def outline_edges(drawing: Drawing) -> float:
     """Mesh edges on all curves of a drawing (dimensionless); between two points the edge length changes linearly."""
-    return sum(_edges(drawing, *curve) for curve in drawing.curves)
-
-
-def _edges(drawing: Drawing, start: str, end: str) -> float:
-    is_arc, edges = drawing.curves[start, end]
-    if edges is not None:
-        return edges
-    length = _length(drawing.points[start], drawing.points[end], is_arc)
-    first, last = drawing.points[start][2], drawing.points[end][2]
-    growth = log(last / first)
-    return max(1.0, length / first if abs(growth) < 1e-6 else length * growth / (last - first))
-
-
-def _length(start: tuple[float, float, float], end: tuple[float, float, float], is_arc: bool) -> float:
-    (x, y, _), (u, v, _) = start, end
-    if is_arc:
-        return hypot(x, y) * abs(atan2(v, u) - atan2(y, x))
-    return hypot(u - x, v - y)
+    fixed = {curve: edges for curve, (_, edges) in drawing.curves.items()}
+    return sum(natural_edges(drawing, *curve) if edges is None else edges for curve, edges in fixed.items())
 
 
 def _advice(machine: DrawnMachine, density: MeshDensity) -> str:

@@ -14,7 +14,7 @@ from electrical.drive_stage import DriveOutcome, Neighbour
 from electrical.winding_design import WindingDesign
 from electrical.winding_stage import WindingOutcome
 from figures.files import File, figure_file, picture_name, table_file
-from figures.flux_map import field_envelope, flux_maps
+from figures.flux_map import FLUX_MAP_CAPTION, field_envelope, flux_maps
 from figures.report import Picture, Section, Table
 from figures.winding import RequiredPoint, WheelPoint, force_velocity, torque_speed
 from magnetostatics.flux_map_stage import FluxMap
@@ -56,7 +56,7 @@ def section(found: DriveOutcome, winding: WindingOutcome, output: Output) -> Sec
         "The wound machine on its flux map",
         (
             _text(found, winding),
-            Picture(picture_name("flux_map"), "Flux linkages over the currents, with MTPA, MTPV and the envelope."),
+            Picture(picture_name("flux_map"), FLUX_MAP_CAPTION),
             Picture(
                 picture_name("field_envelope"), "Torque and power over speed: flux map against constant parameters."
             ),

@@ -23,7 +23,7 @@ from electrical.wound_machine import WoundMachine
 from export.dxf import laminations, write_dxf
 from figures.field_map import field_map
 from figures.files import File, figure_file, picture_name, table_file
-from figures.flux_map import envelope_over_speed, flux_maps
+from figures.flux_map import FLUX_MAP_CAPTION, envelope_over_speed, flux_maps
 from figures.lamination import outline_picture
 from figures.losses import loss_maps
 from figures.report import Picture, Section, Table
@@ -204,7 +204,7 @@ def map_section(flux_map: FluxMap, performance: Performance) -> Section:
         (
             text,
             Picture(picture_name(FIELD), "Flux density and flux lines at full current, d axis on the axis of phase A."),
-            Picture(picture_name(MAP), "Flux linkages over the currents, with MTPA, MTPV and the envelope."),
+            Picture(picture_name(MAP), FLUX_MAP_CAPTION),
             Picture(picture_name(OVER_SPEED), "Largest torque, power and the current on the d axis over speed."),
         ),
     )
@@ -212,15 +212,14 @@ def map_section(flux_map: FluxMap, performance: Performance) -> Section:
 
 def turning_section(turning: TurningMachine) -> Section:
     """What the angle does."""
-    idle = f"; without current {turning.idle.ripple:.3g} Nm" if turning.idle.ripple > 0 else ""
+    cogs = turning.idle.ripple > 0
+    idle = f"; without current {turning.idle.ripple:.3g} Nm" if cogs else ""
     text = (
         f"Full current: {turning.full.mean_torque:.4g} Nm in the mean, {turning.full.ripple:.3g} Nm from peak to peak"
         f"{idle}. The two torque routes differ by at most {percent(turning.full.routes_apart, 2)}."
     )
-    return Section(
-        "One turn",
-        (text, Picture(picture_name(TURNING), "Torque per length by both routes, without current, and the probes.")),
-    )
+    shown = f"Torque per length by both routes{', without current' if cogs else ''}, and the probes."
+    return Section("One turn", (text, Picture(picture_name(TURNING), shown)))
 
 
 def losses_section(losses: LossMap | None, driven: DrivenMachine) -> Section | None:

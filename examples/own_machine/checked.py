@@ -1,13 +1,10 @@
-"""The rotor of assisted.py on a mesh of NGSolve's own: ``python -m examples.own_machine.checked`` (two minutes, needs
-``sh benchmarks/set_up``)."""
+"""The rotor of assisted.py by NGSolve, on the same triangles and on a mesh of its own: ``python -m
+examples.own_machine.checked`` (minutes, needs ``sh benchmarks/set_up``)."""
 
-from pathlib import Path
-
-from benchmarks.own_meshes import compared
-from study.machine_file import read_machine
-
-FILE = Path(__file__).with_name("assisted.toml")
+from benchmarks import other_kinds, own_meshes
+from benchmarks.drawn_kinds import own
 
 if __name__ == "__main__":
-    for row in compared("one's own", read_machine(FILE)):
+    print(other_kinds.compared(*own()))
+    for row in own_meshes.compared(*own()):
         print(row)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, cos, sin
 
+from geometry.chords import with_short_chords
 from geometry.errors import GeometryError, in_mm
 from geometry.parts import Buried, Length, Rim, Segment, WithoutMagnets, radial
 from geometry.plane_mesh import Drawing
@@ -71,7 +72,7 @@ class FluxBarriers(WithoutMagnets, Buried):
             d.line("top_low" if layer == 0 else f"inner_{layer - 1}", f"outer_{layer}")
         d.line(f"inner_{self.layers - 1}", "shaft_low")
         d.region("iron", *outline, "shaft_low")
-        return d
+        return with_short_chords(d, rim.edge_length)
 
     def _frame(self, d: Drawing, rim: Rim) -> None:
         half, inside = self.pitch / 2, 2 * self.iron_width / rim.across_iron

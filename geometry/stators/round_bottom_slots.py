@@ -6,6 +6,7 @@ from cmath import rect
 from dataclasses import dataclass
 from math import asin, atan2, hypot, sqrt
 
+from geometry.chords import with_short_chords
 from geometry.errors import GeometryError, in_mm
 from geometry.parts import Length, Rim, Segment, StatorRoundRotor
 from geometry.plane_mesh import Drawing
@@ -73,7 +74,7 @@ class RoundBottomSlots(StatorRoundRotor):
         d.region("iron", "bore", "tip", *side, "bottom", "outer_slot", "outer")
         d.region("opening", "tip", "bore_slot", "open_slot", "wall_end")
         d.region("copper", *side, "bottom", "open_slot")
-        return d
+        return with_short_chords(d, rim.edge_length)
 
     def _points(self, d: Drawing, rim: Rim) -> None:
         """From the bore outwards, on the axis of the tooth, on its side and on the axis of the slot."""

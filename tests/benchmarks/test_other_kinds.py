@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT
-from benchmarks.drawn_kinds import halbach
+from benchmarks.drawn_kinds import halbach, own
 from benchmarks.other_kinds import TABLE, case_of, machines
 from geometry.kinds import ROTORS
 from geometry.magnetisation import RadialMagnetisation
@@ -24,8 +24,9 @@ def table():
 
 
 def test_every_kind_was_compared():
-    """And Halbach magnets."""
-    assert {kind for kind, _ in table()} == {kind.__name__ for kind in ROTORS.known.values()}
+    """And Halbach magnets and a rotor of one's own."""
+    kinds = {kind.__name__ for kind in ROTORS.known.values()} | {type(own()[1].machine.rotor).__name__}
+    assert {kind for kind, _ in table()} == kinds
     assert halbach()[0] in {name for _, name in table()}
 
 

@@ -7,9 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 
-from benchmarks.drawn_kinds import halbach
+from benchmarks.drawn_kinds import halbach, own
 from benchmarks.ngsolve_own_mesh import poles
-from benchmarks.own_meshes import FULL, LEFT_OUT, NONE, TABLE, ampere_turns, machines, position, solved, usual_section
+from benchmarks.own_meshes import FULL, NONE, TABLE, ampere_turns, machines, position, solved, usual_section
 from benchmarks.whole_outline import GAP, NOTHING, OUTER, RIM, whole_outline
 from geometry.areas import part_areas
 from geometry.kinds import ROTORS
@@ -30,8 +30,8 @@ def table():
 
 
 def test_kinds_were_compared_with_current_and_without():
-    """Those without magnets with current alone."""
-    kinds = {kind.__name__ for kind in ROTORS.known.values()} - LEFT_OUT
+    """Those without magnets with current alone, and a rotor of one's own."""
+    kinds = {kind.__name__ for kind in ROTORS.known.values()} | {type(own()[1].machine.rotor).__name__}
     magnets = {type(found.machine.rotor).__name__ for _, found in MACHINES if found.machine.rotor.magnets_per_pitch}
     found = table()
     assert {kind for kind, _, which in found if which == FULL} == kinds

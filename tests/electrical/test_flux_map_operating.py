@@ -35,6 +35,22 @@ def test_the_currents_give_the_torque_within_the_limits(plane):
     assert found.voltage_peak[reached].max() <= 27.7 * 1.002 and found.current_peak[reached].max() <= 120.0 * 1.0001
 
 
+def reluctance():
+    """Saturates along d, no magnets; the field's rounding on it."""
+    i_d, i_q = np.linspace(0.0, 130.0, 9), np.linspace(-130.0, 130.0, 15)
+    d, q = np.meshgrid(i_d, i_q, indexing="ij")
+    rounding = 1e-15 * np.random.default_rng(1).standard_normal(d.shape)
+    return FluxMapMachine(5, i_d, i_q, 0.02 * np.tanh(d / 60.0) + rounding, 60e-6 * q, 7.5e-3)
+
+
+def test_no_torque_takes_no_current(plane):
+    """Without magnets no current on the q axis alone makes a torque, and the least of them is none."""
+    for machine in (plane[0], reluctance()):
+        found = operating_map(machine, LIMITS, np.array([[0.0], [1.0]]), np.array([0.0, 50.0]))
+        assert found.current_peak[0] == pytest.approx([0.0, 0.0], abs=1e-4)
+        assert (found.current_peak[1] > 1.0).all()
+
+
 def test_the_edge_is_the_envelope(plane):
     machine, found = plane
     envelope = torque_speed_envelope(machine, LIMITS, SPEED).torque

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.own_meshes import FULL, ampere_turns, position, solved, usual_section
-from examples.own_machine.checked import FILE
+from benchmarks.drawn_kinds import OWN_MACHINE as FILE
 from geometry.cross_section import mesh_cross_section
 from geometry.errors import GeometryError
 from geometry.kinds import ROTORS
 from geometry.moves import moved
 from geometry.parts import part_units
-from magnetostatics.currents import PhaseCurrents
 from magnetostatics.model import FieldModel
 from magnetostatics.turn import Supply, turned
 from study.machine_file import read_machine
@@ -20,8 +18,6 @@ from units import DEGREE, MILLIMETRE
 
 OWN = read_machine(FILE)
 PAGE = FILE.with_name("README.md").read_text(encoding="utf-8")
-PEER = 172.3727397  # Nm/m, NGSolve on its own mesh: python -m examples.own_machine.checked
-WITHIN = 3e-3
 POSITIONS = 10
 
 
@@ -46,14 +42,8 @@ def test_torque_of_the_page_by_two_routes(name, gamma):
 
 
 def test_best_dimensions_of_the_page():
-    best = moved(OWN.machine, OWN.search.moves, np.array([2.0, 0.3508, -1.567]) * MILLIMETRE)
+    best = moved(OWN.machine, OWN.search.moves, np.array([2.0, 0.3578, -1.5695]) * MILLIMETRE)
     assert f"{torque(replace(OWN, machine=best), 57)[0]:.1f} Nm | 57°" in PAGE
-
-
-def test_another_code_gives_its_torque():
-    state = PhaseCurrents(position(OWN), ampere_turns(OWN)[FULL])
-    (one,) = solved(OWN, usual_section(OWN), [state])
-    assert [one.ring, one.fluxes] == pytest.approx([PEER] * 2, rel=WITHIN)
 
 
 @pytest.mark.parametrize(

@@ -146,9 +146,17 @@ def turning():
 def test_rotation_is_complete(turning, assert_readable):
     figure = rotation(turning, null_angle_deg=-24.0, q_axis_angle_deg=-21.0)
     text = words(figure)
-    assert "mean 55.00 Nm/m" in text and "mean 55.10 Nm/m" in text
+    assert "mean 55.000 Nm/m" in text and "mean 55.100 Nm/m" in text
     assert "null angle −24°" in text and "q-axis angle −21°" in text
     assert "mechanical rotor angle / °" in text and "|B| / T" in text
+    assert_readable(figure)
+
+
+def test_rotation_of_a_machine_without_magnets_has_no_cogging(turning, assert_readable):
+    figure = rotation(turning.assign(torque_no_current_Nm_per_m=0.0))
+    assert len(figure.axes) == len(rotation(turning).axes) - 1
+    assert "cogging" in words(rotation(turning)) and "cogging" not in words(figure)
+    assert "(b) flux density in the teeth" in words(figure)
     assert_readable(figure)
 
 

@@ -115,7 +115,7 @@ def test_operating_point_in_words():
 
 def test_phase_and_coil_currents_in_words():
     found = describe(PhaseCurrents(0.0, (10.0, -5.0, -5.0), 7))
-    assert found == "rotor at 0°, 70, -35, -35 ampere-turns in phases A, B, C"
+    assert found == "rotor at 0°, 70, −35, −35 ampere-turns in phases A, B, C"
     assert describe(PhaseCurrents(0.0, (0.0, 0.0, 0.0))) == "rotor at 0°, no current"
     assert describe(CoilCurrents(0.0, (3.0, -8.0))) == "rotor at 0°, coils with up to 8 ampere-turns"
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.contour import QuadContourSet
 
 from electrical.driven_machine import driven_machine
 from electrical.winding_stage import winding_stage
@@ -110,4 +111,17 @@ def test_figure(found):
     figure = loss_maps(found.losses, "7 turns, 22 wires")
     titles = [axis.get_title(loc="left")[:3] for axis in figure.axes[:3]]
     assert titles == ["(a)", "(b)", "(c)"]
+    assert "copper, iron and magnets together" in figure.axes[0].get_title(loc="left")
     assert len(png_bytes(figure)) > 30_000
+
+
+def test_figure_of_a_machine_without_magnets_names_none(found):
+    losses = replace(found.losses, magnet=0 * found.losses.magnet)
+    assert loss_maps(losses, "").axes[0].get_title(loc="left") == "(a) copper and iron together"
+
+
+def test_lines_of_efficiency_keep_off_no_torque(found):
+    """Where all of them run into each other no label can be read."""
+    lines = loss_maps(found.losses, "").axes[1].findobj(QuadContourSet)[1]
+    heights = np.concatenate([path.vertices[:, 1] for path in lines.get_paths() if len(path.vertices)])
+    assert np.abs(heights).min() > 0.05 * np.abs(found.losses.torque).max()
