@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from workbench.believed import LIKELY, MOST
@@ -60,26 +61,30 @@ def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Ver
 
 def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:
     """For every effect of the leading set the smallest group of names, itself first, one of which is there for sure;
-    effects for which there is no such group are left out."""
-    found: list[frozenset[str]] = []
+    effects for which there is no such group are left out. Where all groups together are not sure, the weakest of them
+    takes a name more, and is left out where there is none."""
+    found: dict[str, frozenset[str]] = {}
     for name in sorted(p.leading, key=lambda n: (-p.of(n), n)):
-        group = _group_of(p, name, sure, frozenset().union(*found, p.leading - {name}))
-        if group is not None:
-            found.append(group)
-    while found and p.all_of(tuple(found)) < sure:
-        found.remove(min(found, key=lambda group: (p.any_of(group), -len(group))))
-    return tuple(found)
+        group: frozenset[str] | None = frozenset((name,))
+        while group is not None and p.any_of(group) < sure:
+            group = _wider(p, name, group, found)
+        found |= {} if group is None else {name: group}
+    while found and p.all_of(tuple(found.values())) < sure:
+        name = min(found, key=lambda n: (p.any_of(found[n]), -len(found[n])))
+        group = _wider(p, name, found.pop(name), found)
+        found |= {} if group is None else {name: group}
+    return tuple(found.values())
 
 
-def _group_of(p: Posterior, name: str, sure: float, taken: frozenset[str]) -> frozenset[str] | None:
-    """The effect and what may stand for it, most probable first, until one of them is there for sure."""
-    group = frozenset((name,))
-    while p.any_of(group) < sure:
-        others = [n for n in p.names if n not in group and n not in taken and _stands_for(p, n, name)]
-        if len(group) == MOST or not others:
-            return None
-        group |= {max(others, key=lambda n: p.any_of(group | {n}))}
-    return group
+def _wider(
+    p: Posterior, name: str, group: frozenset[str], others: Mapping[str, frozenset[str]]
+) -> frozenset[str] | None:
+    """A group with the most probable name more that may stand for its first; None where there is none."""
+    taken = frozenset().union(group, *others.values(), p.leading - {name})
+    left = [other for other in p.names if other not in taken and _stands_for(p, other, name)]
+    if len(group) == MOST or not left:
+        return None
+    return group | {max(left, key=lambda n: p.any_of(group | {n}))}
 
 
 def _stands_for(p: Posterior, other: str, name: str) -> bool:
