@@ -24,7 +24,7 @@ def with_short_chords(drawing: Drawing, edge_length: float) -> Drawing:
 
 
 def natural_edges(drawing: Drawing, start: str, end: str) -> float:
-    """Of a curve by the lengths that its ends ask for, which change linearly in between."""
+    """How many edges a curve has [1] by the lengths that its ends ask for, which change linearly in between."""
     first, last = drawing.points[start][2], drawing.points[end][2]
     length, growth = curve_length(drawing, start, end), log(last / first)
     return max(1.0, length / first if abs(growth) < 1e-6 else length * growth / (last - first))
