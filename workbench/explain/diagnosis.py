@@ -25,7 +25,7 @@ from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null
 from workbench.explain.recommend import next_measurements
 from workbench.explain.search import searched
 from workbench.explain.tried import Search
-from workbench.explain.verdict import NONE_OF_THESE, NOTHING_MISSING, Thresholds, Verdict, verdict
+from workbench.explain.verdict import GROUP, NONE_OF_THESE, NOTHING_MISSING, Thresholds, Verdict, verdict
 from workbench.findings import ChannelFit, Diagnosis, Ranked, Sealed, SizePosterior
 from workbench.likelihood.bench import Bench, bench_of, sealed_words
 from workbench.likelihood.fit import linearised
@@ -115,13 +115,14 @@ def _contradictions(search: Search, ranked: Sequence[Ranked], names: Collection[
 
 
 def leading(search: Search, said: Verdict) -> Hypothesis:
-    """The fit that the verdict speaks of: of its names (of a group its first), else the most probable one."""
+    """The fit that the verdict speaks of: of its names and of the first of every group of them, alone where that was
+    fitted, else in the most probable set that holds them; where none does the most probable one."""
     if said.kind == NOTHING_MISSING:
         return search.fitted[frozenset()]
-    for names in (frozenset(said.names), frozenset(said.names[:1])):
-        if names and names in search.fitted:
-            return search.fitted[names]
-    return search.fitted[search.ranked[0]]
+    stated = frozenset(said.names[:1] if said.kind == GROUP else said.names) | frozenset(said.alternatives)
+    if stated and stated in search.fitted:
+        return search.fitted[stated]
+    return search.fitted[next((names for names in search.ranked if names >= stated), search.ranked[0])]
 
 
 def opened(bench: Bench, final: Hypothesis) -> Sealed | None:

@@ -1,9 +1,11 @@
 """Hand-made probabilities and the one verdict that each allows; every number printed is that of its sentence."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from workbench.explain.diagnosis import _with_sealed
+from workbench.explain.diagnosis import _with_sealed, leading
 from workbench.explain.explore import Beliefs, Posterior, beside_the_unknown, posterior
 from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
 from workbench.findings import Sealed
@@ -115,6 +117,33 @@ def test_groups_do_not_share_a_member_and_hold_together():
         groups = printed(given, 0.9)
         assert sum(map(len, groups)) == len(frozenset().union(*groups))
         assert not groups or given.all_of(groups) >= 0.9
+
+
+def fits(*ranked):
+    """A search in which these sets were fitted, the most probable first; a fit is its name."""
+    sets = [frozenset(filter(None, names.split("+"))) for names in ranked]
+    return SimpleNamespace(fitted=dict(zip(sets, ranked)), ranked=sets)
+
+
+@pytest.mark.parametrize(
+    ("kind", "names", "alternatives", "fit"),
+    [
+        ("nothing_missing", (), {}, ""),
+        ("effect", ("a",), {}, "a"),
+        ("group", ("a", "b"), {}, "a"),
+        ("pair", ("a", "b"), {}, "a+b"),
+        ("partial", ("a",), {"b": ("d",)}, "a+b"),
+        ("group", ("b", "d"), {"a": ("c",)}, "a+b"),
+        ("effect", ("c",), {}, "a+c"),
+        ("effect", ("e",), {}, "a+c"),
+        ("none_of_these", (), {}, "a+c"),
+    ],
+)
+def test_the_fit_that_is_shown_is_that_of_the_verdict(kind, names, alternatives, fit):
+    """Sealed rows were told not to hold, of a weak magnet that was named with "one of friction or iron loss" beside it:
+    the fit they were held against had the magnet alone."""
+    search = fits("a+c", "a+b", "a", "b", "")
+    assert leading(search, Verdict(kind, names, 0.99, alternatives)) == fit
 
 
 def test_sealed_rows_that_disagree_make_nothing_missing_impossible():
