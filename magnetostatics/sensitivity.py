@@ -33,13 +33,16 @@ class Variation(Protocol):
         """The problem with the parameter changed; change: any [unit of the parameter]."""
 
 
-def sensitivities(solution: FieldSolution, variations: dict[str, Variation], read: Reader) -> dict[str, np.ndarray]:
+def sensitivities(
+    solution: FieldSolution, variations: dict[str, Variation], read: Reader, here: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
     """Derivative of ``read(solution)`` (k,) with respect to each parameter [unit of the result per its own].
 
     variations: parameters by name; their models must share the triangles of the solution (``FieldModel.like``)
     read: results of a solution as a vector, for example torque and flux densities
+    here: what is read of the solution itself [unit of the result], (k,), where that is known
     """
-    here = read(solution)
+    here = read(solution) if here is None else here
     found = ahead(solution, variations)
     return {name: (read(one) - here) / variations[name].step for name, one in found.items()}
 

@@ -20,7 +20,7 @@ from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, blen
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import aligned_teeth
 from magnetostatics.probes import ProbeReader, probe_reader
-from magnetostatics.sensitivity import Variation, ahead
+from magnetostatics.sensitivity import Variation, sensitivities
 from magnetostatics.torque import arkkio_torque, maxwell_torque
 from magnetostatics.variations import Dimension
 from optimisation.starts import weights_at_origin
@@ -242,10 +242,8 @@ def _values_and_slopes(
     solutions: list[FieldSolution], variations: dict[str, Variation], read: Callable[[FieldSolution], np.ndarray]
 ) -> _ValuesAndSlopes:
     values = np.array([read(solution) for solution in solutions])
-    slopes = [
-        [(read(one) - here) / variations[name].step for name, one in ahead(solution, variations).items()]
-        for solution, here in zip(solutions, values)
-    ]
+    found = [sensitivities(solution, variations, read, here) for solution, here in zip(solutions, values)]
+    slopes = [[state[name] for name in variations] for state in found]
     return _ValuesAndSlopes(values, np.array(slopes))
 
 

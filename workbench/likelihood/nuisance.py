@@ -41,6 +41,7 @@ class InstrumentError:
         return self.systematic.name
 
     def at(self, z: float) -> InstrumentEffect:
+        """The effect at z [1] standard deviations of what is declared."""
         return replace(self.effect, **{next(iter(parameters_of(self.effect))): self.systematic.sigma * z})
 
 
@@ -77,6 +78,7 @@ class DeclaredError:
         return self.systematic.name
 
     def at(self, z: float) -> InstrumentEffect:
+        """The effect at z [1] standard deviations of what is declared."""
         return ColumnError(self.systematic.kind, self.columns, self.systematic.sigma * z)
 
 

@@ -104,19 +104,16 @@ class DirectPredictor:
         return replace(self.model, design=design, effects=(*own, *effects, *errors))
 
     @cached_property
-    def _inputs(self) -> tuple[TolerancedInput, ...]:
-        return tuple(nuisance for nuisance in self.nuisances if isinstance(nuisance, TolerancedInput))
-
-    @cached_property
     def _design(self) -> Callable[[tuple[float, ...]], Any]:
         """The design with its first inputs moved by so many standard deviations, one after the other: few of them
         change from one prediction to the next."""
+        inputs = [nuisance for nuisance in self.nuisances if isinstance(nuisance, TolerancedInput)]
 
         @lru_cache(maxsize=_REMEMBERED)
         def moved(z: tuple[float, ...]) -> Any:
             if not z:
                 return self.model.design
-            return self.model.base.with_tolerance(moved(z[:-1]), self._inputs[len(z) - 1].tolerance, z[-1])
+            return self.model.base.with_tolerance(moved(z[:-1]), inputs[len(z) - 1].tolerance, z[-1])
 
         return moved
 
