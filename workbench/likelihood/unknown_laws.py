@@ -6,7 +6,7 @@ may take its place. Each law is a family of few numbers that stands for many clo
 
     a power of one quantity             size |x / x_0|^p
     a drag that thins                   size v (1 + (v / v_c)^2)^((p - 1) / 2)
-    a part between spring and dashpot   size (j f / f_0)^(p - 1), beside the device or in series as its mount
+    a part between spring and dashpot   size (j f / f_0)^(p - 1) (x / x_0)^q, beside the device or as its mount
     a reading that bends                F (1 + size x^n / (1 + x^n)), x = |F| / level
 
 What the family does not follow is left to the error of the law.
@@ -322,7 +322,8 @@ class UnknownThinningForce(UnknownLaw, ForceEffect):
 @dataclass(frozen=True)
 class UnknownPart(UnknownLaw, ResponseEffect):
     """A part between spring (power 0), dashpot (1) and mass (2), of impedance size scale (j f / f_0)^(power - 1)
-    [N s/m]: rubber, felt, creep, boundary layers (Bagley and Torvik 1983).
+    (x / x_0)^amplitude_power [N s/m], x the amplitude: rubber, felt, creep, boundary layers (Bagley and Torvik 1983);
+    filled rubber is softer at large strokes (Payne 1962).
 
     Validity: impedance tables; in steady motion it carries nothing, and loops in time are left as they are.
     """
@@ -335,26 +336,31 @@ class UnknownPart(UnknownLaw, ResponseEffect):
     power: float = parameter(
         0.5, "1", prior=Normal(centre=0.5, sd=0.4), low=0.0, high=2.0, source="textbook: spring 0, dashpot 1, mass 2"
     )
+    amplitude_power: float = parameter(
+        0.0, "1", prior=Normal(0.4), low=-1.0, high=1.0, source="textbook: filled rubber -0.2 to -0.6, a linear part 0"
+    )
 
     @staticmethod
     def sized(design):
         return SWING, design.force_constant**2 / design.internal_resistance
 
     def words(self) -> str:
-        return f"{self.goes_with} that stands at {self.power:.2g} between spring (0) and dashpot (1)"
+        between = f"{self.goes_with} that stands at {self.power:.2g} between spring (0) and dashpot (1)"
+        return f"{between} and goes with the amplitude to the power {self.amplitude_power:.2g}"
 
-    def part(self, frequency: np.ndarray) -> np.ndarray:
-        """(j f / f_0)^(power - 1) [1]."""
-        return (1j * frequency / self.reference) ** (self.power - 1.0)
+    def part(self, frequency: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        """(j f / f_0)^(power - 1) (x / x_0)^amplitude_power [1]."""
+        return (1j * frequency / self.reference) ** (self.power - 1.0) * (amplitude / TRAVEL) ** self.amplitude_power
 
-    def together(self, impedance: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    def together(self, impedance: np.ndarray, part: np.ndarray) -> np.ndarray:
         """Impedance of the device with the part [N s/m]."""
         raise NotImplementedError
 
     def on_response(self, response, conditions, kind, design):
         if kind != "impedance" or self.is_null:
             return response
-        z = self.together(response["re"] + 1j * response["im"], conditions["frequency"])
+        part = self.part(conditions["frequency"], conditions["amplitude"])
+        z = self.together(response["re"] + 1j * response["im"], part)
         return {**response, "re": z.real, "im": z.imag}
 
 
@@ -364,8 +370,8 @@ class UnknownPartBeside(UnknownPart):
 
     goes_with = "a force beside the device"
 
-    def together(self, impedance, frequency):
-        return impedance + self.size * self.scale * self.part(frequency)
+    def together(self, impedance, part):
+        return impedance + self.size * self.scale * part
 
 
 @dataclass(frozen=True)
@@ -378,8 +384,8 @@ class UnknownMount(UnknownPart):
         0.2, "1", prior=LogNormal(0.2, 0.7), low=0.0, high=1.0, source="textbook: loss factors of rubber 0.1 to 0.5"
     )
 
-    def together(self, impedance, frequency):
-        return impedance / (1.0 + impedance * self.size / (self.scale * self.part(frequency)))
+    def together(self, impedance, part):
+        return impedance / (1.0 + impedance * self.size / (self.scale * part))
 
 
 @dataclass(frozen=True)

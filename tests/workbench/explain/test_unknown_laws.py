@@ -159,6 +159,15 @@ def test_parts_beside_the_device_are_springs_dashpots_and_masses_at_whole_powers
         assert impedance(law) - impedance() == pytest.approx(0.1 * part, rel=1e-9)
 
 
+def test_a_spring_that_softens_with_its_amplitude_to_the_power_minus_one_carries_one_force():
+    law = law_of(UnknownPartBeside, size=0.1, power=0.0, amplitude_power=-1.0)
+    carried = 0.1 * K**2 / R * 2 * pi * 10.0 * 2e-3  # N, the spring at the travel where the law has its size
+    spread = {**SWEEP, "amplitude": np.array([1e-3, 2e-3, 4e-3])}
+    answer = {"re": np.zeros(3), "im": np.zeros(3)}
+    found = law.on_response(answer, spread, "impedance", MODEL.design)
+    assert -found["im"] * 2 * pi * spread["frequency"] * spread["amplitude"] == pytest.approx(carried + np.zeros(3))
+
+
 def test_a_mount_without_loss_is_the_spring_of_the_model():
     """Thesis eq. B.4 with the stiffness that the law has at power zero."""
     mounted = replace(MODEL.design, mount_stiffness=K**2 / R * 2 * pi * 10.0 / 0.05)
