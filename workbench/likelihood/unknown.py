@@ -1,8 +1,9 @@
 """What no effect of the library is: an unknown function of the conditions in a channel, its size in the channel's unit.
 
-Two families stand for it: smooth functions (a Gaussian process of some length over the conditions, periodic in
-angles, or over the reading of an instrument in all its tables), and plain laws c |x|^p sign(x)^s of one condition x,
-which are what a missing law most often looks like. The size is a share of the rms reading of the channel, whatever the
+Three families stand for it: smooth functions (a Gaussian process of some length over the conditions, periodic in
+angles, or over the reading of an instrument in all its tables), single orders of an angle, which are what something
+that rings or ripples looks like, and plain laws c |x|^p sign(x)^s of one condition x, which are what a missing law most
+often looks like. The size is a share of the rms reading of the channel, whatever the
 noise of its sensor is. Phases of one quantity have functions of their own of the same size and length.
 """
 
@@ -27,6 +28,7 @@ LENGTHS = (0.3, 0.8, 2.0)  # over which it changes, of the standard deviation of
 TURNS = (0.1, 0.35, 1.2)  # the same for an angle over a revolution [rad]
 POWERS = (-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0)  # of plain laws
 PLACES = 6  # of a condition, from which a function of it alone is more than a few numbers
+MANY = 24  # places of an angle, from which its orders are looked at one by one
 LANDMARKS = 60  # shapes of a smooth function in one channel
 
 
@@ -34,8 +36,9 @@ LANDMARKS = 60  # shapes of a smooth function in one channel
 class Shape:
     """One kind of unknown function: what its rows have in common.
 
-    channels: names;  law: "smooth", "along" (one condition), "reading" (what the instrument shows) or "power"
-    of: that condition or response;  detail: length or power
+    channels: names;  law: "smooth", "along" (one condition), "order" (of an angle), "opposite order" (its sign goes
+        with the direction), "reading" (what the instrument shows) or "power"
+    of: that condition or response;  detail: length, order or power
     rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
     raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
     """
@@ -54,6 +57,8 @@ class Shape:
         where = ", ".join(self.channels)
         if self.law == "along":
             return f"a smooth function of {self.of} in {where}"
+        if "order" in self.law:
+            return f"order {self.detail:g} of {self.of} in {where}" + ", opposite both ways" * (self.law != "order")
         if self.law == "reading":
             return f"a smooth function of the reading itself in {where}"
         if self.law == "power":
@@ -87,7 +92,7 @@ class Seen:
 
 def shapes_of(stack: Stack, white: Whitener, answers: np.ndarray) -> tuple[Shape, ...]:
     """Every unknown function that is thought of: equal shares of the prior for smooth functions of all conditions, for
-    smooth functions of one of them, for those of the reading itself, and for plain laws.
+    smooth functions of one of them, for orders, for those of the reading itself, and for plain laws.
 
     answers: readings as the model has them (n,): those of the table would betray their own noise
     """
@@ -129,6 +134,8 @@ def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterat
         only = {of: table.conditions[of]}
         for length in range(len(LENGTHS)):
             yield _shape(stack, white, group, "along", of, LENGTHS[length], each(smooth_over(only, length)))
+    for law, of, order, waves in _orders(table):
+        yield _shape(stack, white, group, law, of, order, each(waves))
     for of, power, law in _laws(table):
         yield _shape(stack, white, group, "power", of, power, each(law[:, None]))
 
@@ -173,6 +180,21 @@ def _alone(table: Table) -> list[str]:
     """Conditions beside others that have enough places for a function of them alone."""
     varying = [name for name, values in table.conditions.items() if np.ptp(values) > 0 and name != "direction"]
     return [name for name in varying if len(varying) > 1 and len(np.unique(table.conditions[name])) >= PLACES]
+
+
+def _orders(table: Table) -> Iterator[tuple[str, str, int, np.ndarray]]:
+    """(law, angle, order, cosine and sine of rms 1 (n, 2)) of every angle of a scan up to two readings a wave; where
+    both directions were read, those that change their sign with it too. A smooth function has too few shapes for many
+    waves a revolution."""
+    for name, angle in table.conditions.items():
+        places = np.unique(np.round(np.mod(angle, 2 * np.pi), 6))
+        if "angle" not in name or len(places) < MANY:
+            continue
+        for order in range(1, int(2 * np.pi / np.median(np.diff(places)) / 2)):
+            waves = np.sqrt(2) * np.column_stack((np.cos(order * angle), np.sin(order * angle)))
+            yield "order", name, order, waves
+            if np.ptp(table.conditions.get("direction", np.zeros(1))) > 0:
+                yield "opposite order", name, order, waves * np.sign(table.conditions["direction"])[:, None]
 
 
 def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:

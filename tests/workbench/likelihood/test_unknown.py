@@ -76,6 +76,21 @@ def test_a_wave_is_no_plain_law():
     assert found.shape.law == "smooth" and found.log_evidence > 20
 
 
+@pytest.mark.parametrize("turns, law", [(np.ones(120), "order"), (np.repeat([1.0, -1.0], 60), "opposite order")])
+def test_what_rings_is_an_order_of_the_angle(turns, law):
+    """Of one direction or of both; 23 waves in 60 places are too many for a smooth function."""
+    angle = np.tile(np.arange(60) * np.pi / 30, 2)
+    rings = 0.03 * turns * np.sin(23 * angle)
+    torque = np.cos(2 * angle) + rings + 0.01 * np.random.default_rng(3).standard_normal(120)
+    both = np.repeat([1.0, -1.0], 60)
+    stack, white = whitened(table({"torque": torque}, 0.01, angle_mech=angle, direction=both))
+    residual = white(stack.y - np.cos(2 * angle))
+    found = max(seen(shapes_of(stack, white, stack.y), np.zeros((120, 0)), residual), key=lambda s: s.log_evidence)
+    assert (found.shape.law, found.shape.of, found.shape.detail) == (law, "angle_mech", 23)
+    assert found.shape.words().startswith("order 23 of angle_mech in ")
+    assert found.log_evidence > 100
+
+
 def two_tables_of_one_cell(step, seed=0, u=0.01, times=1):
     """A force over a speed and one over a shunt, so many times each; the cell reads more by a step above 1 N."""
     random = np.random.default_rng(seed)
