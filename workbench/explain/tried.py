@@ -90,8 +90,8 @@ class Additions:
 class Search:
     """All that was tried. fitted: by set of names;  forms: what other forms of the effects add to ln evidence
 
-    guessed: ln evidence of sets that promised too little to be fitted;  origins: the fitted sets beside which that was
-    guessed;  beside: sets beside an unknown function
+    guessed: ln evidence by the expansion of sets that promised too little to be fitted
+    origins: the fitted sets beside which that was guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     """
@@ -113,6 +113,11 @@ class Search:
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
         return self.fitted[names].log_evidence + self.forms.get(names, 0.0) + self.exactness(names)
+
+    def by_expansion(self, names: Set) -> float:
+        """The same without what an exact base model gave or would give: what guesses are made from, to which that is
+        added once [nats]."""
+        return self.fitted[names].log_evidence + self.forms.get(names, 0.0) - self.exact.get(names, 0.0)
 
     def exactness(self, names: Set) -> float:
         """What an exact base model would give a set that has none: as much as the exact one that is most like it in
@@ -259,7 +264,7 @@ def fit_set(search: Search, promise: Promise) -> bool:
     search.exact.pop(every, None)
     search.beside.pop(every, None)
     search.forms[every] = promise.forms
-    _lower(search, every, max(guess - search.log_evidence(every), 0.0))
+    _lower(search, every, max(guess - search.by_expansion(every), 0.0))
     return True
 
 
@@ -291,7 +296,8 @@ def _lower(search: Search, every: Set, shortfall: float) -> None:
 
 
 def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
-    """Promises of one or two effects more beside a fit."""
+    """Promises of one or two effects more beside a fit; they take the place of what was guessed beside it before, when
+    it was not exact and some may have made good what the expansion lacks."""
     have = hypothesis.names
     search.expanded.add(have)
     added = additions(search, hypothesis, hypothesis.fit.jacobian)
@@ -300,9 +306,9 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     for every, found in ((have | found.names, found) for found in sets.values() if found.names):
         if every in search.fitted:
             continue
-        guess = search.log_evidence(have) + student_gain(hypothesis, found.gain)
-        origin = search.origins.get(every, frozenset())
-        if every not in search.guessed or len(have) > len(origin) or guess > search.guessed[every]:
+        guess = search.by_expansion(have) + student_gain(hypothesis, found.gain)
+        origin = search.origins.get(every, have)
+        if origin == have or len(have) > len(origin) or guess > search.guessed.get(every, -np.inf):
             search.guessed[every], search.origins[every] = guess, have
             promised[every] = found, promised_of(search, every)
     renewed = added.promises(promised)
