@@ -31,7 +31,7 @@ from workbench.explain.hypotheses import (
 )
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.search import best_alone, searched
-from workbench.explain.tried import Promise, Search, fit_set, student_gain
+from workbench.explain.tried import Promise, Search, expand, fit_set, student_gain
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
@@ -460,6 +460,33 @@ def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
     search.exact[frozenset(("wave6",))] = 4.0
     assert search.exactness(frozenset(("wave5",))) == 4.0, "as far from where the null is exact"
     assert search.exactness(frozenset(("wave2",))) == 50.0 and search.exactness(none) == 0.0
+
+
+def test_what_an_exact_model_gave_is_added_to_a_guess_once(tmp_path):
+    """Beside a fit that an exact model made better by fifty nats two waves together are believed to be as good as
+    beside the same fit before; what was guessed beside it meanwhile is forgotten."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x) + 0.1 * np.cos(900 * x))
+    wave = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    one, both = wave.names, wave.names | {"wave3"}
+    search = searching(bench, {frozenset(): null_of(bench), one: wave})
+    search.of_expansion = one
+    expand(search, wave, [])
+    before = search.believed(both)
+    search.fitted[one] = replace(wave, log_evidence=wave.log_evidence + 50.0)
+    search.exact[one] = 50.0
+    search.guessed[both] += 20.0
+    expand(search, search.fitted[one], [])
+    assert search.believed(both) == pytest.approx(before + 50.0)
+    assert search.by_expansion(one) == pytest.approx(wave.log_evidence)
+
+
+def test_what_leads_is_made_exact_however_many_are(tmp_path, monkeypatch):
+    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x)))
+    wave = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    search = searching(bench, {frozenset(): null_of(bench), wave.names: wave})
+    monkeypatch.setattr(search_module, "EXACT", 0)
+    search_module._exactly(search, lambda words: None)
+    assert wave.names in search.exact
 
 
 def test_an_expansion_is_concerned_with_what_moves_the_device(bench):
