@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import inf, lcm, pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 import scipy
@@ -23,11 +23,11 @@ from geometry.areas import part_areas
 from geometry.checks import check_machine
 from geometry.errors import GeometryError
 from geometry.moves import Move, moved
-from geometry.parts import ComposedMachine, DrawnMachine
+from geometry.parts import ComposedMachine
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import map_angles
 from magnetostatics.newton import FieldSolutionError
-from magnetostatics.positions import torque_period
+from magnetostatics.positions import angles_past_slots
 from magnetostatics.probes import probe_reader
 from magnetostatics.torque import maxwell_torque
 from magnetostatics.turn import Supply, solved_turn
@@ -218,25 +218,13 @@ def _solved(stated: StatedDesign, moves: Sequence[Move], amounts: Sequence[float
     machine = machine_of(driven, moves, amounts)
     model = stated.case.model(machine)
     supply = Supply(driven.limits.current_peak, angle, wound.equivalent_turns)
-    solutions = solved_turn(model, supply, map_angles(model, angles_past_slots(machine)))
+    solutions = solved_turn(model, supply, map_angles(model, angles_past_slots(machine, FEWEST_ANGLES)))
     torque = wound.active_length * float(np.mean([maxwell_torque(one) for one in solutions]))
     reader = probe_reader(model)
     read = [reader.read(one) for one in solutions]
     tooth, yoke = (max(v for one in read for n, v in one.items() if n.startswith(k)) for k in ("tooth", "back_iron"))
     constant = torque / sqrt(_copper_loss(stated, machine))
     return KindDesign(tuple(amounts), angle, torque, constant, tooth, yoke)
-
-
-def angles_past_slots(machine: DrawnMachine) -> int:
-    """How many rotor angles the mean of the torque is taken of, four or the next number that is not blind to the slots.
-
-    n angles over a period theta of the torque cannot tell the electrical order n 2 pi/theta from the mean, that of the
-    slots is lcm(slots, pitches of the rotor)/p: at 48 slots and 4 poles four over 60 degrees are a slot pitch apart.
-    """
-    count, slots = FEWEST_ANGLES, lcm(machine.slots, machine.repeats) // machine.pole_pairs
-    while slots % round(count * 2 * pi / torque_period(machine)) == 0:
-        count += 1
-    return count
 
 
 def _copper_loss(stated: StatedDesign, machine: ComposedMachine) -> float:

@@ -20,6 +20,20 @@ def torque_period(machine: DrawnMachine) -> float:
     return pi / 3 if machine.half_wave else 2 * pi / 3
 
 
+def angles_past_slots(machine: DrawnMachine, fewest: int) -> int:
+    """How many rotor angles a mean over a period of the torque is taken of: ``fewest``, or the next number that is not
+    blind to the slots.
+
+    n angles over a period theta of the torque cannot tell the electrical order n 2 pi/theta from the mean, that of the
+    slots is lcm(slots, pitches of the rotor)/p: at 48 slots and 4 poles four over 60 degrees are a slot pitch apart, at
+    12 slots and 10 poles two.
+    """
+    count, slots = fewest, lcm(machine.slots, machine.repeats) // machine.pole_pairs
+    while slots % round(count * 2 * pi / torque_period(machine)) == 0:
+        count += 1
+    return count
+
+
 def q_axis_angle(machine: DrawnMachine, layout: WindingLayout) -> float:
     """Rotor angle at which the q-axis current has its peak in phase A [rad]: p theta = axis_A - 90 deg."""
     return (layout.phase_axis - pi / 2) / machine.pole_pairs

@@ -109,6 +109,15 @@ def _repeats(sheet: _Sheet) -> int:
 # ---- the device ----------------------------------------------------------------------------------------------------
 
 
+_OTHER_MACHINES = {
+    "machine": (
+        "# Below is an inner rotor with magnets on its surface. Any other machine (outer rotor, buried magnets,",
+        '# reluctance, one of your own): model = "drawn", machine_file = "the path of its file", slots and poles',
+        "# alone; machines/ has such files to copy.",
+    )
+}
+
+
 def _device(model: str, quantities: Sequence[str], zeros: Sequence[Spread]) -> str:
     """Keys to fill in, and how well such devices and the instruments of these quantities are usually known.
 
@@ -117,7 +126,7 @@ def _device(model: str, quantities: Sequence[str], zeros: Sequence[Spread]) -> s
     if model in DEVICE_KEYS:
         keys = [f'{key.key} = "?"  # {key.meaning}' for key in DEVICE_KEYS[model] if key.needed]
         keys += [f"# {key.key} =   # {key.meaning}" for key in DEVICE_KEYS[model] if not key.needed]
-        lines = ["[device]  # as drawn", f"model = {_text(model)}", *keys]
+        lines = ["[device]  # as drawn", *_OTHER_MACHINES.get(model, ()), f"model = {_text(model)}", *keys]
     else:
         lines = ["[device]", f'model = "?"  # {", ".join(DEVICE_KEYS)}, and the keys it needs']
     lines += ["", _TOLERANCE, *map(_spread, TOLERANCES.get(model, ()))]

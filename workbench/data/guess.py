@@ -16,6 +16,7 @@ _PHASES: Final = {
     "a": "a", "b": "b", "c": "c", "u": "a", "v": "b", "w": "c", "1": "a", "2": "b", "3": "c", "l1": "a", "l2": "b",
     "l3": "c", "ua": "a", "ub": "b", "uc": "c", "ia": "a", "ib": "b", "ic": "c", "u1": "a", "u2": "b", "u3": "c",
     "i1": "a", "i2": "b", "i3": "c", "va": "a", "vb": "b", "vc": "c",
+    "iu": "a", "iv": "b", "iw": "c", "uu": "a", "uv": "b", "uw": "c",
 }  # fmt: skip
 _BOOKS: Final = {
     "repeat": ("repeat", "repetition", "rep", "run", "trial", "wiederholung", "wdh", "wdhlg", "lauf", "durchgang"),
@@ -131,8 +132,9 @@ def _by_unit(unit: str, words: Sequence[str]) -> str:
         return f"{prefix}_{last[-1]}"
     if prefix == "v" and {"ll", "line", "verkettet", "leiter"} & set(words):
         return "v_ll"
-    if prefix and last in _PHASES:
-        return f"{prefix}_{_PHASES[last]}"
+    phases = [w for w in (last, *words[:1]) if w in _PHASES and (w == last or len(w) == 2)]  # ia_mes, but u_mes is none
+    if prefix and phases:
+        return f"{prefix}_{_PHASES[phases[0]]}"
     if plain == "displacement" and "amplitude" in words:
         return "amplitude"
     if plain == "resistance" and {"shunt", "load", "last", "lastwiderstand"} & set(words):

@@ -14,6 +14,7 @@ _OTHERWISE: Final[dict[str, str]] = {
     "°": "deg", "grad": "deg", "degree": "deg", "degrees": "deg", "°C": "degC", "ºC": "degC", "Celsius": "degC",
     "grad C": "degC", "°F": "degF", "%": "percent", "-": "1", "–": "1", "": "1", "1/min": "rpm", "min-1": "rpm",
     "min^-1": "rpm", "U/min": "rpm", "rev/min": "rpm", "r/min": "rpm", "upm": "rpm", "RPM": "rpm", "Rpm": "rpm",
+    "°mech": "deg", "°mech.": "deg", "deg mech": "deg",
     "1/K": "per_K", "sec": "s", "Sek": "s", "Volt": "V", "Ampere": "A",
     "Aeff": "A", "Arms": "A", "A_rms": "A", "Veff": "V", "Vrms": "V", "V_rms": "V",
     "Newton": "N", "Ohms": "ohm", "OHM": "ohm", "HZ": "Hz", "hz": "Hz", "KN": "kN", "NM": "Nm",

@@ -155,8 +155,9 @@ def _points(axes, fit: ChannelFit, values: np.ndarray, rows: np.ndarray, number:
 def _model_lines(axes, fit: ChannelFit, rows: np.ndarray, number: int) -> None:
     _, first = np.unique(fit.x[rows], return_index=True)
     line = rows[first]
-    axes.plot(fit.x[line], fit.fitted[line], color=_colour(number))
-    axes.plot(fit.x[line], fit.nominal[line], color=_colour(number), linestyle=":", linewidth=1.2)
+    look = {"color": _colour(number), "marker": "_" if len(line) == 1 else "", "markersize": 24}  # one reading: no line
+    axes.plot(fit.x[line], fit.fitted[line], **look)
+    axes.plot(fit.x[line], fit.nominal[line], linestyle=":", linewidth=1.2, **look)
 
 
 def _residuals(axes, fit: ChannelFit, reach: float) -> None:

@@ -83,6 +83,8 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
             "dyno_map",
         ),
         ("Wdh [-],v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
+        ("x [°mech.],T [Nm],iU_mes [A],iV_mes [A],ia [A]", ["angle_mech", "torque", "i_a", "i_b", ""], "locked_rotor"),
+        ("U_mes [V],Drehzahl", ["voltage", "speed"], "back_emf"),
         ("Kraft [kN],zweite Kraft [N],v [m/s]", ["force", "", "velocity"], "damping_velocity"),
     ],
 )

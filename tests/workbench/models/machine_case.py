@@ -24,7 +24,7 @@ PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
 SOLVED = Path(gettempdir()) / f"machine-case-{os.environ.get('PYTEST_XDIST_TESTRUNUID', os.getpid())}"
 atexit.register(shutil.rmtree, SOLVED, ignore_errors=True)  # until then all processes of a run share what is solved
 LOADED = LoadedState(0.1, (40.0, -20.0, -20.0))
-STATES = (LOADED, LoadedState(0.1, (0.0, 0.0, 0.0)), LoadedState(9 * DEGREE, (0.0, 0.0, 0.0)))  # those of inductances
+STATES = (LOADED, *(LoadedState(angle, (0.0, 0.0, 0.0)) for angle in (0.1, 9 * DEGREE, 2 * DEGREE)))  # of inductances
 
 
 def drawn() -> MachineAsBuilt:

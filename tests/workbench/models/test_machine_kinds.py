@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import lcm
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from tests.effects.machine_bench import TURN, bench
 from tests.workbench.models.machine_case import LOADED, MIDDLE, drawn, field, surrogate
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
-from workbench.models.machine.answers import Answers
+from workbench.models.machine.answers import Answers, load_angles
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.drag import USUAL_SHEET, _region_waves, _torques, iron_torques
 from workbench.models.machine.kinds import dq_machine, loaded_states
@@ -202,5 +203,13 @@ def test_what_is_uncertain_in_every_machine():
 
 def test_states_without_current_for_kinds_that_need_inductances():
     found = loaded_states(drawn(), [type("T", (), {"kind": "short_circuit", "conditions": {"speed": SPEED}})()])
-    assert np.degrees([state.angle for state in found]) == pytest.approx([3.0, 9.0])
+    assert np.degrees([state.angle for state in found]) == pytest.approx([2.0, 6.0, 10.0])
     assert all(state.currents == (0.0, 0.0, 0.0) for state in found)
+
+
+@pytest.mark.parametrize(("slots", "pairs"), [(12, 5), (12, 7), (9, 4), (6, 2)])
+def test_inductances_are_the_mean_over_the_slots(slots, pairs):
+    """The wave that the slots make has no mean over the angles: two of 12/10 stand at one place of its slots."""
+    machine = replace(drawn().machine, slots=slots, pole_pairs=pairs)
+    order = lcm(slots, 2 * pairs)
+    assert abs(np.exp(1j * order * load_angles(replace(drawn(), machine=machine))).mean()) < 1e-9

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import hypot, pi, sqrt
+from math import hypot, sqrt
 
 import numpy as np
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
+from magnetostatics.positions import angles_past_slots, torque_period
 from materials.conductor import COPPER
 from workbench.models.machine.spectra import averaged, evaluated, half_rate, slope
 from workbench.models.machine.surrogate import Surrogate
 
-LOAD_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
+_FEWEST_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
 _PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
 
 
@@ -138,4 +139,5 @@ class Answers:
 
 def load_angles(design: MachineAsBuilt) -> np.ndarray:
     """Rotor angles [rad] over a sixth of an electrical period, after which the phases change their places."""
-    return (np.arange(LOAD_ANGLES) + 0.5) * pi / (3 * design.machine.pole_pairs * LOAD_ANGLES)
+    count = angles_past_slots(design.machine, _FEWEST_ANGLES)
+    return (np.arange(count) + 0.5) * torque_period(design.machine) / (design.machine.pole_pairs * count)
