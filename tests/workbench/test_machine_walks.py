@@ -28,8 +28,8 @@ from workbench.models.model import Model
 GRID = Grid(6.0, 4.5, (6.0, 30.0, 54.0), (60.0,), 69.0, (-60.0, 60.0))
 # What is added to the fine base comes from coarse meshes; the leading effects are solved again at their size.
 PLAN = MeshPlan(
-    idle=MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5),
-    loaded=MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5),
+    idle=MeshDensity(gap_edges=180, longest_gap_edge=2.5, gap_layers=1, across_iron=1.0),
+    loaded=MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.0),
 )
 NAMES = (
     "magnet_temperature", "end_leakage", "weak_magnet", "lost_turns", "phase_imbalance", "steel_saturation",

@@ -57,9 +57,12 @@ class Terms:
 
     @cached_property
     def columns(self) -> np.ndarray:
-        """Of every term its shift and its columns (n, Q)."""
-        parts = [np.column_stack([term.shift, term.columns]) for term in self.all]
-        return np.hstack([np.empty((self.rows, 0)), *parts])
+        """Of every term its shift and its columns (n, Q), written in their places: there may be 100 MB of them."""
+        ends = np.cumsum([0, *(1 + term.columns.shape[1] for term in self.all)])
+        out = np.empty((self.rows, ends[-1]))
+        for first, end, term in zip(ends, ends[1:], self.all):
+            out[:, first], out[:, first + 1 : end] = term.shift, term.columns
+        return out
 
     @cached_property
     def gram(self) -> np.ndarray:
