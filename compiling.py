@@ -26,7 +26,7 @@ SOURCES = (
 _PROJECT = Path(__file__).resolve().parent
 _THERE = [_PROJECT / source for source in SOURCES if (_PROJECT / source).is_file()]
 _HASH = sha256(b"".join(source.read_bytes() for source in _THERE)).hexdigest()[:16]
-config.CACHE_DIR = str(_PROJECT / "__pycache__" / f"compiled-{_HASH}")  # not annotated
+config.CACHE_DIR = str(_PROJECT / "__pycache__" / f"compiled-{_HASH}")
 
 # A division by zero gives inf, as in numpy, which makes the code smaller and faster.
 compiled = njit(cache=True, error_model="numpy")

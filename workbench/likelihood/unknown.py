@@ -3,8 +3,8 @@
 Three families stand for it: smooth functions (a Gaussian process of some length over the conditions, periodic in
 angles, or over the reading of an instrument in all its tables), single orders of an angle, which are what something
 that rings or ripples looks like, and plain laws c |x|^p sign(x)^s of one condition x, which are what a missing law most
-often looks like. The size is a share of the rms reading of the channel, whatever the
-noise of its sensor is. Phases of one quantity have functions of their own of the same size and length.
+often looks like. The size is a share of the rms reading of the channel, whatever the noise of its sensor is. Phases of
+one quantity have functions of their own of the same size and length.
 """
 
 from __future__ import annotations
