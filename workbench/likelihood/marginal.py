@@ -12,8 +12,8 @@ All of it is read from the products of all columns with one another, so that one
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -50,19 +50,34 @@ class Readings:
 
 @dataclass(frozen=True, eq=False)
 class Terms:
-    """All terms that there are, of so many rows, and the products of what they add with one another."""
+    """All terms that there are, of so many rows, and the products of what they add with one another.
+
+    kept: ``columns``, where the terms are views of it
+    """
 
     all: tuple[Term, ...]
     rows: int
+    kept: np.ndarray | None = None
+
+    @classmethod
+    def in_one(cls, terms: Iterable[Term], rows: int, count: int) -> Terms:
+        """Terms with so many columns altogether as views of one array, each written there as it comes: there may be
+        100 MB of them."""
+        out, found, first = np.empty((rows, count)), [], 0
+        for term in terms:
+            end = first + 1 + term.columns.shape[1]
+            out[:, first], out[:, first + 1 : end] = term.shift, term.columns
+            found.append(replace(term, shift=out[:, first], columns=out[:, first + 1 : end]))
+            first = end
+        return cls(tuple(found), rows, out)
 
     @cached_property
     def columns(self) -> np.ndarray:
-        """Of every term its shift and its columns (n, Q), written in their places: there may be 100 MB of them."""
-        ends = np.cumsum([0, *(1 + term.columns.shape[1] for term in self.all)])
-        out = np.empty((self.rows, ends[-1]))
-        for first, end, term in zip(ends, ends[1:], self.all):
-            out[:, first], out[:, first + 1 : end] = term.shift, term.columns
-        return out
+        """Of every term its shift and its columns (n, Q)."""
+        if self.kept is not None:
+            return self.kept
+        every = [np.column_stack([term.shift, term.columns]) for term in self.all]
+        return np.hstack([np.empty((self.rows, 0)), *every])
 
     @cached_property
     def gram(self) -> np.ndarray:

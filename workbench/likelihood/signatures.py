@@ -37,16 +37,31 @@ Progress = Callable[[str], None]
 class Signature:
     """One effect (variant) on its grid.
 
-    z: grid points (K, k);  change: of the readings, SI (n, K);  tangents: d change / dz (k, n, K)
+    z: grid points (K, k);  change: of the readings, SI (n, K)
     log_prior: ln of the prior mass of each cell (K,);  width: of a cell along each axis
     """
 
     effect: Effect
     z: np.ndarray
     change: np.ndarray
-    tangents: np.ndarray
     log_prior: np.ndarray
     width: float
+
+    @property
+    def tangents(self) -> np.ndarray:
+        """d change / dz (k, n, K), worked out when asked for: kept, they would be larger than the changes."""
+        possible, shape = np.isfinite(self.log_prior), self._shape
+        return np.array([_tangent(self.change, possible, shape, a, self.width) for a in range(len(shape))])
+
+    @property
+    def _shape(self) -> tuple[int, ...]:
+        """Of the grid."""
+        return grid(self.z.shape[1])[2]
+
+    @property
+    def term_columns(self) -> int:
+        """Of all its terms, shifts included."""
+        return int(np.isfinite(self.log_prior).sum()) * (1 + self.z.shape[1])
 
     @property
     def name(self) -> str:
@@ -64,7 +79,7 @@ class Signature:
     def _reach(self, s: np.ndarray, column: np.ndarray, axis: int) -> np.ndarray:
         """Weights of a column at which a place becomes its neighbour below and above, at an end of the grid nothing at
         all (2, K). s: whitened changes;  column: of this axis, whitened (n, K)"""
-        shape = grid(len(self.tangents))[2]
+        shape = self._shape
         on_grid = np.moveaxis(s.reshape((len(s),) + shape), 1 + axis, -1)
         known = np.moveaxis(np.isfinite(self.log_prior).reshape(shape), axis, -1)
         steps = np.linalg.norm(np.diff(on_grid, axis=-1), axis=0)
@@ -109,13 +124,12 @@ def grid(k: int) -> tuple[np.ndarray, float, tuple[int, ...]]:
 def signature(effect: Effect, change: Callable[[Effect], np.ndarray]) -> Signature:
     """The signature of an effect; ``change(effect)`` is the change of the readings, SI (n,)."""
     k = len(parameters_of(effect))
-    z, width, shape = grid(k)
+    z, width, _ = grid(k)
     changes, possible = _changes(effect, z, change)
-    tangents = np.array([_tangent(changes, possible, shape, a, width) for a in range(k)])
     below, above = (scipy.stats.t.cdf(z + side * width / 2, TAILS) for side in (-1, 1))
     masses = np.log(above - below).sum(axis=1)
     masses = np.where(possible, masses, -np.inf)
-    return Signature(effect, z, changes, tangents, masses - logsumexp(masses), width)
+    return Signature(effect, z, changes, masses - logsumexp(masses), width)
 
 
 def _tangent(s: np.ndarray, possible: np.ndarray, shape: tuple[int, ...], axis: int, width: float) -> np.ndarray:
@@ -173,7 +187,7 @@ class Signatures:
         """Of all effects in all their forms."""
         every = [(s, k, len(variants)) for variants in self.found.values() for k, s in enumerate(variants)]
         terms = (term for s, k, count in every for term in s.terms(self.white, k, -log(count)))
-        return Terms(tuple(terms), len(self.white.sigma))
+        return Terms.in_one(terms, len(self.white.sigma), sum(s.term_columns for s, _, _ in every))
 
     def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
         """The catalogue beside a background that was whitened so (n, m), of all effects but some."""

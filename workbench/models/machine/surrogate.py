@@ -57,7 +57,8 @@ class LoadedSamples:
 class Surrogate:
     """nominal: the machine as drawn
     no_load, coarse: Fourier coefficients on the fine mesh and on that of the changes (1 + coils, orders)
-    idle, loaded: changes without and with current, of coarser meshes; idle of Fourier coefficients
+    idle, loaded: changes without and with current, of coarser meshes, of torque and phase flux linkages per metre with
+        the turns as drawn; idle of Fourier coefficients
     states: the loaded states, None where a campaign has none
     origin: the design that the base values belong to, None for the nominal one
     """
@@ -99,16 +100,6 @@ class Surrogate:
     def coordinates(self) -> tuple[Coordinate, ...]:
         return all_coordinates(self.nominal)
 
-    @cached_property
-    def _idle_terms(self) -> Terms:
-        projection, length = self._projection(self.nominal.turns), self.no_load.shape[1]
-        return self.idle.each(lambda rows: _cut(projection @ rows, length))
-
-    @cached_property
-    def _loaded_terms(self) -> Terms:
-        projection = self._projection(self.nominal.turns)
-        return self.loaded.each(lambda rows: projection @ rows)
-
     def position(self, design: MachineAsBuilt) -> np.ndarray:
         """Coordinates of a design, from the drawing on."""
         return self._positions(design)
@@ -144,11 +135,11 @@ class Surrogate:
 
     @cached_property
     def _idle_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
-        return self._from_origin(self._idle_terms)
+        return self._from_origin(self.idle)
 
     @cached_property
     def _loaded_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
-        return self._from_origin(self._loaded_terms)
+        return self._from_origin(self.loaded)
 
     def _from_origin(self, terms: Terms) -> Callable[[MachineAsBuilt], np.ndarray]:
         """What is added for a design to the values at the origin; tables ask for one design in turn."""
@@ -217,14 +208,21 @@ def surrogate_of(
 ) -> Surrogate:
     """From the results of all pieces of ``pieces.py`` by their names."""
     drawn, changes = found["no load"], _changes(found, "no load ")
-    idle = terms_of(nominal, drawn["base"], changes)
+    of_coils = terms_of(nominal, drawn["base"], changes)
+    project, length = _projection_of(nominal), drawn["fine"].shape[1]
+    idle = of_coils.each(lambda rows: _cut(project @ rows, length))
     if not states:
         return Surrogate(nominal, drawn["fine"], drawn["base"], idle, None, None)
     with_current = _states_last(_changes(found, "loaded "))
     there = _at_angles(np.array([state.angle for state in states]), drawn["base"].shape[1])
     slopes = Changes({name: there(row) for name, row in changes.slopes.items()}, {})
-    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, idle.each(there), slopes)
+    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, of_coils.each(there), slopes)
+    loaded = loaded.each(lambda rows: project @ rows)
     return Surrogate(nominal, drawn["fine"], drawn["base"], idle, loaded, _samples(found, states))
+
+
+def _projection_of(nominal: MachineAsBuilt) -> np.ndarray:
+    return _projection(star_of_slots(nominal.machine.slots, nominal.machine.pole_pairs), nominal.turns)
 
 
 def _changes(found: Mapping, prefix: str) -> Changes:
