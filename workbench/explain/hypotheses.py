@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import log, prod
+from math import log
 
 import numpy as np
-from scipy.special import logsumexp, ndtri
+from scipy.special import logsumexp, ndtr, ndtri
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -27,6 +27,7 @@ LAW_LENGTH = 1  # number of the length over which the error of a law changes, se
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
 SIZES_TRIED, OTHERS_TRIED = 3, {2: 8, 3: 4, 4: 3}  # values of the size and of every other parameter, by their number
+TURNS_TRIED = 8  # parts of its prior by which one parameter is moved alone
 SHARES = 100  # of a posterior, whose middles stand for it where several are brought together
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
@@ -108,12 +109,17 @@ def from_elsewhere(bench: Bench, hypothesis: Hypothesis) -> Hypothesis:
 
 
 def _highest(hypothesis: Hypothesis, own: slice) -> np.ndarray:
-    """Parameters of all effects (k,), those of one where they are or at a place of a grid, even in probability,
-    wherever the fit would be highest; places where the model has no answer are left out."""
+    """Parameters of all effects (k,), those of one where they are, at a place of a grid, even in probability, or with
+    one of them moved by eighths of its prior, wherever the fit would be highest; places where the model has no answer
+    are left out. Half the prior of a direction is half a turn: an eccentricity to the other side makes the same
+    cogging."""
     fit, count = hypothesis.fit, own.stop - own.start
     axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED[count]] * (count - 1))]
-    places = np.tile(fit.z, (1 + prod(len(axis) for axis in axes), 1))
-    places[1:, own] = list(product(*axes))
+    grid = np.array(list(product(*axes)))
+    places = np.tile(fit.z, (1 + len(grid) + count * (TURNS_TRIED - 1), 1))
+    places[1 : 1 + len(grid), own] = grid
+    for axis, turned in enumerate(np.split(places[1 + len(grid) :], count)):
+        turned[:, own.start + axis] = _turned(fit.z[own.start + axis])
 
     def height(z: np.ndarray) -> float:
         try:
@@ -122,6 +128,12 @@ def _highest(hypothesis: Hypothesis, own: slice) -> np.ndarray:
             return -np.inf
 
     return max(places, key=height)
+
+
+def _turned(z: float) -> np.ndarray:
+    """Standard normal numbers at all other eighths of the probability from one on, and around (TURNS_TRIED - 1,)."""
+    steps = np.arange(1, TURNS_TRIED) / TURNS_TRIED
+    return np.clip(ndtri(np.mod(ndtr(z) + steps, 1.0)), -FAR, FAR)
 
 
 def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -> tuple[Problem, float]:

@@ -133,6 +133,29 @@ def test_turns_current_and_angle_beside_a_solved_state(turn):
     assert_allclose(found[1:], phases, atol=3e-3 * np.abs(phases).max())
 
 
+SHIFTED = replace(drawn(), rotor_shift=(0.05e-3, -0.07e-3))
+
+
+def test_what_a_shifted_rotor_does_to_single_coils_shows_where_one_lacks_turns():
+    """Order 6 of the phase of ten poles, against field solutions; nothing where all coils have their turns."""
+    lacking = SHIFTED.without_turns(0, 1.0)
+    exact = builder().about(surrogate(), lacking).spectrum(lacking)[1, 6]
+    assert abs(surrogate().spectrum(SHIFTED)[1, 6]) < 1e-6 * abs(exact)
+    assert_allclose(surrogate().spectrum(lacking)[1, 6], exact, rtol=0.02)
+
+
+def test_about_a_design_and_beyond_the_states_it_is_the_field_there():
+    """The rotor off its axis and turned by 0.6 degrees, against the field on the same mesh."""
+    turn, state = 0.6 * DEGREE, STATES[0]
+    wanted = builder().fields.loaded.loaded(SHIFTED, [state], turn)[0, 0]
+    at = np.array([state.angle + turn]), np.array([state.currents])
+    turned, not_turned = (
+        builder().about(surrogate(), SHIFTED, there).with_current(SHIFTED, *at)[0, 0] for there in (turn, 0.0)
+    )
+    assert_allclose(turned, wanted, rtol=1e-6)
+    assert abs(not_turned - wanted) > 2e-4 * abs(wanted), "the derivatives at the drawing know no shift"
+
+
 def test_far_from_every_solved_state_is_refused():
     with pytest.raises(WorkbenchError, match="far from every solved state"):
         surrogate().with_current(drawn(), np.array([0.5]), np.array([[40.0, -20.0, -20.0]]))
