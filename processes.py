@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import multiprocessing
 import os
 import signal
@@ -25,6 +26,15 @@ def use_one_thread() -> None:
     """BLAS of this process and of those that it starts on one thread; heeded where no library has loaded BLAS yet."""
     for variable in ONE_THREAD:
         os.environ[variable] = "1"
+
+
+def give_memory_back() -> None:
+    """Memory that this process has freed back to the system, which glibc does late or never where free and used blocks
+    lie mixed; elsewhere nothing happens."""
+    if sys.platform.startswith("linux"):
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+        if trim is not None:
+            trim(0)
 
 
 class LostWorker(Exception):

@@ -91,7 +91,8 @@ class JoinedPattern:
         self.column_starts = np.searchsorted(columns, np.arange(self.size + 1)).astype(np.uint32)
         self.linear_position = fixed_position.astype(np.uint32)[fixed.linear]
         self.iron_places = fixed_position.astype(np.int32)[fixed.iron][fixed.iron_entries.places]
-        self.band_positions = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
+        found = {edges: found_in(keys, self.column_starts, band.keys) for edges, band in bands.items()}
+        self.band_positions = {edges: positions.astype(np.uint32) for edges, positions in found.items()}
 
     @property
     def columns(self) -> np.ndarray:

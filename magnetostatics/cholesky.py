@@ -67,7 +67,8 @@ class SymmetricSystem:
     def __init__(self, rows: np.ndarray, columns: np.ndarray, size: int, memory: FactorMemory | None = None) -> None:
         pattern = cvxopt.spmatrix(1.0, cvxopt.matrix(rows.astype(int)), cvxopt.matrix(columns), (size, size))
         order = np.array(cvxopt.amd.order(pattern, "L")).ravel()
-        self._fronts, self._order, self.column_counts, workspace = analysed(rows, columns, order)
+        self._fronts, self._order, counts, workspace = analysed(rows, columns, order)
+        self.column_counts = counts.astype(np.uint32)
         self._sizes, self._memory = (int(self._fronts.panels[-1]), int(workspace)), memory or FactorMemory()
 
     @property

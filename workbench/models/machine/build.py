@@ -21,7 +21,6 @@ from workbench.models.machine.field import LoadedState
 from workbench.models.machine.pieces import (
     DEFAULT_PLAN,
     Arrays,
-    Fields,
     LoadedAt,
     Machinery,
     MeshPlan,
@@ -31,8 +30,8 @@ from workbench.models.machine.pieces import (
     Task,
     loaded_pieces,
     no_load_pieces,
-    solved,
 )
+from workbench.models.machine.solver import Solver, in_kinds, solved
 from workbench.models.machine.surrogate import Surrogate, surrogate_of
 
 Progress = Callable[[str], None]
@@ -65,9 +64,9 @@ class SurrogateBuilder:
         return self.machinery.nominal
 
     @cached_property
-    def fields(self) -> Fields:
+    def solver(self) -> Solver:
         """The field problems in this process."""
-        return Fields(self.machinery)
+        return Solver(self.machinery)
 
     def build(self, states: Sequence[LoadedState], progress: Progress | None = None) -> Surrogate:
         """The surrogate with the given loaded states; solves what is not on disk yet."""
@@ -98,7 +97,7 @@ class SurrogateBuilder:
         """Results of all pieces by name, from disk where they are there."""
         found = {piece.name: self.store.load(piece, states) for piece in pieces}
         tasks = {}
-        for piece in pieces:
+        for piece in in_kinds(pieces):
             missing = found[piece.name].missing
             if missing is not None:
                 tasks[piece.name] = Task(self.machinery, piece, missing)
@@ -119,7 +118,7 @@ class SurrogateBuilder:
             except LostWorker:
                 self.pool.end(now=True)
         for name, task in waiting.items():
-            yield name, task.piece.solve(self.fields, task.states)
+            yield name, self.solver.solve(task.piece, task.states)
 
     def _pooled(self, tasks: dict[str, Task]) -> Iterator[tuple[str, Arrays]]:
         futures = {self.pool.submit(solved, task): name for name, task in tasks.items()}

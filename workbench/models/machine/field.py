@@ -113,10 +113,14 @@ class MachineField:
         return (machine.magnet_arc_fraction < 1) == (self.nominal.machine.magnet_arc_fraction < 1)
 
     def forget(self) -> None:
+        """Give the memory of all meshes and factorisations back, and the samples that are kept."""
+        self.forget_meshes()
+        self._drawn = None
+
+    def forget_meshes(self) -> None:
         """Give the memory of all meshes and factorisations back."""
         self._meshes.clear()
         self._starts.clear()
-        self._drawn = None
 
     # ---- samples ------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,93 @@
+"""Solves pieces after one another, with the memory that the pieces of one kind need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+from processes import give_memory_back
+from workbench.models.machine.coordinates import BOTH
+from workbench.models.machine.pieces import (
+    Arrays,
+    Fields,
+    LoadedAt,
+    LoadedCoils,
+    LoadedSlopes,
+    Machinery,
+    NoLoadAt,
+    NoLoadNode,
+    NoLoadSlopes,
+    Piece,
+    States,
+    Task,
+)
+
+Kind = tuple[bool, bool]  # with current, of the whole machine
+_NO_LOAD_WHOLE = (False, True)
+
+
+class Solver:
+    """The field problems of a machine in this process, of one kind of pieces at a time.
+
+    The patterns of all rotor angles are most of the memory (70 MB of a whole machine), and the next kind has no use for
+    those of the kind before.
+    """
+
+    def __init__(self, machinery: Machinery):
+        self.fields = Fields(machinery)
+        self._kind: Kind | None = None
+
+    def solve(self, piece: Piece, states: States) -> Arrays:
+        """The results of a piece."""
+        self._prepare(kind_of(piece))
+        arrays = piece.solve(self.fields, states)
+        give_memory_back()
+        return arrays
+
+    def _prepare(self, kind: Kind | None) -> None:
+        if kind is None or kind == self._kind:
+            return
+        self._kind = kind
+        for field in (self.fields.base, self.fields.idle, self.fields.loaded):
+            field.forget_meshes()
+        if kind == _NO_LOAD_WHOLE:
+            self._solve_drawing()
+
+    def _solve_drawing(self) -> None:
+        """The samples that every change without current is taken from, before the whole machine is meshed: they are of
+        a sector, whose mesh is not needed beside it."""
+        self.fields.idle.no_load(self.fields.nominal)
+        self.fields.idle.forget_meshes()
+
+
+def kind_of(piece: Piece) -> Kind | None:
+    """Whether there is current, and whether the whole machine is solved rather than a sector of it; None of another
+    design, which may be asked for with current and without in turn."""
+    if isinstance(piece, (NoLoadAt, LoadedAt)):
+        return None
+    return piece.with_current, _is_whole(piece)
+
+
+def _is_whole(piece: Piece) -> bool:
+    if isinstance(piece, NoLoadNode):
+        return piece.node.moves[0][0].breaks != BOTH
+    return isinstance(piece, (NoLoadSlopes, LoadedSlopes, LoadedCoils))
+
+
+def in_kinds(pieces: Iterable[Piece]) -> list[Piece]:
+    """The same pieces, those of a kind after each other, the kinds in the order of their first pieces."""
+    kinds: dict[Kind | None, list[Piece]] = {}
+    for piece in pieces:
+        kinds.setdefault(kind_of(piece), []).append(piece)
+    return [piece for those in kinds.values() for piece in those]
+
+
+def solved(task: Task) -> Arrays:
+    """The piece of a task, on meshes that this process keeps for the next one of the kind."""
+    return solver_of(task.machinery).solve(task.piece, task.states)
+
+
+@lru_cache(maxsize=1)
+def solver_of(machinery: Machinery) -> Solver:
+    """The solver of the machine asked last."""
+    return Solver(machinery)
