@@ -13,7 +13,7 @@ from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
-from workbench.explain.hypotheses import Hypothesis, exact, from_elsewhere, null_of
+from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
 from workbench.likelihood.bench import Bench
@@ -170,16 +170,15 @@ def _has_paled(search: Search, promise: Promise) -> bool:
 def _exactly(search: Search, progress: Progress) -> None:
     """What leads again with a base model that is exact where it ended. Others are believed to gain as much by that as
     the exact one that is most like them; what leads then is made exact, however many are: a belief was wrong by 18 nats
-    of an eccentric rotor, and no more than a belief may name effects. An expansion about a wrong direction is looked
-    at from elsewhere first."""
+    of an eccentric rotor, and no more than a belief may name effects."""
     while search.bench.model.base.is_expansion:
         names = _next_exact(search)
         if names is None or (names != search.ranked[0] and len(search.exact) > EXACT):  # nothing at all is exact, too
             break
         progress("field solutions for " + label_of(names))
-        found = from_elsewhere(search.bench, search.fitted[names])
-        search.fitted[names] = exact(found)
-        search.exact[names] = search.fitted[names].log_evidence - found.log_evidence
+        before = search.fitted[names].log_evidence
+        search.fitted[names] = exact(search.fitted[names])
+        search.exact[names] = search.fitted[names].log_evidence - before
         if search.beside.pop(names, None) is not None:
             weigh(search, names)
         if search.is_beaten:
