@@ -435,7 +435,7 @@ class FieldModel:
 
     @cached_property
     def _coarse_topology(self) -> Topology:
-        return Topology(self.section, LINEAR)
+        return Topology(self.section, LINEAR, self.topology.most_patterns)
 
 
 class _CoarseModel(FieldModel):

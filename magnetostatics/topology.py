@@ -19,14 +19,17 @@ from magnetostatics.unknowns import number_unknowns
 IRON = ("stator_iron", "rotor_iron")
 _TURNS = 4  # neighbouring numbers of edges that share a pattern
 _MOST_TURNED = 8  # numbers of edges of which the unknowns are kept; one takes 100 kilobytes
-_MOST_PATTERNS = 20  # that are kept; one takes about two megabytes
+MOST_PATTERNS = 20  # that are kept; one takes two to ten megabytes
 
 
 class Topology:
-    """Numbering and patterns of a meshed cross-section for one order of elements."""
+    """Numbering and patterns of a meshed cross-section for one order of elements.
 
-    def __init__(self, section: CrossSection, order: TriangleOrder) -> None:
-        self.order = order
+    most_patterns: that are kept; whoever goes round more angles than they are for finds none of them the next time
+    """
+
+    def __init__(self, section: CrossSection, order: TriangleOrder, most_patterns: int = MOST_PATTERNS) -> None:
+        self.order, self.most_patterns = order, most_patterns
         self.dofs, self.size = element_dofs(section.mesh, order)
         self.unknowns = number_unknowns(section, order)
         self.facets = section.mesh.facets
@@ -79,7 +82,7 @@ class Topology:
         """Pattern with the rotor turned by whole edges."""
         group = edges // _TURNS
         if group not in self._patterns:
-            if len(self._patterns) == _MOST_PATTERNS:
+            if len(self._patterns) == self.most_patterns:
                 self._patterns.pop(next(iter(self._patterns)))
             turns = range(group * _TURNS, (group + 1) * _TURNS)
             bands = {turn: self._band_entries(turn) for turn in turns}

@@ -26,8 +26,10 @@ from geometry.morph import Defect, Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
 from magnetostatics.cut_edge import CutEdge
+from magnetostatics.elements import QUADRATIC
 from magnetostatics.model import FieldModel, FieldSolution, MachineMaterials, OperatingState, blended
 from magnetostatics.newton import NewtonSettings
+from magnetostatics.topology import MOST_PATTERNS, Topology
 from magnetostatics.torque import maxwell_torque
 from materials.altered_steel import ScaledSaturation, hardened, stacked
 from materials.library import load_steel
@@ -58,7 +60,7 @@ class PartlyRadial(Magnetisation):
 class MachineField:
     """One machine at one mesh density; designs with the same poles, slots and kind of magnet share the mesh.
 
-    steel: from the grade's name to its law
+    steel: from the grade's name to its law;  patterns: that a mesh keeps, see ``Topology``
     """
 
     def __init__(
@@ -66,8 +68,9 @@ class MachineField:
         nominal: MachineAsBuilt,
         density: MeshDensity,
         steel: Callable[[str], Reluctivity] = load_steel,
+        patterns: int = MOST_PATTERNS,
     ):
-        self.nominal, self.density, self.steel = nominal, density, steel
+        self.nominal, self.density, self.steel, self.patterns = nominal, density, steel, patterns
         self._meshes: dict[tuple, tuple[CrossSection, Morpher, FieldModel]] = {}  # the nominal ones and the last other
         self._starts: dict[tuple, list[FieldSolution]] = {}  # of the nominal machine at the states asked last
         self._drawn: np.ndarray | None = None  # samples of the nominal machine without current
@@ -104,7 +107,8 @@ class MachineField:
             self._meshes = {known: mesh for known, mesh in self._meshes.items() if known[0] in (base, drawn)}
             section = mesh_cross_section(drawn, self.layout, self.density, whole)
             materials = materials_of(self.nominal, self.steel(self.nominal.steel))
-            first = FieldModel(section, _all_alike(materials), _TIGHT)
+            topology = Topology(section, QUADRATIC, self.patterns)
+            first = FieldModel(section, _all_alike(materials), _TIGHT, topology=topology)
             self._meshes[key] = section, Morpher(section), first
         return self._meshes[key]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from effects.machine_design import MachineAsBuilt
 from geometry.half_cell import MeshDensity
+from magnetostatics.topology import MOST_PATTERNS
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
 from units import DEGREE
@@ -31,6 +31,7 @@ from workbench.models.machine.spectra import coefficients
 
 ANGLE_STEPS = 0.75 * DEGREE * np.array([-2, -1, 1, 2])  # from a loaded state, to follow what its currents add
 _SCALE_STEP = 0.04  # of its currents
+_FEW_PATTERNS = 4  # of the finer meshes: all angles that a piece goes round would take 170 MB and save a tenth of it
 
 Arrays = dict[str, np.ndarray]
 States = tuple[LoadedState, ...]
@@ -65,9 +66,13 @@ class Fields:
     """The field problems of a machine on its three meshes."""
 
     def __init__(self, machinery: Machinery):
-        self.nominal = machinery.nominal
-        meshes = (machinery.plan.base, machinery.plan.idle, machinery.plan.loaded)
-        self.base, self.idle, self.loaded = (MachineField(self.nominal, m, machinery.steel) for m in meshes)
+        self.nominal, plan = machinery.nominal, machinery.plan
+        self.base, self.idle = (self._field(machinery, mesh, _FEW_PATTERNS) for mesh in (plan.base, plan.idle))
+        self.loaded = self._field(machinery, plan.loaded, MOST_PATTERNS)
+
+    @staticmethod
+    def _field(machinery: Machinery, mesh: MeshDensity, patterns: int) -> MachineField:
+        return MachineField(machinery.nominal, mesh, machinery.steel, patterns)
 
     def only(self, field: MachineField) -> MachineField:
         """One of the three, the memory of the others given back: the pieces of one mesh are solved after each other."""
@@ -259,17 +264,6 @@ class Task:
     machinery: Machinery
     piece: Piece
     states: States
-
-
-def solved(task: Task) -> Arrays:
-    """The piece of a task, on meshes that this process keeps for the next one."""
-    return task.piece.solve(fields_of(task.machinery), task.states)
-
-
-@lru_cache(maxsize=1)
-def fields_of(machinery: Machinery) -> Fields:
-    """The meshes of the machine asked last."""
-    return Fields(machinery)
 
 
 def _turned(state: LoadedState, change: float) -> LoadedState:
