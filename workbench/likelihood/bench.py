@@ -171,7 +171,8 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         if not model.base.is_expansion:
             break
         there = problem.predictor.model_at(fit.x, fit.at_maximum)
-        tables = [replace(table, conditions=there.true_conditions(table)) for table in problem.stack.tables]
+        rows = (table for table in problem.stack.tables if table.rows)
+        tables = [replace(table, conditions=there.true_conditions(table)) for table in rows]
         base = model.base.recentred(there.design_as_built, tables)
         predictor = replace(problem.predictor, model=replace(model, base=base))
         problem, before = replace(problem, predictor=predictor), fit.objective

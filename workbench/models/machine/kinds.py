@@ -172,7 +172,7 @@ def _states_of(design: MachineAsBuilt, table: Table) -> list[LoadedState]:
 def beyond_states(surrogate: Surrogate, design: MachineAsBuilt, tables: Sequence[Table]) -> float:
     """Mean angle by which the rotor stands beyond the solved states in rows with currents, their conditions true [rad]:
     what a design and the error of an encoder make together no derivative at the drawing knows."""
-    rows = [table.conditions for table in tables if table.kind in _WITH_CURRENTS and table.rows]
+    rows = [table.conditions for table in tables if table.kind in _WITH_CURRENTS]
     apart = [surrogate.beyond_states(at["angle_mech"] - design.rotor_turn, phase_currents(at)) for at in rows]
     return float(np.mean(np.concatenate(apart))) if apart else 0.0
 
