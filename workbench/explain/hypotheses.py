@@ -3,16 +3,17 @@ each with its evidence."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import log, prod
+from math import log
 
 import numpy as np
-from scipy.special import logsumexp, ndtri
+from scipy.special import logsumexp, ndtr, ndtri
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from effects.prior import Uniform
 from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
@@ -27,6 +28,7 @@ LAW_LENGTH = 1  # number of the length over which the error of a law changes, se
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
 SIZES_TRIED, OTHERS_TRIED = 3, {2: 8, 3: 4, 4: 3}  # values of the size and of every other parameter, by their number
+TURNS_TRIED = 8  # parts of a turn by which a direction is moved
 SHARES = 100  # of a posterior, whose middles stand for it where several are brought together
 NORMAL_95 = 1.6449  # two-sided 90 % of a standard normal
 
@@ -93,27 +95,58 @@ def _fitted_from(
     return Hypothesis(fit, problem, evidence - log_det, log_det)
 
 
+def turned(bench: Bench, hypothesis: Hypothesis) -> Hypothesis:
+    """The fit again with every direction moved by eighths of a turn, where that ends higher: an eccentricity to the
+    other side makes the same cogging, but another voltage where a coil lacks turns."""
+    return _from_others(bench, hypothesis, _turns)
+
+
 def from_elsewhere(bench: Bench, hypothesis: Hypothesis) -> Hypothesis:
     """The fit again from other sizes, directions and the like of every effect that has several parameters, where that
     ends higher: a fit that begins at a wrong direction makes the effect small first, and stays there."""
+    return _from_others(bench, hypothesis, lambda *there: np.vstack([_grid(*there), _turns(*there)]))
+
+
+def _from_others(
+    bench: Bench, hypothesis: Hypothesis, others: Callable[[Effect, np.ndarray, slice], np.ndarray]
+) -> Hypothesis:
+    """others: from an effect, the parameters of all (k,) and the places of its own to other parameters (n, k)"""
     place = 0
     for effect in hypothesis.fit.effects:
-        count = len(parameters_of(effect))
-        if count > 1:
-            fit, start = hypothesis.fit, _highest(hypothesis, slice(place, place + count))
+        own = slice(place, place + len(parameters_of(effect)))
+        fit, place = hypothesis.fit, own.stop
+        start = _highest(hypothesis, others(effect, fit.z, own))
+        if start is not None:
             again = fitted_from(bench, fit.effects, fit.x, start, fit.slopes)
             hypothesis = max(hypothesis, again, key=lambda h: h.log_evidence)
-        place += count
     return hypothesis
 
 
-def _highest(hypothesis: Hypothesis, own: slice) -> np.ndarray:
-    """Parameters of all effects (k,), those of one where they are or at a place of a grid, even in probability,
-    wherever the fit would be highest; places where the model has no answer are left out."""
-    fit, count = hypothesis.fit, own.stop - own.start
-    axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED[count]] * (count - 1))]
-    places = np.tile(fit.z, (1 + prod(len(axis) for axis in axes), 1))
-    places[1:, own] = list(product(*axes))
+def _grid(effect: Effect, z: np.ndarray, own: slice) -> np.ndarray:
+    """Parameters (n, k) with those of one effect at the places of a grid, even in probability; none where it has only
+    one."""
+    count = own.stop - own.start
+    axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED.get(count, 0)] * (count - 1))]
+    grid = list(product(*axes)) if count > 1 else []
+    places = np.tile(z, (len(grid), 1))
+    places[:, own] = np.reshape(grid, (-1, count))
+    return places
+
+
+def _turns(effect: Effect, z: np.ndarray, own: slice) -> np.ndarray:
+    """Parameters (n, k) with one direction of an effect moved by eighths of a turn; none for an effect without any."""
+    directions = [k for k, p in enumerate(parameters_of(effect).values(), own.start) if isinstance(p.prior, Uniform)]
+    steps = np.arange(1, TURNS_TRIED) / TURNS_TRIED
+    places = np.tile(z, (len(directions), len(steps), 1))
+    for k, moved in zip(directions, places):
+        moved[:, k] = np.clip(ndtri(np.mod(ndtr(z[k]) + steps, 1.0)), -FAR, FAR)
+    return places.reshape(-1, len(z))
+
+
+def _highest(hypothesis: Hypothesis, places: np.ndarray) -> np.ndarray | None:
+    """The parameters (k,), of some (n, k), where the fit would be higher than it is, and highest; None where at none of
+    them. Places where the model has no answer are left out."""
+    fit = hypothesis.fit
 
     def height(z: np.ndarray) -> float:
         try:
@@ -121,7 +154,9 @@ def _highest(hypothesis: Hypothesis, own: slice) -> np.ndarray:
         except WorkbenchError:
             return -np.inf
 
-    return max(places, key=height)
+    heights = [height(z) for z in places]
+    best = int(np.argmax(heights)) if heights else 0
+    return places[best] if heights and heights[best] > height(fit.z) else None
 
 
 def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -> tuple[Problem, float]:

@@ -19,7 +19,7 @@ from effects.parameter import parameters_of
 from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
-from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere
+from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere, turned
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import FAR, Fit, misfit
 from workbench.likelihood.marginal import Readings
@@ -251,7 +251,7 @@ def fit_set(search: Search, promise: Promise) -> bool:
     every = promise.every
     guess = search.guessed.pop(every, -np.inf)
     try:
-        found = _fitted(search.bench, promise)
+        found = turned(search.bench, _fitted(search.bench, promise))
         if found.log_evidence + promise.forms < guess - PLAIN:
             found = from_elsewhere(search.bench, found)
     except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:

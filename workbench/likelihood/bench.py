@@ -170,8 +170,11 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         model = problem.predictor.model
         if not model.base.is_expansion:
             break
-        design = problem.predictor.model_at(fit.x, fit.at_maximum).design_as_built
-        predictor = replace(problem.predictor, model=replace(model, base=model.base.recentred(design)))
+        there = problem.predictor.model_at(fit.x, fit.at_maximum)
+        rows = (table for table in problem.stack.tables if table.rows)
+        tables = [replace(table, conditions=there.true_conditions(table)) for table in rows]
+        base = model.base.recentred(there.design_as_built, tables)
+        predictor = replace(problem.predictor, model=replace(model, base=base))
         problem, before = replace(problem, predictor=predictor), fit.objective
         fit = refitted(problem, fit)
         if abs(before - fit.objective) < SHARP:

@@ -69,8 +69,8 @@ class BaseModel:
         """Whether it answers by an expansion about a design, so that ``recentred`` makes it more exact elsewhere."""
         return False
 
-    def recentred(self, design: Any) -> BaseModel:
-        """The model, exact at another design."""
+    def recentred(self, design: Any, tables: Sequence[Table] = ()) -> BaseModel:
+        """The model, exact at another design. tables: at their true conditions, as far as they matter to that"""
         return self
 
     def is_alike(self, design: Any, other: Any) -> bool:

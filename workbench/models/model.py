@@ -44,13 +44,8 @@ class Model:
         """What the instruments should have shown in the rows of a table: response columns, SI (n,)."""
         if not table.rows:  # all of its rows are held out, or none are
             return {name: response.values for name, response in table.responses.items()}
-        kind, conditions = table.kind, dict(table.conditions)
-        for effect in self._of(InstrumentEffect):
-            conditions = dict(effect.on_condition(conditions, kind))
-        design, order = self.design_as_built, {"order": table.order}
-        for effect in self._of(StateEffect):
-            conditions = without_order(effect.on_state({**conditions, **order}, kind, design))
-        conditions = self._given(table, conditions)
+        kind, design, order = table.kind, self.design_as_built, {"order": table.order}
+        conditions = self._given(table, self.true_conditions(table))
         response = self.base.respond(design, kind, conditions)
         _require_answers(table, response | _between_lines(response, table))
         for effect in self._of(ResponseEffect):
@@ -58,6 +53,16 @@ class Model:
         for effect in self._of(InstrumentEffect):
             response = dict(effect.on_reading(response, {**conditions, **order}, kind))
         return response | _between_lines(response, table)
+
+    def true_conditions(self, table: Table) -> dict[str, np.ndarray]:
+        """What the device was in where the instruments showed the conditions of a table, SI (n,) each."""
+        conditions = dict(table.conditions)
+        for effect in self._of(InstrumentEffect):
+            conditions = dict(effect.on_condition(conditions, table.kind))
+        for effect in self._of(StateEffect):
+            state = effect.on_state({**conditions, "order": table.order}, table.kind, self.design_as_built)
+            conditions = without_order(state)
+        return conditions
 
     def _given(self, table: Table, conditions: Mapping[str, np.ndarray]) -> Conditions:
         """Conditions that say which of them is missing."""

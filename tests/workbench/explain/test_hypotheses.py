@@ -27,6 +27,7 @@ from workbench.explain.hypotheses import (
     fitted_from,
     from_elsewhere,
     null_of,
+    turned,
     with_law_error,
 )
 from workbench.explain.neighbours import exchange, less_one
@@ -94,6 +95,25 @@ def test_a_fit_that_ended_in_a_wrong_valley_finds_the_right_one(tmp_path):
     assert ripple.size == pytest.approx(0.5, abs=0.05)
     assert ripple.phase % np.pi == pytest.approx(1.0, abs=0.1)
     assert from_elsewhere(bench, found).log_evidence >= found.log_evidence
+
+
+class Lopsided(Ripple):
+    """A ripple that is not quite the same half a turn on."""
+
+    def on_response(self, response, conditions, kind, design):
+        more = 0.1 * self.size * np.cos(np.pi * conditions["displacement"] / 0.01 - self.phase)
+        return super().on_response({**response, "force": response["force"] + more}, conditions, kind, design)
+
+
+def test_a_fit_that_ended_half_a_turn_off_is_turned(tmp_path):
+    """Between the sizes of the grid, so that no place of it is better than the wrong side."""
+    wave = lambda x: 0.16 * np.cos(2 * np.pi * x / 0.01 + 2.0) + 0.04 * np.cos(np.pi * x / 0.01 + 1.0)  # noqa: E731
+    bench = sure_of_noise(tmp_path, extra=wave)
+    start = np.array([LogNormal(0.3, 0.7).standard(0.4), Uniform(-np.pi, np.pi).standard(-1.0 + np.pi)])
+    there = fitted_from(bench, (Lopsided(),), np.zeros(2), start)
+    (ripple,) = turned(bench, there).effects
+    assert there.effects[0].phase > 1.0
+    assert ripple.phase == pytest.approx(-1.0, abs=0.1)
 
 
 def alone(bench, cls):
@@ -232,7 +252,7 @@ class Expansion(SpringModel):
         wrong = 1 + 30 * (design.stiffness / self.about - 1) ** 2
         return {"force": wrong * design.stiffness * conditions["displacement"]}
 
-    def recentred(self, design):
+    def recentred(self, design, tables=()):
         moved = Expansion()
         moved.about = design.stiffness
         return moved

@@ -19,7 +19,7 @@ class ExpandedSpring(SpringModel):
 
     is_expansion = True
 
-    def recentred(self, design):
+    def recentred(self, design, tables=()):
         return self
 
 

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from benchmarks.virtual_benches.machine_bench import DEVICE
 from tests.workbench.models.machine_case import PLAN, SOLVED, STATES, builder, drawn, surrogate
+from units import DEGREE
 from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.machine.build import SurrogateBuilder
@@ -133,6 +134,17 @@ def test_exact_at_one_design_after_another():
     at = {"angle_mech": ANGLES}
     found = there_and_back.respond(drawn(), "cogging", at)["torque"]
     assert_allclose(found, prepared().respond(drawn(), "cogging", at)["torque"], atol=1e-9)
+
+
+def test_states_are_solved_where_the_rotor_truly_stood():
+    """An encoder that reads 0.3 degrees too little, and magnets a tenth of a degree too far on."""
+    design = replace(drawn(), rotor_turn=0.1 * DEGREE)
+    loaded = {f"i_{x}": np.full(2, i) for x, i in zip("abc", STATES[0].currents)}
+    table = SimpleNamespace(
+        kind="locked_rotor", rows=2, conditions={"angle_mech": np.full(2, STATES[0].angle + 0.3 * DEGREE), **loaded}
+    )
+    assert prepared().recentred(design, [table]).surrogate.states.turn == pytest.approx(0.2 * DEGREE)
+    assert prepared().recentred(design).surrogate.states.turn == 0.0
 
 
 def test_a_state_just_before_a_revolution_is_the_one_at_its_start():

@@ -98,8 +98,8 @@ def test_with_current(name):
 def test_steel_that_carries_more_flux_between_stronger_magnets_makes_the_same_field():
     """B_r and the saturation times s: psi times s, torque times s^2, where currents are none."""
     design = replace(drawn().with_magnet(remanence=1.3 * 0.95), saturation_scale=0.95)
-    exact = builder().fields.idle.no_load(design)
-    drawing = builder().fields.idle.no_load(drawn())
+    exact = builder().solver.fields.idle.no_load(design)
+    drawing = builder().solver.fields.idle.no_load(drawn())
     assert_allclose(exact[:, 0], 0.95**2 * drawing[:, 0], atol=1e-4 * np.abs(drawing[:, 0]).max())
     assert_allclose(exact[:, 1:], 0.95 * drawing[:, 1:], atol=1e-5 * np.abs(drawing[:, 1:]).max())
     found, nominal = (surrogate().spectrum(d) for d in (design, drawn()))
@@ -119,7 +119,7 @@ def test_cubics_between_nodes():
 @pytest.mark.parametrize("turn", [0.5 * DEGREE, 1.2 * DEGREE])
 def test_turns_current_and_angle_beside_a_solved_state(turn):
     """Turned on, 3 % more current, one phase 2 A off and half a turn missing, against its own field solution."""
-    fields = builder().fields.loaded
+    fields = builder().solver.fields.loaded
     design = drawn().without_turns(0, 0.5)
     angle, currents = STATES[0].angle + turn, (41.2, -20.6, -18.6)
     state = replace(STATES[0], angle=angle, currents=currents)
@@ -131,6 +131,29 @@ def test_turns_current_and_angle_beside_a_solved_state(turn):
     found = surrogate().with_current(design, np.array([angle]), np.array([currents]))[0]
     assert_allclose(found[0], sample[0], rtol=5e-3)
     assert_allclose(found[1:], phases, atol=3e-3 * np.abs(phases).max())
+
+
+SHIFTED = replace(drawn(), rotor_shift=(0.05e-3, -0.07e-3))
+
+
+def test_what_a_shifted_rotor_does_to_single_coils_shows_where_one_lacks_turns():
+    """Order 6 of the phase of ten poles, against field solutions; nothing where all coils have their turns."""
+    lacking = SHIFTED.without_turns(0, 1.0)
+    exact = builder().about(surrogate(), lacking).spectrum(lacking)[1, 6]
+    assert abs(surrogate().spectrum(SHIFTED)[1, 6]) < 1e-6 * abs(exact)
+    assert_allclose(surrogate().spectrum(lacking)[1, 6], exact, rtol=0.02)
+
+
+def test_about_a_design_and_beyond_the_states_it_is_the_field_there():
+    """The rotor off its axis and turned by 0.6 degrees, against the field on the same mesh."""
+    turn, state = 0.6 * DEGREE, STATES[0]
+    wanted = builder().solver.fields.loaded.loaded(SHIFTED, [state], turn)[0, 0]
+    at = np.array([state.angle + turn]), np.array([state.currents])
+    turned, not_turned = (
+        builder().about(surrogate(), SHIFTED, there).with_current(SHIFTED, *at)[0, 0] for there in (turn, 0.0)
+    )
+    assert_allclose(turned, wanted, rtol=1e-6)
+    assert abs(not_turned - wanted) > 2e-4 * abs(wanted), "the derivatives at the drawing know no shift"
 
 
 def test_far_from_every_solved_state_is_refused():

@@ -110,7 +110,7 @@ class DrawnBench(BaseModel):
     def is_expansion(self) -> bool:
         return True
 
-    def recentred(self, design: DrawnAsBuilt) -> DrawnBench:
+    def recentred(self, design: DrawnAsBuilt, tables: Sequence[Table] = ()) -> DrawnBench:
         """The same bench, exact at another design, with the changes as at the drawing."""
         return replace(self, expansion=self.expansion.about(design)) if self.expansion else self
 

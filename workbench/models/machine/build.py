@@ -75,20 +75,21 @@ class SurrogateBuilder:
         found = self._found(pieces, states, progress)
         return surrogate_of(self.nominal, found, states)
 
-    def about(self, surrogate: Surrogate, design: MachineAsBuilt) -> Surrogate:
-        """The surrogate moved to another design by field solutions: exact there, with the old derivatives."""
-        if self._about is None or self._about[0] != (id(surrogate), design):
-            self._about = (id(surrogate), design), self._moved(surrogate, design)
+    def about(self, surrogate: Surrogate, design: MachineAsBuilt, turn: float = 0.0) -> Surrogate:
+        """The surrogate of the drawing moved to another design by field solutions: exact there, with the old
+        derivatives. turn: of the rotor beyond its loaded states, where what currents add is solved [rad]"""
+        if self._about is None or self._about[0] != (id(surrogate), design, turn):
+            self._about = (id(surrogate), design, turn), self._moved(surrogate, design, turn)
         return self._about[1]
 
-    def _moved(self, surrogate: Surrogate, design: MachineAsBuilt) -> Surrogate:
+    def _moved(self, surrogate: Surrogate, design: MachineAsBuilt, turn: float) -> Surrogate:
         name = hashlib.sha256(repr(design).encode()).hexdigest()[:16]
         pieces, states = [NoLoadAt(design, f"design {name} no load")], ()
         if surrogate.states is not None:
-            pieces.append(LoadedAt(design, f"design {name} loaded"))
+            pieces.append(LoadedAt(design, turn, f"design {name} {turn:+.9e} rad loaded"))
             states = surrogate.states.list
         found = self._found(pieces, states, None)
-        return surrogate.about(design, *(found[piece.name]["base"] for piece in pieces))
+        return surrogate.about(design, turn, *(found[piece.name]["base"] for piece in pieces))
 
     # ---- solving --------------------------------------------------------------------------------------------------
 

@@ -153,19 +153,23 @@ class MachineField:
         known = complete({(n, 0): row for n, row in enumerate(window)}, self.edges, 1, moves)
         return np.array([known[n, 0] for n in range(self.edges)])
 
-    def loaded(self, design: MachineAsBuilt, states: Sequence[LoadedState]) -> np.ndarray:
-        """Samples with current (states, 1 + coils)."""
-        return np.array([read(solution) for solution in self.loaded_solutions(design, states)])
+    def loaded(self, design: MachineAsBuilt, states: Sequence[LoadedState], turn: float = 0.0) -> np.ndarray:
+        """Samples with current (states, 1 + coils), the rotor turned beyond the states [rad]."""
+        return np.array([read(solution) for solution in self.loaded_solutions(design, states, turn)])
 
-    def loaded_solutions(self, design: MachineAsBuilt, states: Sequence[LoadedState]) -> list[FieldSolution]:
-        """Solutions with current, each from that of the nominal machine at the state, which saves a third of the work.
+    def loaded_solutions(
+        self, design: MachineAsBuilt, states: Sequence[LoadedState], turn: float = 0.0
+    ) -> list[FieldSolution]:
+        """Solutions with current, the rotor turned beyond the states [rad], each from that of the nominal machine at
+        the state, which saves a third of the work.
 
         Where magnets, slots and coils are alike a sector is solved.
         """
         whole = not (is_symmetric(design) and len(set(design.turns)) == 1)
-        if design == self.nominal:
+        if design == self.nominal and not turn:
             return self.nominal_solutions(tuple(states), whole)
-        model, points = self.model(design, whole), [self.point(design, state, whole) for state in states]
+        turned = [replace(state, angle=state.angle + turn) for state in states]
+        model, points = self.model(design, whole), [self.point(design, state, whole) for state in turned]
         if not self._shares_mesh(design.machine):
             return solve_in_turn(model, points)
         starts = self.nominal_solutions(tuple(states), whole)

@@ -18,6 +18,7 @@ from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamen
 from workbench.models.machine.answers import Answers, load_angles
 from workbench.models.machine.drag import lost_torque
 from workbench.models.machine.field import LoadedState
+from workbench.models.machine.surrogate import Surrogate
 
 _PROBE = 5e-4  # A, of an inductance; half of what still counts as no current
 _ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
@@ -166,6 +167,14 @@ def _states_of(design: MachineAsBuilt, table: Table) -> list[LoadedState]:
         if table.kind != "locked_rotor":
             found.append(LoadedState(_on_grid(angle), (0.0, 0.0, 0.0)))
     return found
+
+
+def beyond_states(surrogate: Surrogate, design: MachineAsBuilt, tables: Sequence[Table]) -> float:
+    """Mean angle by which the rotor stands beyond the solved states in rows with currents, their conditions true [rad]:
+    what a design and the error of an encoder make together no derivative at the drawing knows."""
+    rows = [table.conditions for table in tables if table.kind in _WITH_CURRENTS]
+    apart = [surrogate.beyond_states(at["angle_mech"] - design.rotor_turn, phase_currents(at)) for at in rows]
+    return float(np.mean(np.concatenate(apart))) if apart else 0.0
 
 
 def _on_grid(angle: float) -> float:

@@ -42,7 +42,7 @@ from workbench.models.machine.answers import Answers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.field import MachineField
-from workbench.models.machine.kinds import KINDS, loaded_states
+from workbench.models.machine.kinds import KINDS, beyond_states, loaded_states
 from workbench.models.machine.numerical import left_open, shapes_of
 from workbench.models.machine.options import options
 from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
@@ -129,9 +129,13 @@ class MachineBench(BaseModel):
     def is_expansion(self) -> bool:
         return True
 
-    def recentred(self, design: MachineAsBuilt) -> MachineBench:
-        """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing."""
-        return replace(self, surrogate=self.builder.about(self.about_drawing, design))
+    def recentred(self, design: MachineAsBuilt, tables: Sequence[Table] = ()) -> MachineBench:
+        """The same bench, exact at another design by field solutions of it, with the derivatives at the drawing.
+
+        tables: rows at their true angles and currents, near which what currents add is solved
+        """
+        turn = beyond_states(self.about_drawing, design, tables)
+        return replace(self, surrogate=self.builder.about(self.about_drawing, design, turn))
 
     def is_alike(self, design: MachineAsBuilt, other: MachineAsBuilt) -> bool:
         """Whether the fields of two machines are the same: friction, losses and resistances may differ."""

@@ -234,13 +234,14 @@ class LoadedNode(Piece):
 
 @dataclass(frozen=True)
 class LoadedAt(Piece):
-    """Another design on the mesh of the changes; name: of the design."""
+    """Another design on the mesh of the changes. turn: of its rotor beyond the states [rad];  name: of both"""
 
     design: MachineAsBuilt
+    turn: float
     name: str
 
     def solve(self, fields: Fields, states: States) -> Arrays:
-        return {"base": fields.loaded.loaded(self.design, states)}
+        return {"base": fields.loaded.loaded(self.design, states, self.turn)}
 
 
 def no_load_pieces(nominal: MachineAsBuilt) -> tuple[Piece, ...]:

@@ -38,6 +38,7 @@ class LoadedSamples:
     angle: change at ``ANGLE_STEPS`` of what the currents add to the machine without (4, s, 1 + c)
     scale: first and second derivative by a common factor of the currents (2, s, 1 + c)
     coils: per ampere-turn in every coil (s, c, 1 + c)
+    turn: of the rotor beyond the states that the changes belong to [rad]
     """
 
     states: np.ndarray
@@ -46,6 +47,12 @@ class LoadedSamples:
     angle: np.ndarray
     scale: np.ndarray
     coils: np.ndarray
+    turn: float = 0.0
+
+    def turned(self, turn: float, base: np.ndarray) -> LoadedSamples:
+        """The same of a rotor turned beyond the states [rad], with the samples there."""
+        states = self.states + np.array([turn, 0.0, 0.0, 0.0])
+        return replace(self, states=states, base=base, turn=turn)
 
     @property
     def list(self) -> tuple[LoadedState, ...]:
@@ -71,13 +78,18 @@ class Surrogate:
     states: LoadedSamples | None
     origin: MachineAsBuilt | None = None
 
-    def about(self, design: MachineAsBuilt, idle: np.ndarray, loaded: np.ndarray | None = None) -> Surrogate:
-        """The same about another design, from its samples on the meshes of the changes: coefficients without current
-        (1 + coils, orders), and with current (states, 1 + coils)."""
+    def about(
+        self, design: MachineAsBuilt, turn: float, idle: np.ndarray, loaded: np.ndarray | None = None
+    ) -> Surrogate:
+        """That of the drawing made one about another design, from its samples on the meshes of the changes:
+        coefficients without current (1 + coils, orders), and with current, the rotor turned beyond the states [rad]
+        (states, 1 + coils)."""
         no_load, states = self.no_load.copy(), self.states
         no_load[:, : idle.shape[1]] += idle - self.coarse
         if states is not None:
-            states = replace(states, base=states.base + loaded - states.coarse)
+            angles, finer = states.states[:, 0], self.no_load - _cut(self.coarse, self.no_load.shape[1])
+            beyond = evaluated(finer, angles + turn) - evaluated(finer, angles)
+            states = states.turned(turn, states.base + loaded - states.coarse + beyond.T)
         return replace(self, origin=design, no_load=no_load, states=states)
 
     @property
@@ -131,7 +143,7 @@ class Surrogate:
     def spectrum(self, design: MachineAsBuilt) -> np.ndarray:
         """Fourier coefficients over the revolution of torque and phase flux linkages per metre (4, orders)."""
         base = self._projection(design.turns) @ self.no_load
-        return base + self._idle_added(design)
+        return base + _cut(self._idle_added(design), self.no_load.shape[1])
 
     @cached_property
     def _idle_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
@@ -141,13 +153,25 @@ class Surrogate:
     def _loaded_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
         return self._from_origin(self.loaded)
 
-    def _from_origin(self, terms: Terms) -> Callable[[MachineAsBuilt], np.ndarray]:
-        """What is added for a design to the values at the origin; tables ask for one design in turn."""
-        at_origin = self._added(terms, self._centre)
-        return lru_cache(maxsize=_REMEMBERED)(lambda design: self._added(terms, design) - at_origin)
+    def _from_origin(self, coils: Terms) -> Callable[[MachineAsBuilt], np.ndarray]:
+        """What is added for a design to torque and phases at the origin; tables ask for one design in turn. Phases of
+        coils as drawn are added up once for all designs, others for each: what a shifted rotor does to single coils is
+        nothing in their sum, and shows where one of them lacks turns."""
+        drawn = self._projection(self.nominal.turns)
+        phases = coils.each(lambda rows: drawn @ rows)
+        of_phases, of_coils = self._beyond_origin(phases), self._beyond_origin(coils)
 
-    def _added(self, terms: Terms, design: MachineAsBuilt) -> np.ndarray:
-        return terms(self.position(design))
+        def added(design: MachineAsBuilt) -> np.ndarray:
+            if design.turns == self.nominal.turns:
+                return of_phases(design)
+            return self._projection(design.turns) @ of_coils(design)
+
+        return lru_cache(maxsize=_REMEMBERED)(added)
+
+    def _beyond_origin(self, terms: Terms) -> Callable[[MachineAsBuilt], np.ndarray]:
+        """What terms add for a design, less what they add at the origin."""
+        at_origin = terms(self.position(self._centre))
+        return lambda design: terms(self.position(design)) - at_origin
 
     # ---- with current --------------------------------------------------------------------------------------------
 
@@ -163,7 +187,8 @@ class Surrogate:
         scale = np.where(power > 0, (currents * centre).sum(1) / np.where(power > 0, power, 1.0) - 1.0, 0.0)
         sample = states.base[which]
         sample = sample + states.scale[0][which] * scale[:, None] + states.scale[1][which] * scale[:, None] ** 2 / 2
-        sample = sample + np.einsum("nk,knq->nq", turned_by(apart, design.skew), states.angle[:, which])
+        turned = turned_by(apart + states.turn, design.skew) - turned_by(np.full(1, states.turn), 0.0)
+        sample = sample + np.einsum("nk,knq->nq", turned, states.angle[:, which])
         without = evaluated(averaged(self.no_load, design.skew), angle)
         sample = sample + (without - evaluated(self.no_load, states.states[which, 0])).T
         solved = self._ampere_turns(self._centre.turns, centre * (1 + scale)[:, None])
@@ -175,6 +200,10 @@ class Surrogate:
     def _ampere_turns(self, turns: tuple[float, ...], currents: np.ndarray) -> np.ndarray:
         """Of every coil (n, coils) for phase currents (n, 3)."""
         return currents @ self._projection(turns)[1:, 1:]
+
+    def beyond_states(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
+        """How far angles lie beyond the states that they are answered from (n,) [rad]."""
+        return _wrapped(angle - self.states.states[self._nearest(angle, currents), 0])
 
     def _nearest(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         if self.states is None:
