@@ -64,8 +64,7 @@ class LoadedSamples:
 class Surrogate:
     """nominal: the machine as drawn
     no_load, coarse: Fourier coefficients on the fine mesh and on that of the changes (1 + coils, orders)
-    idle, loaded: changes without and with current, of coarser meshes, of torque and phase flux linkages per metre with
-        the turns as drawn; idle of Fourier coefficients
+    idle, loaded: changes without and with current, of coarser meshes; idle of Fourier coefficients
     states: the loaded states, None where a campaign has none
     origin: the design that the base values belong to, None for the nominal one
     """
@@ -237,21 +236,14 @@ def surrogate_of(
 ) -> Surrogate:
     """From the results of all pieces of ``pieces.py`` by their names."""
     drawn, changes = found["no load"], _changes(found, "no load ")
-    of_coils = terms_of(nominal, drawn["base"], changes)
-    project, length = _projection_of(nominal), drawn["fine"].shape[1]
-    idle = of_coils.each(lambda rows: _cut(project @ rows, length))
+    idle = terms_of(nominal, drawn["base"], changes)
     if not states:
         return Surrogate(nominal, drawn["fine"], drawn["base"], idle, None, None)
     with_current = _states_last(_changes(found, "loaded "))
     there = _at_angles(np.array([state.angle for state in states]), drawn["base"].shape[1])
     slopes = Changes({name: there(row) for name, row in changes.slopes.items()}, {})
-    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, of_coils.each(there), slopes)
-    loaded = loaded.each(lambda rows: project @ rows)
+    loaded = loaded_terms_of(nominal, found["loaded"]["base"].T, with_current, idle.each(there), slopes)
     return Surrogate(nominal, drawn["fine"], drawn["base"], idle, loaded, _samples(found, states))
-
-
-def _projection_of(nominal: MachineAsBuilt) -> np.ndarray:
-    return _projection(star_of_slots(nominal.machine.slots, nominal.machine.pole_pairs), nominal.turns)
 
 
 def _changes(found: Mapping, prefix: str) -> Changes:
