@@ -11,17 +11,17 @@ from pathlib import Path
 
 sys.path.pop(0)  # the folder of this file, which holds modules of another version
 
-from effects.library import library  # noqa: E402
-from workbench.data.campaign import read_campaign  # noqa: E402
-from workbench.errors import WorkbenchError  # noqa: E402
-from workbench.explain.diagnosis import diagnose  # noqa: E402
-from workbench.models.bases import nominal_model  # noqa: E402
-from workbench.report.as_json import diagnosis_json  # noqa: E402
-
 SEED = 1  # of the diagnosis itself
 
 
 def main(folder: str, out: str) -> None:
+    from effects.library import library  # here: the workers that solve fields read this file too, and need none of it
+    from workbench.data.campaign import read_campaign
+    from workbench.errors import WorkbenchError
+    from workbench.explain.diagnosis import diagnose
+    from workbench.models.bases import nominal_model
+    from workbench.report.as_json import diagnosis_json
+
     try:
         campaign = read_campaign(folder)
         found = diagnose(nominal_model(campaign), campaign, library(), SEED)
