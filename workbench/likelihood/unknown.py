@@ -10,9 +10,9 @@ one quantity have functions of their own of the same size and length.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from math import log
 
 import numpy as np
@@ -31,8 +31,6 @@ PLACES = 6  # of a condition, from which a function of it alone is more than a f
 MANY = 24  # places of an angle, from which its orders are looked at one by one
 LANDMARKS = 60  # shapes of a smooth function in one channel
 
-Drawn = Callable[[], np.ndarray]
-
 
 @dataclass(frozen=True, eq=False)
 class Shape:
@@ -42,7 +40,7 @@ class Shape:
         with the direction), "reading" (what the instrument shows) or "power"
     of: that condition or response;  detail: length, order or power
     rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
-    drawn: makes ``raw``;  log_prior: ln of its prior share, each of SIZES having the same
+    raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
     """
 
     channels: tuple[str, ...]
@@ -51,13 +49,8 @@ class Shape:
     detail: float
     rows: np.ndarray
     columns: np.ndarray
-    drawn: Drawn
+    raw: np.ndarray
     log_prior: float
-
-    @property
-    def raw(self) -> np.ndarray:
-        """The columns before whitening, SI (n_c, k); of one shape in a hundred they are asked for."""
-        return self.drawn()
 
     def words(self) -> str:
         """For people."""
@@ -134,37 +127,33 @@ def _instruments(stack: Stack) -> list[list[Channel]]:
 
 def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterator[Shape]:
     table = stack.tables[group[0].table]
-    each = lambda law: _blocks([_rms(stack, c) * law() for c in group])  # noqa: E731
+    each = lambda law: _blocks([_rms(stack, c) * law for c in group])  # noqa: E731
     for length in range(len(LENGTHS)):
-        drawn = partial(each, partial(smooth, table, length))
-        yield _shape(stack, white, group, "smooth", "", LENGTHS[length], drawn)
+        yield _shape(stack, white, group, "smooth", "", LENGTHS[length], each(smooth(table, length)))
     for of in _alone(table):
+        only = {of: table.conditions[of]}
         for length in range(len(LENGTHS)):
-            drawn = partial(each, partial(smooth_over, {of: table.conditions[of]}, length))
-            yield _shape(stack, white, group, "along", of, LENGTHS[length], drawn)
+            yield _shape(stack, white, group, "along", of, LENGTHS[length], each(smooth_over(only, length)))
     for law, of, order, waves in _orders(table):
-        yield _shape(stack, white, group, law, of, order, partial(each, waves.copy))
+        yield _shape(stack, white, group, law, of, order, each(waves))
     for of, power, law in _laws(table):
-        yield _shape(stack, white, group, "power", of, power, partial(each, law[:, None].copy))
+        yield _shape(stack, white, group, "power", of, power, each(law[:, None]))
 
 
 def _of_readings(stack: Stack, white: Whitener, answers: np.ndarray, group: Sequence[Channel]) -> Iterator[Shape]:
     """Smooth functions of what each instrument reads, the same in all its tables, in proportion to it."""
     instruments = [[c for c in group if c.response == r] for r in dict.fromkeys(c.response for c in group)]
     readings = [np.concatenate([answers[c.rows] for c in one]) for one in instruments]
-    law = lambda y, length: np.abs(y)[:, None] * smooth_over({"reading": y}, length)  # noqa: E731
     for length in range(len(LENGTHS)):
-        drawn = lambda length=length: _blocks([law(y, length) for y in readings])  # noqa: E731
-        yield _shape(stack, white, group, "reading", _quantity(group[0].response), LENGTHS[length], drawn)
+        raw = _blocks([np.abs(y)[:, None] * smooth_over({"reading": y}, length) for y in readings])
+        yield _shape(stack, white, group, "reading", _quantity(group[0].response), LENGTHS[length], raw)
 
 
-def _shape(
-    stack: Stack, white: Whitener, group: Sequence[Channel], law: str, of: str, detail: float, drawn: Drawn
-) -> Shape:
+def _shape(stack: Stack, white: Whitener, group: Sequence[Channel], law: str, of: str, detail: float, raw: np.ndarray):
     """A shape of channels, its prior still open."""
     rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
     names = tuple(channel.name for channel in group)
-    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, drawn()), drawn, 0.0)
+    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, raw), raw, 0.0)
 
 
 def _rms(stack: Stack, channel: Channel) -> float:

@@ -149,7 +149,10 @@ class MachineBench(BaseModel):
         """What meshes and an averaging recorder make wrong, see ``numerical.py``; of the machine as drawn."""
         if self.about_drawing is None:
             return ()
-        return shapes_of(self.about_drawing, _ON_A_MESH, table, _drawn_answers)
+        known, asked = self.about_drawing.remembered, (table.kind, _Asked(table.conditions))
+        if asked not in known:
+            known[asked] = shapes_of(self.about_drawing, _ON_A_MESH, table, _drawn_answers)
+        return known[asked]
 
     def left_open(self, design: MachineAsBuilt, table: Table) -> Mapping[str, np.ndarray]:
         """Voltages that neither a recorder nor a drawing tells, see ``numerical.py``; of the machine as drawn."""

@@ -91,7 +91,7 @@ class Surrogate:
             states = states.turned(turn, states.base + loaded - states.coarse + beyond.T)
         return replace(self, origin=design, no_load=no_load, states=states)
 
-    @property
+    @cached_property
     def on_coarse_mesh(self) -> Surrogate:
         """The drawing on the meshes of the changes; orders that those cannot resolve as on the fine one."""
         no_load = self.no_load.copy()
@@ -102,6 +102,11 @@ class Surrogate:
     def in_orders(self, weights: np.ndarray) -> Surrogate:
         """The drawing without current alone, every order over the revolution times a complex number (orders,)."""
         return replace(self, no_load=self.no_load * weights, idle=self.idle.none())
+
+    @cached_property
+    def remembered(self) -> dict:
+        """What was worked out of it, by what was asked; for whoever asks the same of every fit."""
+        return {}
 
     @cached_property
     def layout(self) -> WindingLayout:
@@ -156,8 +161,7 @@ class Surrogate:
         """What is added for a design to torque and phases at the origin; tables ask for one design in turn. Phases of
         coils as drawn are added up once for all designs, others for each: what a shifted rotor does to single coils is
         nothing in their sum, and shows where one of them lacks turns."""
-        drawn = self._projection(self.nominal.turns)
-        phases = coils.each(lambda rows: drawn @ rows)
+        phases = coils.projected(self._projection(self.nominal.turns))
         of_phases, of_coils = self._beyond_origin(phases), self._beyond_origin(coils)
 
         def added(design: MachineAsBuilt) -> np.ndarray:

@@ -253,6 +253,18 @@ class Terms:
         )
         return Terms(form(self.drawn), self.scaling, parts, steel)
 
+    def projected(self, matrix: np.ndarray) -> Terms:
+        """The terms with a matrix times their rows (q, n), torque first; kept, for the same is asked about every design
+        that a bench is exact at."""
+        key = matrix.shape, matrix.tobytes()
+        if key not in self._projected:
+            self._projected[key] = self.each(lambda rows: matrix @ rows)
+        return self._projected[key]
+
+    @cached_property
+    def _projected(self) -> dict[tuple, Terms]:
+        return {}
+
     def none(self) -> Terms:
         """No change, whatever is changed."""
         return Terms(np.zeros_like(self.drawn), self.scaling, (), ())
