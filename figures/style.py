@@ -118,9 +118,13 @@ def degrees(angle: float, digits: int = 2) -> str:
 
 @styled
 def png_bytes(figure: Figure) -> bytes:
-    """The figure as a PNG."""
-    buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    """The figure as a PNG; drawn once, while ``Figure.savefig`` draws a first time for the layout alone."""
+    buffer, dpi = BytesIO(), figure.dpi
+    figure.dpi = DPI
+    try:
+        FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
+    finally:
+        figure.dpi = dpi
     return buffer.getvalue()
 
 
