@@ -120,9 +120,10 @@ def degrees(angle: float, digits: int = 2) -> str:
 def png_bytes(figure: Figure) -> bytes:
     """The figure as a PNG; drawn once, while ``Figure.savefig`` draws a first time for the layout alone."""
     buffer, dpi = BytesIO(), figure.dpi
+    canvas: Any = FigureCanvasAgg(figure)  # its functions have no annotations
     figure.dpi = DPI
     try:
-        FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
+        canvas.print_png(buffer, metadata={"Software": None})
     finally:
         figure.dpi = dpi
     return buffer.getvalue()
