@@ -5,6 +5,7 @@ unit of their own inside: temperatures are in degrees Celsius and frequencies in
 """
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from math import pi
 from typing import Any
 
@@ -84,6 +85,7 @@ def percent(share: float, decimals: int = 0) -> str:
     return f"{100 * share:.{decimals}f} %"
 
 
+@lru_cache(maxsize=4096)
 def split_unit(name: str) -> tuple[str, str]:
     """Quantity and unit of a name, ``("airgap", "mm")`` of ``airgap_mm``; the unit is empty for a pure number."""
     for unit in _LONGEST_FIRST:

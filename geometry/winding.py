@@ -138,13 +138,16 @@ class WindingLayout:
         """The coil in one half of a slot, and +1 where it goes in +z, -1 where it comes back; see ``coil_side``."""
         if side not in (RIGHT, LEFT):
             raise GeometryError(f"the sides of a slot are 'R' and 'L', found {side!r}")
-        place = (slot % self.slots, side)
-        for coil in self.coils:
-            if place in _halves(coil.go):
-                return coil, 1
-            if place in _halves(coil.back):
-                return coil, -1
-        raise GeometryError(f"no coil side in slot {slot}, side {side}")
+        found = self._sides.get((slot % self.slots, side))
+        if found is None:
+            raise GeometryError(f"no coil side in slot {slot}, side {side}")
+        return found
+
+    @cached_property
+    def _sides(self) -> dict[tuple[int, str], tuple[Coil, int]]:
+        """The coil in every half of a slot and its direction; every field problem asks for all of them."""
+        there = {half: (coil, -1) for coil in self.coils for half in _halves(coil.back)}
+        return there | {half: (coil, 1) for coil in self.coils for half in _halves(coil.go)}
 
     def winding_factor(self, order: float = 1) -> float:
         """k_w of a harmonic: vector sum of the coils over their arithmetic sum, times the pitch factor.
