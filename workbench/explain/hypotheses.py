@@ -126,10 +126,12 @@ def _grid(effect: Effect, z: np.ndarray, own: slice) -> np.ndarray:
     """Parameters (n, k) with those of one effect at the places of a grid, even in probability; none where it has only
     one."""
     count = own.stop - own.start
-    axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED.get(count, 0)] * (count - 1))]
-    grid = list(product(*axes)) if count > 1 else []
+    if count == 1:
+        return np.empty((0, len(z)))
+    axes = [ndtri((np.arange(n) + 0.5) / n) for n in (SIZES_TRIED, *[OTHERS_TRIED[count]] * (count - 1))]
+    grid = list(product(*axes))
     places = np.tile(z, (len(grid), 1))
-    places[:, own] = np.reshape(grid, (-1, count))
+    places[:, own] = grid
     return places
 
 
@@ -147,6 +149,8 @@ def _highest(hypothesis: Hypothesis, places: np.ndarray) -> np.ndarray | None:
     """The parameters (k,), of some (n, k), where the fit would be higher than it is, and highest; None where at none of
     them. Places where the model has no answer are left out."""
     fit = hypothesis.fit
+    if not len(places):
+        return None
 
     def height(z: np.ndarray) -> float:
         try:
@@ -154,9 +158,8 @@ def _highest(hypothesis: Hypothesis, places: np.ndarray) -> np.ndarray | None:
         except WorkbenchError:
             return -np.inf
 
-    heights = [height(z) for z in places]
-    best = int(np.argmax(heights)) if heights else 0
-    return places[best] if heights and heights[best] > height(fit.z) else None
+    best = max((fit.z, *places), key=height)
+    return None if best is fit.z else best
 
 
 def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -> tuple[Problem, float]:

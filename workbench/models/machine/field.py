@@ -45,6 +45,10 @@ class LoadedState:
     angle: float
     currents: tuple[float, float, float]
 
+    def turned(self, turn: float) -> LoadedState:
+        """The same currents with the rotor turned on [rad]."""
+        return LoadedState(self.angle + turn, self.currents)
+
 
 @dataclass(frozen=True)
 class PartlyRadial(Magnetisation):
@@ -168,8 +172,7 @@ class MachineField:
         whole = not (is_symmetric(design) and len(set(design.turns)) == 1)
         if design == self.nominal and not turn:
             return self.nominal_solutions(tuple(states), whole)
-        turned = [replace(state, angle=state.angle + turn) for state in states]
-        model, points = self.model(design, whole), [self.point(design, state, whole) for state in turned]
+        model, points = self.model(design, whole), [self.point(design, s.turned(turn), whole) for s in states]
         if not self._shares_mesh(design.machine):
             return solve_in_turn(model, points)
         starts = self.nominal_solutions(tuple(states), whole)

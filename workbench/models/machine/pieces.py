@@ -180,7 +180,7 @@ class LoadedBeside(Piece):
     def solve(self, fields: Fields, states: States) -> Arrays:
         field = fields.only(fields.loaded)
         here = field.loaded(fields.nominal, states)
-        turned = [self._at(field, states, [_turned(s, step) for s in states]) - here for step in ANGLE_STEPS]
+        turned = [self._at(field, states, [s.turned(step) for s in states]) - here for step in ANGLE_STEPS]
         sides = ([_scaled(s, sign * _SCALE_STEP) for s in states] for sign in (1, -1))
         up, down = (self._at(field, states, side) for side in sides)
         scale = [(up - down) / (2 * _SCALE_STEP), (up - 2 * here + down) / _SCALE_STEP**2]
@@ -264,10 +264,6 @@ class Task:
     machinery: Machinery
     piece: Piece
     states: States
-
-
-def _turned(state: LoadedState, change: float) -> LoadedState:
-    return LoadedState(state.angle + change, state.currents)
 
 
 def _scaled(state: LoadedState, change: float) -> LoadedState:
