@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 from tests.workbench.models.machine_case import STATES, drawn
 from workbench.models.machine.build import Store, SurrogateBuilder
 from workbench.models.machine.field import LoadedState
-from workbench.models.machine.pieces import LoadedCoils, NoLoadValues, Piece
+from workbench.models.machine.pieces import LoadedCoils, NoLoadValues, Piece, loaded_pieces, no_load_pieces
+from workbench.models.machine.solver import in_kinds
 
 FOUND = {"base": np.arange(2000.0), "slopes": np.ones((3, 4))}
 
@@ -100,3 +101,13 @@ class OnlyHere(Numbered):
         if multiprocessing.parent_process() is not None:
             os._exit(1)
         return super().solve(fields, states)
+
+
+def test_pieces_of_one_kind_come_after_each_other():
+    """All of them, each kind once; a sector and the whole machine, with current and without."""
+    pieces = (*loaded_pieces(drawn()), *no_load_pieces(drawn()))
+    ordered = in_kinds(pieces)
+    kinds = [piece.kind for piece in ordered]
+    changes = sum(one != other for one, other in zip(kinds, kinds[1:]))
+    assert sorted(piece.name for piece in ordered) == sorted(piece.name for piece in pieces)
+    assert changes + 1 == len(set(kinds)) == 4

@@ -13,7 +13,7 @@ from magnetostatics.topology import MOST_PATTERNS
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
 from units import DEGREE
-from workbench.models.machine.coordinates import smooth_coordinates
+from workbench.models.machine.coordinates import BOTH, smooth_coordinates
 from workbench.models.machine.expansion import (
     BATCH,
     NO_LOAD_FAMILIES,
@@ -35,6 +35,7 @@ _FEW_PATTERNS = 4  # of the finer meshes: all angles that a piece goes round wou
 
 Arrays = dict[str, np.ndarray]
 States = tuple[LoadedState, ...]
+Kind = tuple[bool, bool]  # with current, of the whole machine
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,17 @@ class Piece:
         """Whether all its results have one row for every state."""
         return True
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether the whole machine is solved rather than a sector of it."""
+        return False
+
+    @property
+    def kind(self) -> Kind | None:
+        """Pieces of one kind share meshes; None of another design, which may be asked for with current and without in
+        turn."""
+        return self.with_current, self.is_whole
+
 
 class NoLoadPiece(Piece):
     """A piece without current; its results are Fourier coefficients over the revolution."""
@@ -128,6 +140,10 @@ class NoLoadSlopes(NoLoadPiece):
     def name(self) -> str:
         return f"no load slopes {self.family[-1]}"
 
+    @property
+    def is_whole(self) -> bool:
+        return True
+
     def solve(self, fields: Fields, states: States) -> Arrays:
         slopes = no_load_slopes(fields.only(fields.idle), self.family)
         return {f"slope {name}": coefficients(rows) for name, rows in slopes.items()}
@@ -143,6 +159,10 @@ class NoLoadNode(NoLoadPiece):
     def name(self) -> str:
         return f"no load {self.node.name}"
 
+    @property
+    def is_whole(self) -> bool:
+        return self.node.moves[0][0].breaks != BOTH
+
     def solve(self, fields: Fields, states: States) -> Arrays:
         found = no_load_node(fields.only(fields.idle), self.node)
         return {name: np.array([coefficients(one) for one in rows]) for name, rows in found.items()}
@@ -154,6 +174,10 @@ class NoLoadAt(NoLoadPiece):
 
     design: MachineAsBuilt
     name: str
+
+    @property
+    def kind(self) -> None:
+        return None
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         return {"base": coefficients(fields.idle.no_load(self.design))}
@@ -203,6 +227,10 @@ class LoadedSlopes(Piece):
     def name(self) -> str:
         return f"loaded slopes {self.batch}"
 
+    @property
+    def is_whole(self) -> bool:
+        return True
+
     def solve(self, fields: Fields, states: States) -> Arrays:
         own = smooth_coordinates(fields.nominal)[self.batch * BATCH : (self.batch + 1) * BATCH]
         return {f"slope {name}": rows for name, rows in loaded_slopes(fields.only(fields.loaded), states, own).items()}
@@ -213,6 +241,10 @@ class LoadedCoils(Piece):
     """Derivatives by the ampere-turns of every coil."""
 
     name: str = "loaded coils"
+
+    @property
+    def is_whole(self) -> bool:
+        return True
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         return {f"slope {name}": rows for name, rows in coil_slopes(fields.only(fields.loaded), states).items()}
@@ -239,6 +271,10 @@ class LoadedAt(Piece):
     design: MachineAsBuilt
     turn: float
     name: str
+
+    @property
+    def kind(self) -> None:
+        return None
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         return {"base": fields.loaded.loaded(self.design, states, self.turn)}

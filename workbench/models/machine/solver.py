@@ -6,23 +6,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from processes import give_memory_back
-from workbench.models.machine.coordinates import BOTH
-from workbench.models.machine.pieces import (
-    Arrays,
-    Fields,
-    LoadedAt,
-    LoadedCoils,
-    LoadedSlopes,
-    Machinery,
-    NoLoadAt,
-    NoLoadNode,
-    NoLoadSlopes,
-    Piece,
-    States,
-    Task,
-)
+from workbench.models.machine.pieces import Arrays, Fields, Kind, Machinery, Piece, States, Task
 
-Kind = tuple[bool, bool]  # with current, of the whole machine
 _NO_LOAD_WHOLE = (False, True)
 
 
@@ -39,7 +24,7 @@ class Solver:
 
     def solve(self, piece: Piece, states: States) -> Arrays:
         """The results of a piece."""
-        self._prepare(kind_of(piece))
+        self._prepare(piece.kind)
         arrays = piece.solve(self.fields, states)
         give_memory_back()
         return arrays
@@ -60,25 +45,11 @@ class Solver:
         self.fields.idle.forget_meshes()
 
 
-def kind_of(piece: Piece) -> Kind | None:
-    """Whether there is current, and whether the whole machine is solved rather than a sector of it; None of another
-    design, which may be asked for with current and without in turn."""
-    if isinstance(piece, (NoLoadAt, LoadedAt)):
-        return None
-    return piece.with_current, _is_whole(piece)
-
-
-def _is_whole(piece: Piece) -> bool:
-    if isinstance(piece, NoLoadNode):
-        return piece.node.moves[0][0].breaks != BOTH
-    return isinstance(piece, (NoLoadSlopes, LoadedSlopes, LoadedCoils))
-
-
 def in_kinds(pieces: Iterable[Piece]) -> list[Piece]:
     """The same pieces, those of a kind after each other, the kinds in the order of their first pieces."""
     kinds: dict[Kind | None, list[Piece]] = {}
     for piece in pieces:
-        kinds.setdefault(kind_of(piece), []).append(piece)
+        kinds.setdefault(piece.kind, []).append(piece)
     return [piece for those in kinds.values() for piece in those]
 
 
