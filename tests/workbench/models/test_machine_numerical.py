@@ -10,7 +10,7 @@ from tests.effects.contract import table
 from tests.effects.machine_bench import TURN, bench
 from tests.workbench.models.machine_case import surrogate
 from workbench.models.machine.answers import Answers
-from workbench.models.machine.numerical import LEFT, voltage_orders
+from workbench.models.machine.numerical import LEAST, LEFT, voltage_orders
 
 PHASES = ("v_a", "v_b", "v_c")
 TURNS = [np.arange(0, 20 * np.pi, 2 * np.pi / n) for n in (100.3, 60.3)]  # no order looks like another one
@@ -68,10 +68,10 @@ def left_out(columns, wave):
     return np.linalg.norm(wave - columns @ np.linalg.lstsq(columns, wave, rcond=None)[0]) / np.linalg.norm(wave)
 
 
-def opened(speed, bandwidth=None):
+def opened(speed, bandwidth=None, model=None):
     asked = table("back_emf", PHASES, angle_mech=TURN, speed=speed)
     responses = {name: replace(r, bandwidth=bandwidth) for name, r in asked.responses.items()}
-    return bench().left_open(surrogate().nominal, replace(asked, responses=responses))
+    return (model or bench()).left_open(surrogate().nominal, replace(asked, responses=responses))
 
 
 def test_orders_that_no_recorder_surely_passes_are_open_in_any_phase():
@@ -89,6 +89,18 @@ def test_they_are_open_each_way_by_itself_where_the_rotor_turns_both():
     one_way = np.cos(order * TURN + 1.0) * (both > 0)
     assert left_out(opened(both)["v_a"], one_way) < 1e-4
     assert opened(both)["v_a"].shape[1] == 2 * opened(AT["speed"])["v_a"].shape[1]
+
+
+def test_an_order_smaller_than_can_be_told_is_open_as_the_smallest_that_can():
+    """Order 115, the highest that is kept, made a thousand times smaller."""
+    drawn = surrogate()
+    weak = drawn.no_load.copy()
+    weak[:, 115] *= 1e-3
+    of_weak = replace(bench(), surrogate=(found := replace(drawn, no_load=weak)), about_drawing=found)
+    columns = opened(AT["speed"], model=of_weak)["v_b"]
+    fundamental = np.abs(np.fft.rfft(bench().respond(drawn.nominal, "back_emf", AT)["v_b"])[5]) * 2 / len(TURN)
+    least = LEAST * fundamental * np.sqrt(len(TURN) / 2)
+    assert np.linalg.norm(columns, axis=0).min() == pytest.approx(least, rel=1e-3)
 
 
 def test_a_declared_bandwidth_settles_what_passes():
