@@ -14,7 +14,6 @@ import numpy as np
 from scipy.stats import beta
 
 from benchmarks.virtual_benches.case import VISIBLE
-from workbench.findings import UNKNOWN
 
 LEVEL = 0.95  # of a one-sided bound
 FEWEST = 40  # cases of a bin of stated probability
@@ -82,13 +81,7 @@ def all_true(case: Mapping) -> bool:
 
 def are_true(case: Mapping, sets: Sequence[frozenset[str]]) -> bool:
     """The same of some sets."""
-    return _matched([_hidden_in(case, names) for names in sets])
-
-
-def _hidden_in(case: Mapping, names: frozenset[str]) -> list[str]:
-    """What was hidden that a printed set holds; a law outside the library where something unknown is a member."""
-    is_unknown = UNKNOWN in names and bool(case["outside"]) and is_seen(case, case["outside"])
-    return [n for n in case["effects"] if is_named(n, names)] + [UNKNOWN] * is_unknown
+    return _matched([[n for n in case["effects"] if is_named(n, names)] for names in sets])
 
 
 def _matched(choices: Sequence[Sequence[str]], taken: frozenset[str] = frozenset()) -> bool:
@@ -159,7 +152,6 @@ def score(cases: Sequence[Mapping]) -> list[Metric]:
     """All metrics of a set of cases."""
     group = lambda name: [case for case in cases if case["group"] == name]  # noqa: E731
     naming = [case for case in cases if printed(case)]
-    unsure = [case for case in naming if any(UNKNOWN in names for names in printed(case))]
     seen = [case for case in group("single") if visible(case)]
     foreign = [case for case in group("outside") if visible(case)]
     both, several = ([case for case in group(g) if visible(case)] for g in ("pair", "several"))
@@ -167,7 +159,6 @@ def score(cases: Sequence[Mapping]) -> list[Metric]:
     ambient = [case for case in honest if any(is_seen(case, name) for name in case["ambient"])]
     return [
         _share("every printed name true", naming, all_true, 0.97, low=0.95),
-        _share('of these, a name said with "or something unknown"', unsure, _without_unknown_true, None),
         _share("visible effect in the printed set", seen, all_found, 0.95),
         _share("no name where nothing is hidden", group("null"), all_true, 0.95),
         _share("abstains outside the library, nothing false", foreign, abstains, 0.90),
@@ -185,10 +176,6 @@ def score(cases: Sequence[Mapping]) -> list[Metric]:
         _plain("slowest diagnosis [s]", max((c["wall_s"] for c in cases), default=np.nan), len(cases)),
         _plain("median diagnosis [s]", float(np.median([c["wall_s"] for c in cases])) if cases else np.nan, len(cases)),
     ]
-
-
-def _without_unknown_true(case: Mapping) -> bool:
-    return are_true(case, [names - {UNKNOWN} for names in printed(case)])
 
 
 def _ambient_found(case: Mapping) -> bool:

@@ -14,8 +14,6 @@ import numpy as np
 
 from workbench.believed import NAMED
 
-UNKNOWN = "something_unknown"  # stands in a group of names for what no effect of the library is
-
 
 @dataclass(frozen=True)
 class Axis:
@@ -332,7 +330,6 @@ class Diagnosis:
     verdict: nothing_missing, effect, group, pair, several, partial, none_of_these, cannot_tell or convention
     probability: that the sentence of the verdict is true: that the names are there (of a group: one of them), that
         nothing is missing which these data would show plainly, that something is there that no effect is
-    names: of a group the last may be ``something_unknown``, that something is there which no effect is
     p_nothing_missing: P(no effect and no unknown function);  p_none_of_these: P(an unknown function and no effect)
     p_something_remains: P(an unknown function, with or without effects);  p_sets: of the leading explanations, by words
     alternatives: of a name, what may stand for it;  sure: probability from which a name is printed on this bench

@@ -14,7 +14,6 @@ from scipy.special import logsumexp
 
 from effects.base import Effect
 from workbench.believed import MOST, UNKNOWN_RATE
-from workbench.findings import UNKNOWN
 from workbench.likelihood.marginal import Catalogue, Readings
 from workbench.likelihood.unknown_laws import LAWS, without_laws
 
@@ -220,24 +219,19 @@ class Posterior:
 
     @cached_property
     def _each(self) -> dict[str, float]:
-        shares: dict[str, list[float]] = {}
-        for names, p in self._every:
-            for name in names - {UNKNOWN}:
-                shares.setdefault(name, []).append(p)
-        return {name: fsum(found) for name, found in shares.items()}
-
-    @cached_property
-    def _every(self) -> tuple[tuple[frozenset[str], float], ...]:
-        """All explanations, ``UNKNOWN`` a member of those that have it, with their probabilities."""
-        return (*self.alone.items(), *((names | {UNKNOWN}, p) for names, p in self.beside.items()))
+        found: dict[str, float] = {}
+        for names, p in self.sets.items():
+            for name in names:
+                found[name] = found.get(name, 0.0) + p
+        return found
 
     def any_of(self, names: frozenset[str]) -> float:
-        """P(at least one of the effects is there); ``UNKNOWN`` among them is an unknown function."""
-        return self.all_of((names,))
+        """P(at least one of the effects is there)."""
+        return _share(p for have, p in self.sets.items() if have & names)
 
     def all_of(self, groups: tuple[frozenset[str], ...]) -> float:
-        """P(at least one of every group is there)."""
-        return _share(p for have, p in self._every if all(have & group for group in groups))
+        """P(at least one effect of every group is there)."""
+        return _share(p for have, p in self.sets.items() if all(have & group for group in groups))
 
     @property
     def leading(self) -> frozenset[str]:
@@ -252,7 +246,7 @@ class Posterior:
 
 def _share(shares: Iterable[float]) -> float:
     """Their sum, which rounding must not carry beyond one."""
-    return min(fsum(shares), 1.0)
+    return min(sum(shares), 1.0)
 
 
 def posterior(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from workbench.believed import LIKELY, MOST
 from workbench.explain.explore import Posterior
-from workbench.findings import UNKNOWN
 
 NOTHING_MISSING, EFFECT, GROUP, PAIR, SEVERAL = "nothing_missing", "effect", "group", "pair", "several"
 PARTIAL, NONE_OF_THESE, CANNOT_TELL, CONVENTION = "partial", "none_of_these", "cannot_tell", "convention"
@@ -15,7 +14,7 @@ PARTIAL, NONE_OF_THESE, CANNOT_TELL, CONVENTION = "partial", "none_of_these", "c
 
 @dataclass(frozen=True)
 class Verdict:
-    """kind: one of the nine words;  names: the effects, or the members of a group, ``UNKNOWN`` the last of them
+    """kind: one of the nine words;  names: the effects, or the members of a group
 
     alternatives: of a name, what may stand for it instead;  probability: that the sentence of the verdict is true
     """
@@ -41,15 +40,14 @@ class Thresholds:
 
 def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Verdict:
     """Exactly one verdict. Where an unknown function is there for sure no name is printed beside it: an effect may be
-    what its shape lacks of the true law. Where no group of names is sure, but one that something unknown is a member
-    of, that is said.
+    what its shape lacks of the true law.
 
     plainly_nothing: P(nothing that these data would show plainly); where that is unlikely, be the alarm threshold not
         reached, nothing is said to be missing and nothing to be right
     """
     sure, can_tell = thresholds.sure, thresholds.can_tell
     named = p.nothing < thresholds.quiet and can_tell and p.remains < sure
-    if named and (groups := printed(p, sure) or printed(p, sure, p.remains < LIKELY)):
+    if named and (groups := printed(p, sure)):
         return _of_groups(p, groups)
     is_quiet = p.nothing >= thresholds.quiet
     if is_quiet and not can_tell:
@@ -61,30 +59,29 @@ def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Ver
     return Verdict(CANNOT_TELL, (), 1.0 - p.nothing, {})
 
 
-def printed(p: Posterior, sure: float, or_unknown: bool = False) -> tuple[frozenset[str], ...]:
+def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:
     """For every effect of the leading set the smallest group of names, itself first, one of which is there for sure;
     effects for which there is no such group are left out. Where all groups together are not sure, the weakest of them
-    takes a name more, and is left out where there is none. or_unknown: whether something unknown may be in a group"""
-    every = (*p.names, UNKNOWN) if or_unknown else p.names
+    takes a name more, and is left out where there is none."""
     found: dict[str, frozenset[str]] = {}
     for name in sorted(p.leading, key=lambda n: (-p.of(n), n)):
         group: frozenset[str] | None = frozenset((name,))
         while group is not None and p.any_of(group) < sure:
-            group = _wider(p, name, group, found, every)
+            group = _wider(p, name, group, found)
         found |= {} if group is None else {name: group}
     while found and p.all_of(tuple(found.values())) < sure:
         name = min(found, key=lambda n: (p.any_of(found[n]), -len(found[n])))
-        group = _wider(p, name, found.pop(name), found, every)
+        group = _wider(p, name, found.pop(name), found)
         found |= {} if group is None else {name: group}
     return tuple(found.values())
 
 
 def _wider(
-    p: Posterior, name: str, group: frozenset[str], others: Mapping[str, frozenset[str]], every: Sequence[str]
+    p: Posterior, name: str, group: frozenset[str], others: Mapping[str, frozenset[str]]
 ) -> frozenset[str] | None:
-    """A group with the most probable of all names more that may stand for its first; None where there is none."""
+    """A group with the most probable name more that may stand for its first; None where there is none."""
     taken = frozenset().union(group, *others.values(), p.leading - {name})
-    left = [other for other in every if other not in taken and _stands_for(p, other, name)]
+    left = [other for other in p.names if other not in taken and _stands_for(p, other, name)]
     if len(group) == MOST or not left:
         return None
     return group | {max(left, key=lambda n: p.any_of(group | {n}))}

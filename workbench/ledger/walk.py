@@ -212,6 +212,6 @@ def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The names of a verdict, the one with the most evidence by itself first; then, of those that cannot be told apart,
     the most probable one, and what is likelier there than not: without them what is named may not stand."""
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
-    named = sorted(alone.keys() & diagnosis.names, key=lambda name: (-alone[name], name))  # what is unknown has none
+    named = sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0))
     likely = [ranked.name for ranked in diagnosis.ranking if named and ranked.probability > LIKELY]
     return tuple(dict.fromkeys((*named, *diagnosis.alternatives, *likely)))

@@ -11,7 +11,6 @@ import scipy
 
 from workbench.believed import LIKELY, PLAIN
 from workbench.findings import (
-    UNKNOWN,
     ChannelScore,
     Comparison,
     Diagnosis,
@@ -442,7 +441,7 @@ def meaning(d: Diagnosis) -> str:
     what = {
         "nothing_missing": lambda: f"that nothing is missing which is expected to show by odds of {odds_text(PLAIN)}",
         "effect": lambda: there,
-        "group": lambda: "that at least one of these is there",
+        "group": lambda: "that at least one of these effects is there",
         "pair": lambda: there,
         "several": lambda: there,
         "partial": lambda: there,
@@ -527,7 +526,7 @@ def _cannot_be_said(d: Diagnosis) -> tuple[str, ...]:
     said = []
     if d.verdict == "cannot_tell" and not _of_nothing(d):
         said.append("It cannot be concluded which effect it is: no name or group of names is sure enough.")
-    if d.names and UNKNOWN not in d.names and d.p_none_of_these > NEGLIGIBLE:
+    if d.names and d.p_none_of_these > NEGLIGIBLE:
         said.append(
             f"Instead of {listed(map(plain, d.names))} there may be one unknown law and no effect, with probability "
             f"{probability_text(d.p_none_of_these)}."

@@ -8,7 +8,7 @@ import pytest
 from workbench.explain.diagnosis import _with_sealed, leading
 from workbench.explain.explore import Beliefs, Posterior, beside_the_unknown, posterior
 from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
-from workbench.findings import UNKNOWN, Sealed
+from workbench.findings import Sealed
 
 SURE = Thresholds(sure=0.95, quiet=0.5, can_tell=True)
 BLIND = Thresholds(sure=0.95, quiet=0.5, can_tell=False)
@@ -37,9 +37,6 @@ CASES = {
     "a name, and more": (p({"a": 0.4}, {"a": 0.6}), SURE, ("partial", ("a",), 1.0)),
     "a name beside a law": (p({"a": 0.04}, {"a": 0.96}), SURE, ("none_of_these", (), 0.96)),
     "no name, and more": (p({"": 0.1, "a": 0.1}, {"": 0.7, "a": 0.1}), SURE, ("none_of_these", (), 0.8)),
-    "one, or something unknown": (p({"a": 0.8, "": 0.02}, {"": 0.18}), SURE, ("group", ("a", UNKNOWN), 0.98)),
-    "names alone, if they do": (p({"a": 0.5, "b": 0.46}, {"": 0.04}), SURE, ("group", ("a", "b"), 0.96)),
-    "rather unknown": (p({"a": 0.42}, {"a": 0.1, "": 0.48}), SURE, ("none_of_these", (), 0.58)),
     "something": (p({"": 0.1, "a": 0.5}, {"": 0.4}), SURE, ("cannot_tell", (), 0.9)),
     "nothing": (p({"": 0.9, "a": 0.1}), SURE, ("nothing_missing", (), 0.93)),
     "nothing, of the blind": (p({"": 0.9, "a": 0.1}), BLIND, ("cannot_tell", (), 0.9)),
