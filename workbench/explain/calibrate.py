@@ -54,6 +54,16 @@ class Simulator:
     def names(self) -> Names:
         return Names(self.signatures.catalogue(self.bench.centre.jacobian, self.bench.fit.white))
 
+    @cached_property
+    def energies(self) -> np.ndarray:
+        """Squared length that the tolerances leave of what every term adds (terms,)."""
+        background = self.bench.centre.jacobian
+        shifts = np.column_stack([term.shift for term in self.names.catalogue.terms])
+        root = np.linalg.cholesky(np.eye(background.shape[1]) + background.T @ background)
+        taken = np.linalg.solve(root, background.T @ shifts)
+        np.square(shifts, out=shifts)  # in place: there may be 40 MB of them
+        return np.sum(shifts, axis=0) - np.sum(taken**2, axis=0)
+
     def noise(self, count: int) -> np.ndarray:
         """Whitened residuals (n, count) of campaigns that hide nothing."""
         jacobian = self.bench.centre.jacobian
@@ -175,17 +185,9 @@ def plainly_nothing(simulator: Simulator, p: Posterior, residual: np.ndarray) ->
     plain = {name: 0.0 for name in names.order}
     for name, start, end in zip(names.order, names.starts, [*names.starts[1:], len(scores)]):
         weights = np.exp(scores[start:end] - scores[start:end].max())
-        plain[name] = float(weights @ (_energies(simulator)[start:end] >= 2 * PLAIN) / weights.sum())
+        plain[name] = float(weights @ (simulator.energies[start:end] >= 2 * PLAIN) / weights.sum())
     small = sum(share * (1 - plain[next(iter(names))]) for names, share in p.alone.items() if len(names) == 1)
     return p.nothing + small + p.none_of_these * (1 - _plain_unknown(simulator, residual))
-
-
-def _energies(simulator: Simulator) -> np.ndarray:
-    """Squared length that the tolerances leave of what every term adds (terms,)."""
-    catalogue, background = simulator.names.catalogue, simulator.bench.centre.jacobian
-    shifts = np.column_stack([term.shift for term in catalogue.terms])
-    root = np.linalg.cholesky(np.eye(background.shape[1]) + background.T @ background)
-    return np.sum(shifts**2, axis=0) - np.sum(np.linalg.solve(root, background.T @ shifts) ** 2, axis=0)
 
 
 def _plain_unknown(simulator: Simulator, residual: np.ndarray) -> float:
@@ -204,7 +206,7 @@ def detection_limits(simulator: Simulator, thresholds: Thresholds) -> tuple[Dete
     """Smallest size of every effect that would be seen in nine of ten campaigns; effects that never would are left
     out."""
     found: dict[str, DetectionLimit] = {}
-    energies = _energies(simulator)
+    energies = simulator.energies
     for name, start, end in zip(simulator.names.order, simulator.names.starts, _ends(simulator.names)):
         if name in LAWS:
             continue

@@ -40,7 +40,8 @@ class Shape:
         with the direction), "reading" (what the instrument shows) or "power"
     of: that condition or response;  detail: length, order or power
     rows: numbers of the rows it acts on (n_c,);  columns: whitened, of size 1 [rms reading] (n_c, k)
-    raw: the same before whitening, SI (n_c, k);  log_prior: ln of its prior share, each of SIZES having the same
+    parts: the same of every channel before whitening, SI
+    log_prior: ln of its prior share, each of SIZES having the same
     """
 
     channels: tuple[str, ...]
@@ -49,8 +50,13 @@ class Shape:
     detail: float
     rows: np.ndarray
     columns: np.ndarray
-    raw: np.ndarray
+    parts: tuple[np.ndarray, ...]
     log_prior: float
+
+    @property
+    def raw(self) -> np.ndarray:
+        """The columns before whitening, SI (n_c, k); most of it is zero, so it is not kept."""
+        return _blocks(self.parts)
 
     def words(self) -> str:
         """For people."""
@@ -127,7 +133,7 @@ def _instruments(stack: Stack) -> list[list[Channel]]:
 
 def _of_group(stack: Stack, white: Whitener, group: Sequence[Channel]) -> Iterator[Shape]:
     table = stack.tables[group[0].table]
-    each = lambda law: _blocks([_rms(stack, c) * law for c in group])  # noqa: E731
+    each = lambda law: tuple(_rms(stack, c) * law for c in group)  # noqa: E731
     for length in range(len(LENGTHS)):
         yield _shape(stack, white, group, "smooth", "", LENGTHS[length], each(smooth(table, length)))
     for of in _alone(table):
@@ -145,15 +151,23 @@ def _of_readings(stack: Stack, white: Whitener, answers: np.ndarray, group: Sequ
     instruments = [[c for c in group if c.response == r] for r in dict.fromkeys(c.response for c in group)]
     readings = [np.concatenate([answers[c.rows] for c in one]) for one in instruments]
     for length in range(len(LENGTHS)):
-        raw = _blocks([np.abs(y)[:, None] * smooth_over({"reading": y}, length) for y in readings])
-        yield _shape(stack, white, group, "reading", _quantity(group[0].response), LENGTHS[length], raw)
+        parts = tuple(np.abs(y)[:, None] * smooth_over({"reading": y}, length) for y in readings)
+        yield _shape(stack, white, group, "reading", _quantity(group[0].response), LENGTHS[length], parts)
 
 
-def _shape(stack: Stack, white: Whitener, group: Sequence[Channel], law: str, of: str, detail: float, raw: np.ndarray):
+def _shape(
+    stack: Stack,
+    white: Whitener,
+    group: Sequence[Channel],
+    law: str,
+    of: str,
+    detail: float,
+    parts: tuple[np.ndarray, ...],
+) -> Shape:
     """A shape of channels, its prior still open."""
     rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
     names = tuple(channel.name for channel in group)
-    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, raw), raw, 0.0)
+    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, _blocks(parts)), parts, 0.0)
 
 
 def _rms(stack: Stack, channel: Channel) -> float:
@@ -274,21 +288,21 @@ class Beside:
 
     @cached_property
     def _principal(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every shape: energies (k,), turned columns (n_c, k) and what the background takes of them (m, k)."""
+        """Of every shape: energies (q,), turn of its columns (k, q) and what the background takes of these (m, q)."""
         found = []
         for shape in self.shapes:
             beside = np.linalg.solve(self._root, self.background[shape.rows].T @ shape.columns)
             energy, turn = np.linalg.eigh(shape.columns.T @ shape.columns - beside.T @ beside)
             keep = energy > 1e-9 * max(energy.max(initial=0.0), 1e-300)
-            found.append((energy[keep], shape.columns @ turn[:, keep], beside @ turn[:, keep]))
+            found.append((energy[keep], turn[:, keep], beside @ turn[:, keep]))
         return found
 
     def log_evidences(self, residuals: np.ndarray) -> np.ndarray:
         """ln p gained by an unknown function, shapes and sizes averaged over, for residuals (n, R): (R,) [nats]."""
         own = np.linalg.solve(self._root, self.background.T @ residuals)
         found = []
-        for shape, (energy, turned, beside) in zip(self.shapes, self._principal):
-            square = (turned.T @ residuals[shape.rows] - beside.T @ own) ** 2
+        for shape, (energy, turn, beside) in zip(self.shapes, self._principal):
+            square = (turn.T @ (shape.columns.T @ residuals[shape.rows]) - beside.T @ own) ** 2
             for size in SIZES:
                 a2e = size**2 * energy
                 gain = 0.5 * ((size**2 / (1 + a2e)) @ square - np.log1p(a2e).sum())
