@@ -1,8 +1,6 @@
 """What every test needs before numpy or a plotting library is loaded, and the longest files first.
 
-Every file runs in one of two processes: one that takes two minutes and begins last leaves the other without work. In a
-fresh clone the first file compiles what numba compiles, and the second, which has mypy read all that there is, needs
-none of it: side by side with another one it would compile the same again.
+Every file runs in one of two processes: one that takes two minutes and begins last leaves the other without work.
 
 What Python and pytest make of a source file is kept whatever the shell says: without it both processes rewrite the
 assertions of all files, half of the time until the first test, and every command that a test starts compiles its code.
