@@ -227,7 +227,7 @@ class _Search:
         layout = self.solver.judge.case.layout(machine)
         broken = (rule for rule in self.freedom.rules if rule.room(machine, layout) < -_RULE_SLACK)
         words = "".join(f" and has {rule.words(machine, layout)}: widen [variables]" for rule in broken)
-        return f"{self._where}: no design was found that holds the limit" + words
+        return f"{self._where}: the search does not settle on a design that holds the limit{words}"
 
     @property
     def _where(self) -> str:

@@ -48,6 +48,7 @@ def test_gradients_and_quadratics_find_the_same_optimum(slots, start, objective)
     assert by_gradients.design.torque == pytest.approx(by_quadratics.design.torque, rel=1e-3)
     assert by_gradients.design.limited == pytest.approx(LIMIT, rel=1e-3)
     assert by_gradients.limit_binds
+    assert by_gradients.solves < by_quadratics.solves / 2
 
 
 def test_the_mean_torque_moves_the_optimum_along_the_limit():
