@@ -120,6 +120,7 @@ def nothing_to_see(case: Mapping) -> bool:
 
 
 def all_found(case: Mapping) -> bool:
+    """Whether everything that was hidden, but what every bench of the kind has, is in a printed set."""
     return all(found(case, name) for name in asked_for(case))
 
 
@@ -142,6 +143,7 @@ def right(case: Mapping) -> bool:
 
 
 def convention_named(case: Mapping) -> bool:
+    """Whether one of the mistakes in the columns is the verdict."""
     return case["verdict"] == "convention" and bool(set(case["mistake"]) & set(case["names"]))
 
 

@@ -280,8 +280,9 @@ def _rewhitened(shapes: Sequence[Shape], problem: Problem) -> list[Shape]:
 
 
 def _spread(shape: Shape, problem: Problem) -> np.ndarray:
-    out = np.zeros((problem.stack.size, shape.raw.shape[1]))
-    out[shape.rows] = shape.raw
+    raw = shape.raw
+    out = np.zeros((problem.stack.size, raw.shape[1]))
+    out[shape.rows] = raw
     return out
 
 

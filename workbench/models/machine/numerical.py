@@ -125,12 +125,12 @@ def left_open(surrogate: Surrogate, table: Table, ask: Ask) -> dict[str, np.ndar
     """Response -> shapes in the rows of a table, SI (n, L), one standard deviation of each; see above."""
     if table.kind != "back_emf":
         return {}
-    shares = {order: max(1.0, LEAST / size) for order, size in _sizes(surrogate).items()}
-    found = {order: _of_any_phase(surrogate, order, share, table, ask) for order, share in shares.items()}
+    reach = {name: _reach(response, table) for name, response in table.responses.items()}
+    beyond = {order: size for order, size in _sizes(surrogate).items() if order > min(reach.values())}
+    found = {n: _of_any_phase(surrogate, n, max(1.0, LEAST / size), table, ask) for n, size in beyond.items()}
     return {
-        name: np.hstack([shapes[name] for order, shapes in found.items() if order > _reach(response, table)] or [none])
-        for name, response in table.responses.items()
-        for none in [np.zeros((table.rows, 0))]
+        name: np.hstack([np.zeros((table.rows, 0)), *(shapes[name] for n, shapes in found.items() if n > surely)])
+        for name, surely in reach.items()
     }
 
 
