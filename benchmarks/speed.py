@@ -3,7 +3,7 @@
 CPU times (user and system, workers included) on one BLAS thread, medians where a measurement is repeated. The parts are
 ``solve``, ``period``, ``map``, ``efficiency``, ``optima`` and ``sweep``; the sweep is the thesis's: ten stator radii,
 two slot counts, 15 x 15 designs, meshes included. All parts together, on a machine that does nothing else, write
-results/reference/benchmarks/speed.json, .csv and .png; single parts are only printed.
+results/reference/benchmarks/speed.json, .csv and .png; single parts replace their rows in these.
 """
 
 from __future__ import annotations
