@@ -88,7 +88,7 @@ class Processes(Pool):
     def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
         """See ``Pool.submit``."""
         try:
-            return self._started().submit(function, task)
+            return self._started().submit(_tidily, function, task)
         except BrokenProcessPool as error:
             raise LostWorker from error
 
@@ -136,6 +136,14 @@ class _TrackingExecutor(ProcessPoolExecutor):
         future = super().submit(fn, *args, **kwargs)
         self._ours |= set(multiprocessing.active_children()) - before
         return future
+
+
+def _tidily(function: Callable[[Task], Result], task: Task) -> Result:
+    """Workers live as long as a run, and each stage would leave them larger: 0.64 GB in the place of 0.44 at most."""
+    try:
+        return function(task)
+    finally:
+        give_memory_back()
 
 
 def _prepare_worker() -> None:
