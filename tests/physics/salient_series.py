@@ -13,8 +13,8 @@ A is continuous over each opening (projected on its cosines) and H_phi over the 
 (projected on exp(j k phi)); the g_k are eliminated, the e_n of all openings solved for. B_r along psi = 0 is what makes
 the first term a magnet without H of its own: the openings are those of parallel magnetisation.
 
-Source: derived here; the method is that of Lubin, Mezani and Rezzoug, "Exact analytical method for magnetic field
-computation in the air gap of cylindrical electrical machines considering slotting effects", IEEE Trans. Magn. 46 (2010).
+Source: derived here; the method is that of Lubin, Mezani, Rezzoug, "Exact analytical method for magnetic field
+computation in the air gap of cylindrical electrical machines considering slotting effects", IEEE Trans. Magn. 46, 2010.
 """
 
 from __future__ import annotations
