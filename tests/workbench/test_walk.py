@@ -11,6 +11,7 @@ from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import diagnose
+from workbench.explain.verdict import GROUP
 from workbench.ledger.model_file import model_text, with_effects_of
 from workbench.ledger.step import COLUMNS, read_ledger, try_effect
 from workbench.ledger.walk import add_effect, by_evidence, walk
@@ -270,6 +271,15 @@ def test_what_is_refused_one_by_one_is_tried_together(tmp_path, monkeypatch):
 def test_names_are_tried_by_the_evidence_of_each_alone(diagnosed):
     one, other = diagnosed.ranking[0].name, diagnosed.ranking[1].name
     assert by_evidence(replace(diagnosed, names=(other, one))) == (one, other)
+
+
+def test_of_a_group_the_most_probable_name_is_tried_first(diagnosed):
+    """Its evidence may be that of an explanation with another beside it, which is much less probable."""
+    first, second, *rest = diagnosed.ranking
+    weighed = (replace(first, probability=0.04), replace(second, probability=0.95), *rest)
+    group = replace(diagnosed, verdict=GROUP, names=(first.name, second.name), ranking=weighed)
+    assert by_evidence(group) == (second.name, first.name)
+    assert by_evidence(replace(group, verdict="named")) == (first.name, second.name)
 
 
 def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):

@@ -67,6 +67,11 @@ def for_people(name: str) -> tuple[str, float]:
     return ("degC", 1.0) if name.endswith("_T") else ("", 1.0)
 
 
+# Inputs of a device that are no lengths: ``end_winding_inductance``, ``stacking_factor``, ``phase_resistance_a``.
+_UNITS_OF_INPUTS = {
+    "inductance": "H", "resistance": "ohm", "remanence": "T", "temperature": "K", "factor": "1", "fraction": "1",
+    "permeability": "1", "share": "1", "scale": "1", "turns": "1",
+}  # fmt: skip
 _UNITS_INSIDE = {
     "velocity": "m/s", "shunt": "ohm", "frequency": "Hz", "amplitude": "m", "displacement": "m", "i": "A",
     "v": "V", "torque": "Nm", "current": "A", "time": "s",
@@ -74,8 +79,10 @@ _UNITS_INSIDE = {
 
 
 def unit_inside(name: str) -> str:
-    """SI unit of a quantity by the first word of its name: ``force_offset`` N, ``airgap`` m."""
+    """SI unit of a quantity by a word of its name, or by the first one: ``force_offset`` N, ``airgap`` m."""
     if "angle" in name or name.startswith("encoder"):
         return "rad"
+    if unit := next((unit for word, unit in _UNITS_OF_INPUTS.items() if word in name), ""):
+        return unit
     first = name.split("_")[0]
     return {"force": "N", "voltage": "V", "torque": "Nm", "current": "A", "speed": "rad/s"}.get(first, "m")

@@ -15,7 +15,7 @@ import numpy as np
 from disk import write_atomically
 from workbench.data.column_units import FACTORS
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
-from workbench.data.guess import Guess, guesses, likely_kind, likely_model
+from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, likely_kind, likely_model
 from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw
 from workbench.data.scatter import noise_of
@@ -24,6 +24,7 @@ from workbench.errors import WorkbenchError
 
 _OF_THE_LARGEST = f"assumed: {100 * ZERO_DRIFT:g} % of the largest reading"
 _BOOKKEEPING = ("scan", "repeat", "holdout")
+_WHICH_INDUCTANCE = "name: l_a of a phase fed alone, l_bc (l_ab, l_ca) between two lines, l_m of B by A"
 _HEAD = """# A campaign: what was measured, and how well it is known. Fill in every "?"; see docs/campaign.md.
 [campaign]
 id = {id}  # names the folder of the results
@@ -202,7 +203,7 @@ def _table(name: str, sheet: _Sheet) -> str:
 
 def _line(guess: Guess, sheet: _Sheet) -> str:
     heading, quantity = _text(guess.heading.written), guess.quantity
-    named = "" if quantity == guess.heading.name else f"name = {_text(quantity)}, "
+    named, asked = _name(guess)
     if not quantity or quantity == "time":
         return f"# {heading} = {{ ... }}  # not read"
     if quantity in _BOOKKEEPING:
@@ -211,9 +212,16 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
         return f'{heading} = {{ {named}role = "group" }}'
     unit = _text(guess.unit or "?")
     if not KINDS[sheet.kind].is_response(quantity):
-        return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}'
+        return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}{asked}'
     size, note = _noise(guess, sheet)
-    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size} }}{note}'
+    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size} }}{note}{asked}'
+
+
+def _name(guess: Guess) -> tuple[str, str]:
+    """The key that names a quantity, where its heading does not, and a comment on what is to be filled in."""
+    if guess.quantity == UNTOLD_INDUCTANCE:
+        return 'name = "?", ', f"  # {_WHICH_INDUCTANCE}"
+    return ("" if guess.quantity == guess.heading.name else f"name = {_text(guess.quantity)}, "), ""
 
 
 def _noise(guess: Guess, sheet: _Sheet) -> tuple[str, str]:

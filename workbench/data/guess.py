@@ -18,6 +18,12 @@ _PHASES: Final = {
     "i1": "a", "i2": "b", "i3": "c", "va": "a", "vb": "b", "vc": "c",
     "iu": "a", "iv": "b", "iw": "c", "uu": "a", "uv": "b", "uw": "c",
 }  # fmt: skip
+# Two lines, as a meter between them is called: uv is ab. Which comes first counts for a voltage alone.
+_LINE_PAIRS: Final = {
+    x[k] + x[(k + 1) % 3]: pair for x in ("abc", "uvw", "123") for k, pair in enumerate(("ab", "bc", "ca"))
+}
+_EITHER_WAY: Final = _LINE_PAIRS | {pair[::-1]: name for pair, name in _LINE_PAIRS.items()}
+UNTOLD_INDUCTANCE: Final = "l_?"  # of a phase or of two lines, which differ by a factor of two and in their angle
 _BOOKS: Final = {
     "repeat": ("repeat", "repetition", "rep", "run", "trial", "wiederholung", "wdh", "wdhlg", "lauf", "durchgang"),
     "scan": ("scan", "sweep"),
@@ -30,6 +36,7 @@ _WORDS: Final = {
     "angle": "angle_mech", "winkel": "angle_mech", "phi": "angle_mech", "theta": "angle_mech", "frequency": "frequency",
     "frequenz": "frequency", "power": "power", "leistung": "power", "voltage": "voltage", "spannung": "voltage",
     "current": "current", "strom": "current", "shunt": "shunt", "amplitude": "amplitude",
+    "inductance": UNTOLD_INDUCTANCE, "induktivitaet": UNTOLD_INDUCTANCE,
 }  # fmt: skip
 # Unit -> quantity, and the prefix that a phase or an axis takes.
 _UNITS: Final = {
@@ -132,6 +139,8 @@ def _by_unit(unit: str, words: Sequence[str]) -> str:
         return f"{prefix}_{last[-1]}"
     if prefix == "v" and {"ll", "line", "verkettet", "leiter"} & set(words):
         return "v_ll"
+    if pair := _lines_of(prefix, words):
+        return f"{prefix}_{pair}"
     phases = [w for w in (last, *words[:1]) if w in _PHASES and (w == last or len(w) == 2)]  # ia_mes, but u_mes is none
     if prefix and phases:
         return f"{prefix}_{_PHASES[phases[0]]}"
@@ -141,7 +150,14 @@ def _by_unit(unit: str, words: Sequence[str]) -> str:
         return "shunt"
     if plain == "damping" and {"re", "real", "im", "imag", "imaginary"} & set(words):
         return "re" if {"re", "real"} & set(words) else "im"
-    return plain
+    return UNTOLD_INDUCTANCE if prefix == "l" and last not in ("d", "q", "ld", "lq") else plain
+
+
+def _lines_of(prefix: str, words: Sequence[str]) -> str:
+    """bc of L_vw and of "Induktivitaet wv"; a voltage Uv is that of a phase, U_uv is not."""
+    if prefix in ("l", "r"):
+        return _EITHER_WAY.get(words[-1], "") if words else ""
+    return _LINE_PAIRS.get(words[-1], "") if prefix == "v" and words[:-1] in (["u"], ["v"]) else ""
 
 
 def _base(unit: str) -> str:

@@ -209,9 +209,12 @@ def _refuse(
 
 
 def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """The names of a verdict, the one with the most evidence by itself first; then, of those that cannot be told apart,
-    the most probable one, and what is likelier there than not: without them what is named may not stand."""
+    """The names of a verdict, the one with the most evidence first; then, of those that cannot be told apart, the most
+    probable one, and what is likelier there than not: without them what is named may not stand. Of a group the most
+    probable one is first: evidence is that of the best explanation with a name in it, which another may have made."""
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
-    named = sorted(diagnosis.names, key=lambda name: -alone.get(name, 0.0))
+    probable = {ranked.name: ranked.probability for ranked in diagnosis.ranking}
+    weight = probable if diagnosis.verdict == GROUP else alone
+    named = sorted(diagnosis.names, key=lambda name: -weight.get(name, 0.0))
     likely = [ranked.name for ranked in diagnosis.ranking if named and ranked.probability > LIKELY]
     return tuple(dict.fromkeys((*named, *diagnosis.alternatives, *likely)))

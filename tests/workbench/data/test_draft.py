@@ -85,6 +85,9 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
         ("Wdh [-],v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
         ("x [°mech.],T [Nm],iU_mes [A],iV_mes [A],ia [A]", ["angle_mech", "torque", "i_a", "i_b", ""], "locked_rotor"),
         ("U_mes [V],Drehzahl", ["voltage", "speed"], "back_emf"),
+        ("phi [°],L_uv [mH],Lvw [mH],L_wu [mH]", ["angle_mech", "l_ab", "l_?", "l_ca"], "inductance"),
+        ("phi [°],Induktivität cb [µH],L_d [mH]", ["angle_mech", "l_bc", ""], "inductance"),
+        ("U_uv [V],Uv [V],R_wv [mOhm],n [rpm]", ["v_ab", "v_b", "r_bc", "speed"], "back_emf"),
         ("Kraft [kN],zweite Kraft [N],v [m/s]", ["force", "", "velocity"], "damping_velocity"),
     ],
 )
@@ -93,6 +96,19 @@ def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
     found = guesses(table_of_text(f"{text}\n{row}\n", "f.csv"))
     assert [guess.quantity for guess in found] == quantities
     assert likely_kind(quantities) == kind
+
+
+@pytest.mark.parametrize("heading", ["inductance [mH]", "Induktivität / mH", "L in mH"])
+def test_an_inductance_is_asked_about_where_its_heading_names_no_phase(tmp_path, capsys, heading):
+    """A phase's is about half of that between two lines: neither is taken for granted."""
+    path = tmp_path / "meter.csv"
+    path.write_text(f"angle [deg],{heading}\n0,1.2\n10,1.3\n20,1.5\n30,1.3\n", encoding="utf-8")
+    main(["import", str(path)])
+    lines = (tmp_path / "campaign.toml").read_text(encoding="utf-8").splitlines()
+    (number,) = [number for number, line in enumerate(lines, 1) if line.startswith(f'"{heading}"')]
+    assert 'name = "?", unit = "mH", role = "response"' in lines[number - 1]
+    assert lines[number - 1].endswith("l_a of a phase fed alone, l_bc (l_ab, l_ca) between two lines, l_m of B by A")
+    assert str(number) in re.findall(r"\d+", capsys.readouterr().out) and 'kind = "inductance"' in "\n".join(lines)
 
 
 def test_units_that_headings_leave_out_are_the_usual_ones():
