@@ -35,6 +35,7 @@ from workbench.report.words import (
     amount,
     bounds,
     chi2_text,
+    estimated,
     factor_text,
     interval,
     listed,
@@ -258,10 +259,7 @@ def _verdict_numbers(d: Diagnosis) -> tuple[KeyNumbers, ...]:
     best = leading(d)
     if best is None or d.verdict in ("nothing_missing", "cannot_tell"):
         return ()
-    sizes = [
-        KeyNumber(plain(name), amount(e.value, e.unit), remark=f"90 %: {bounds(e)}")
-        for name, e in best.parameters.items()
-    ]
+    sizes = [KeyNumber(plain(name), estimated(e), remark=f"90 %: {bounds(e)}") for name, e in best.parameters.items()]
     fitted = KeyNumber(
         "chi²/n, fitted rows",
         _fall(best.chi2_per_n_before, best.chi2_per_n_after),
@@ -328,7 +326,7 @@ def _sizes(d: Diagnosis) -> tuple[Section, ...]:
     """Of what is named, as in the most probable explanation that holds it."""
     rows = [
         {
-            "effect": plain(r.name), "parameter": plain(name), "value": amount(e.value, e.unit),
+            "effect": plain(r.name), "parameter": plain(name), "value": estimated(e),
             "90 % interval": bounds(e), "on a bound": "yes" if name in r.at_bound else _UNKNOWN,
         }
         for r in d.ranking if r.name in d.names
@@ -486,7 +484,7 @@ def _final(ledger: Ledger) -> tuple[Section, ...]:
     if not ledger.parameters:
         return ()
     rows = [
-        {"of": plain(p.owner), "parameter": plain(p.name), "value": amount(p.estimate.value, p.estimate.unit),
+        {"of": plain(p.owner), "parameter": plain(p.name), "value": estimated(p.estimate),
          "90 % interval": bounds(p.estimate)}
         for p in ledger.parameters
     ]  # fmt: skip

@@ -27,6 +27,7 @@ from workbench.report.words import (
     amount,
     bounds,
     chi2_text,
+    estimated,
     interval,
     listed,
     number,
@@ -570,4 +571,4 @@ def size_words(step: LedgerStep) -> str:
 
 
 def _short(e) -> str:
-    return f"{amount(e.value, e.unit)} [{bounds(e)}]"
+    return f"{estimated(e)} [{bounds(e)}]"

@@ -11,6 +11,7 @@ from workbench.findings import Axis, Estimate
 _TAKES_PREFIX = ("m", "s", "V", "A", "N", "H", "Ω", "Nm", "Vs", "W", "T", "rad")
 _PREFIXES = (("m", 1e3), ("µ", 1e6), ("n", 1e9))
 _SMALL = 0.01  # below it a prefix reads better than zeros
+_WIDE = 10.0  # times its value, from which on an interval says in what unit both are written
 _NEAR_ONE = 2.0  # factors up to which the third digit counts
 _READABLE = 1e5  # odds up to which digits read better than a power of ten
 _DIGITS_AT_MOST = 5  # zeros behind the digits that count, rather than an exponent
@@ -66,8 +67,12 @@ def chi2_text(value: float | None) -> str:
 def amount(value: float | None, unit: str = "", digits: int = 3) -> str:
     """A number with its unit: ``3.2 N``, ``4.5 µm``, ``12 %``, ``–`` where there is none."""
     factor, written = prefixed(value or 0.0, unit)
+    return number(None) if value is None else _with_unit(value * factor, written, digits)
+
+
+def _with_unit(value: float, written: str, digits: int = 3) -> str:
     gap = "" if written in ("", "°") else "\N{NO-BREAK SPACE}"
-    return number(value, digits) if value is None else f"{number(value * factor, digits)}{gap}{written}"
+    return f"{number(value, digits)}{gap}{written}"
 
 
 def prefixed(size: float, unit: str) -> tuple[float, str]:
@@ -82,13 +87,25 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
 
 def interval(estimate: Estimate) -> str:
     """``4.1 N (90 % interval 3.6 to 4.6)``."""
-    return f"{amount(estimate.value, estimate.unit)} (90 % interval {bounds(estimate)})"
+    return f"{estimated(estimate)} (90 % interval {bounds(estimate)})"
+
+
+def estimated(estimate: Estimate) -> str:
+    """The value of an estimate with its unit: ``4.1 N``."""
+    factor, written = _unit_of(estimate)
+    return _with_unit(estimate.value * factor, written)
 
 
 def bounds(estimate: Estimate) -> str:
-    """The 90 % interval in the unit in which ``amount`` writes the value: ``3.6 to 4.6``."""
-    factor, _ = prefixed(estimate.value, estimate.unit)
+    """The 90 % interval in the unit in which ``estimated`` writes the value: ``3.6 to 4.6``."""
+    factor, _ = _unit_of(estimate)
     return f"{number(estimate.low90 * factor)} to {number(estimate.high90 * factor)}"
+
+
+def _unit_of(estimate: Estimate) -> tuple[float, str]:
+    """Factor and unit that suit the value, but where it is next to nothing in a wide interval."""
+    widest = max(abs(estimate.low90), abs(estimate.high90))
+    return prefixed(max(abs(estimate.value), widest / _WIDE), estimate.unit)
 
 
 def percent(share: float) -> str:

@@ -84,6 +84,11 @@ def test_the_interval_is_in_the_unit_of_the_value():
     assert interval(Estimate(2e-3, 1e-3, 5e-4, 0.011, "m")) == "2\N{NO-BREAK SPACE}mm (90 % interval 0.5 to 11)"
 
 
+def test_a_value_next_to_nothing_takes_the_unit_of_its_interval():
+    nothing = Estimate(171e-9, 1e-5, -16.069e-6, 16.412e-6, "m")
+    assert interval(nothing) == "0.171\N{NO-BREAK SPACE}µm (90 % interval −16.1 to 16.4)"
+
+
 def test_a_probability_is_never_rounded_to_certainty():
     assert probability_text(1 - 1e-9) == "> 99.9 %" and probability_text(0.0) == "< 0.1 %"
     assert percent(0.0) == "0 %" and percent(0.851) == "85 %" and percent(0.996) == "99.6 %"
