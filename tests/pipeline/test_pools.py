@@ -167,3 +167,27 @@ def test_no_scheduler_at_the_address_is_said_in_a_sentence(monkeypatch):
     monkeypatch.setattr(pipeline.pools, "SCHEDULER_TIMEOUT", "1s")
     with pytest.raises(TaskError, match="no dask scheduler answers at tcp://127.0.0.1:1"):
         DaskCluster(address="tcp://127.0.0.1:1")
+
+
+KEPT = []
+
+
+def resident_mb(_):
+    return next(int(line.split()[1]) / 1024 for line in Path("/proc/self/status").open() if line.startswith("VmRSS"))
+
+
+def leave_holes(count):
+    """Blocks of which the last one stays, so that the heap cannot shrink from its end by itself."""
+    blocks = [bytes(1000) for _ in range(count)]
+    KEPT.append(blocks.pop())
+    return len(blocks)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc; elsewhere nothing is given back")
+def test_a_worker_is_no_larger_after_a_task_than_before():
+    pool = Processes(1)
+    before, _, after = (
+        pool.result(pool.submit(*one)) for one in ((resident_mb, 0), (leave_holes, 100_000), (resident_mb, 0))
+    )
+    pool.end()
+    assert after < before + 20
