@@ -549,6 +549,13 @@ def _cannot_be_said(d: Diagnosis) -> tuple[str, ...]:
 # ---- ledger ---------------------------------------------------------------------------------------------------------
 
 
+_AFTER_THE_WALK = {
+    "nothing_missing": " Nothing more is missing that these data would show plainly.",
+    "none_of_these": " What is left is something that no effect of the library describes.",
+    "cannot_tell": " What is left these data cannot tell.",
+}
+
+
 def ledger_sentence(ledger: Ledger) -> str:
     """Where the walk stands."""
     kept = [step for step in ledger.steps if step.decision != "refused"]
@@ -562,7 +569,8 @@ def ledger_sentence(ledger: Ledger) -> str:
     moved = "fell" if now < start else "went"
     change = "stands at" if last is first else f"{moved} from chi²/n = {chi2_text(start)} to"
     said = f"Added: {added}. The error on {where} {change} {chi2_text(now)}, {goal} of {ledger.goal:g} (noise: 1)."
-    return said + (f" Refused: {listed(plain(step.effect) for step in refused)}." if refused else "")
+    said += f" Refused: {listed(plain(step.effect) for step in refused)}." if refused else ""
+    return said + _AFTER_THE_WALK.get(last.verdict, "")
 
 
 def size_words(step: LedgerStep) -> str:

@@ -299,9 +299,18 @@ def test_data_that_cannot_abstain_are_said_to(diagnosis):
 
 def test_the_ledger_is_judged_on_what_was_left_out_and_names_refusals(ledger):
     said = ledger_sentence(ledger)
-    assert "from chi²/n = 28.2 to 1.04, at the goal of 1.2" in said and said.endswith("Refused: velocity polynomial.")
+    assert "from chi²/n = 28.2 to 1.04, at the goal of 1.2" in said
+    assert "Refused: velocity polynomial. Nothing more is" in said
     unfinished = ledger_sentence(replace(ledger, steps=ledger.steps[:3]))
     assert "to 12.6, above the goal" in unfinished, "a refused step does not count"
+
+
+def test_the_ledger_says_what_the_last_diagnosis_found(ledger):
+    *before, last = ledger.steps
+    ended = {v: ledger_sentence(replace(ledger, steps=(*before, replace(last, decision="accepted", verdict=v))))
+             for v in ("none_of_these", "nothing_missing", "cannot_tell", "effect")}  # fmt: skip
+    assert ended["none_of_these"].endswith("that no effect of the library describes.")
+    assert len(set(ended.values())) == 4 and "missing" not in ended["effect"]
 
 
 def test_the_ledger_compares_one_kind_of_error_only(ledger):
