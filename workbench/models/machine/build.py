@@ -15,7 +15,7 @@ import numpy as np
 from effects.machine_design import MachineAsBuilt
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
-from processes import LostWorker, Processes
+from processes import LostWorker, Processes, give_memory_back
 from workbench.models.kept import KeptArrays, key_of
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.pieces import (
@@ -118,7 +118,9 @@ class SurrogateBuilder:
             except LostWorker:
                 self.pool.end(now=True)
         for name, task in waiting.items():
-            yield name, self.solver.solve(task.piece, task.states)
+            arrays = self.solver.solve(task.piece, task.states)
+            give_memory_back()  # workers do after every task
+            yield name, arrays
 
     def _pooled(self, tasks: dict[str, Task]) -> Iterator[tuple[str, Arrays]]:
         futures = {self.pool.submit(solved, task): name for name, task in tasks.items()}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 
-from processes import give_memory_back
 from workbench.models.machine.pieces import Arrays, Fields, Kind, Machinery, Piece, States, Task
 
 _NO_LOAD_WHOLE = (False, True)
@@ -25,9 +24,7 @@ class Solver:
     def solve(self, piece: Piece, states: States) -> Arrays:
         """The results of a piece."""
         self._prepare(piece.kind)
-        arrays = piece.solve(self.fields, states)
-        give_memory_back()
-        return arrays
+        return piece.solve(self.fields, states)
 
     def _prepare(self, kind: Kind | None) -> None:
         if kind is None or kind == self._kind:
