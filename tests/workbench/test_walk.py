@@ -11,7 +11,7 @@ from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import diagnose
-from workbench.explain.verdict import GROUP
+from workbench.explain.verdict import GROUP, PAIR
 from workbench.ledger.model_file import model_text, with_effects_of
 from workbench.ledger.step import COLUMNS, read_ledger, try_effect
 from workbench.ledger.walk import add_effect, by_evidence, walk
@@ -279,7 +279,7 @@ def test_of_a_group_the_most_probable_name_is_tried_first(diagnosed):
     weighed = (replace(first, probability=0.04), replace(second, probability=0.95), *rest)
     group = replace(diagnosed, verdict=GROUP, names=(first.name, second.name), ranking=weighed)
     assert by_evidence(group) == (second.name, first.name)
-    assert by_evidence(replace(group, verdict="named")) == (first.name, second.name)
+    assert by_evidence(replace(group, verdict=PAIR)) == (first.name, second.name)
 
 
 def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):
