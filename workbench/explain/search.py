@@ -68,12 +68,12 @@ def _until_exact(search: Search, progress: Progress) -> None:
     expand(search, search.fitted[frozenset()], heap)
     for _ in range(ROUNDS):
         _effects_alone(search, heap, settled, progress)
-        ended = search.is_beaten
+        ended = search.is_over
         _exactly(search, progress)
         if (leader := search.ranked[0]) in search.exact and leader in search.expanded:
             expand(search, search.fitted[leader], heap)
         is_settled = leader in settled and not _reaches(search, heap)
-        if search.is_beaten or (is_settled and not ended):
+        if search.is_over or (is_settled and not ended):
             break
 
 
@@ -93,7 +93,7 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
     """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
     until that changes nothing, or an unknown function is better by far. settled: sets that led and were treated so"""
     _best_first(search, heap, progress)
-    while (leader := search.ranked[0]) not in settled and not search.is_beaten:
+    while (leader := search.ranked[0]) not in settled and not search.is_over:
         settled.add(leader)
         less_one(search, progress)
         for names in (leader - {name} for name in sorted(leader)):

@@ -174,6 +174,24 @@ class Search:
         return self.best_beside > self.log_posterior(self.ranked[0]) + PLAIN
 
     @property
+    def is_over(self) -> bool:
+        """Whether no other set of effects is of use: such a function is better beside none of them, or by more than
+        the last effect of what leads gained, as the next one is believed to gain less."""
+        if not self.is_beaten:
+            return False
+        beside_none = not max(self.beside, key=self.log_posterior_beside)
+        return beside_none or self.best_beside - self.log_posterior(self.ranked[0]) > self.last_gain
+
+    @property
+    def last_gain(self) -> float:
+        """What the effects of what leads gained over the best part of it that was fitted, for each [nats]."""
+        leader, *others = self.ranked
+        part = next((names for names in others if names < leader), None)
+        if part is None:
+            return 0.0
+        return (self.log_posterior(leader) - self.log_posterior(part)) / len(leader - part)
+
+    @property
     def ranked(self) -> list[Set]:
         """Sets that were fitted, most probable first."""
         return sorted(self.fitted, key=lambda names: -self.log_posterior(names))
