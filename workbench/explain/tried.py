@@ -179,7 +179,7 @@ class Search:
         the last effect of what leads gained, as the next one is believed to gain less."""
         if not self.is_beaten:
             return False
-        beside_none = not max(self.beside, key=self.log_posterior_beside)
+        beside_none = not max(self.beside, key=self.log_posterior_beside, default=frozenset())
         return beside_none or self.best_beside - self.log_posterior(self.ranked[0]) > self.last_gain
 
     @property

@@ -21,6 +21,7 @@ from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import (
+    Beside,
     at_zero,
     beside_unknown,
     exact,
@@ -570,6 +571,26 @@ def test_nothing_ends_a_search_that_finds_what_is_there(tmp_path, monkeypatch):
     hidden = lambda x: sum(0.25 * np.cos(300 * k * x) for k in (2, 5, 7))  # noqa: E731
     search = searched(expanded(sure_of_noise(tmp_path, extra=hidden)), WAVES)
     assert search.ranked[0] == {"wave2", "wave5", "wave7"} and not search.is_beaten
+
+
+@pytest.mark.parametrize(
+    ("ahead", "beside_what", "is_beaten", "is_over"),
+    [(9, "wave2", False, False), (90, "wave2", True, False), (110, "wave2", True, True), (90, "", True, True)],
+)
+def test_a_search_goes_on_where_the_next_effect_may_be_worth_more_than_an_unknown_function(
+    tmp_path, ahead, beside_what, is_beaten, is_over
+):
+    """The last effect gained 100 nats."""
+    bench = sure_of_noise(tmp_path)
+    leader, nothing = frozenset(("wave2",)), frozenset()
+    search = searching(bench, {nothing: null_of(bench), leader: null_of(bench)})
+    search.forms[leader] = 100.0 - search.beliefs.log_prior(leader)
+    kept = leader if beside_what else nothing
+    height = search.log_posterior(leader) + ahead - search.beliefs.log_unknown
+    evidence = height - search.forms.get(kept, 0.0) - search.beliefs.log_prior(kept)
+    search.beside[kept] = Beside(null_of(bench), evidence, (), ())
+    assert search.last_gain == pytest.approx(100.0)
+    assert (search.is_beaten, search.is_over) == (is_beaten, is_over)
 
 
 def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_path, monkeypatch):
