@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from math import isclose
 
 import numpy as np
@@ -60,6 +62,28 @@ class DrawnAsBuilt(BuiltMachine):
         """Of A, B and C of the star at 20 degC [ohm]."""
         a, b, c = self.resistance_shares
         return a * self.phase_resistance, b * self.phase_resistance, c * self.phase_resistance
+
+    @cached_property
+    def in_field(self) -> DrawnAsBuilt:
+        """The design with what its field does not know left out, so that alike fields are found again."""
+        magnet = replace(self.magnet, temperature_coefficient=0.0, reference_temperature=0.0)
+        return DrawnAsBuilt(
+            self.drawing,
+            self.machine,
+            turns=1.0,
+            magnet=magnet,
+            length=1.0,
+            field_scale=self.field_scale,
+            saturation_scale=self.saturation_scale,
+            stacking_factor=self.stacking_factor,
+        )
+
+    @cached_property
+    def field_name(self) -> str:
+        """The same for designs of a drawing whose fields are alike; an outline has hundreds of curves to be read."""
+        d = self.in_field
+        words = repr((d.machine, d.magnet, d.field_scale, d.saturation_scale, d.stacking_factor))
+        return hashlib.sha256(words.encode()).hexdigest()[:16]
 
     def with_phase_resistances(self, a: float, b: float, c: float) -> DrawnAsBuilt:
         """Those of the three phases [ohm]."""

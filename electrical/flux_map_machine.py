@@ -43,6 +43,11 @@ class FluxMapMachine:
     psi_d, psi_q (n, m): peak flux linkages of one phase [Wb]
     resistance: one phase R [ohm], may be zero; an array of several windings is a family
 
+    Between the currents of a map of ``magnetostatics.flux_map_stage`` the splines leave the best current angle off by
+    up to 0.2 degrees, now this way and now that; the optimum is so flat that this costs 3e-5 of the torque. The torque
+    itself is off by up to 0.5 % at a fifth of the largest current, 0.02 % at the largest (V magnets in one and two
+    layers, flux barriers; against three times as many currents along each axis).
+
     Raises FluxMapMachineError when the spline through the points is not strictly monotone, that is when the symmetric
     part of its incremental inductances is not positive definite somewhere: only then is the inverse unique everywhere.
     Currents outside the grid are refused, not extrapolated.

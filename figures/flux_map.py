@@ -15,7 +15,10 @@ from electrical.performance import Performance
 from figures.style import BLACK, BLUE, FIELD_MAP, GREY, ORANGE, VERMILION, letter, new_figure, show_grid, styled
 from units import FACTORS, RPM
 
-FLUX_MAP_CAPTION = "Flux linkages over the currents, with MTPA, the envelope and, where it is reached, MTPV."
+FLUX_MAP_CAPTION = (
+    "Flux linkages over the currents, with MTPA, the envelope and, where it is reached, MTPV. Where cubics between "
+    "the solved currents bend MTPA by some tenths of a degree, the torque does not feel it."
+)
 _SAMPLES = 121
 _FIELD_LOOK: dict[str, Any] = {"color": BLUE, "label": "flux map"}
 _CONSTANT_LOOK: dict[str, Any] = {"color": ORANGE, "linestyle": "--", "label": "constant parameters"}

@@ -386,7 +386,8 @@ class ComposedMachine(Pitches):
 
     @property
     def half_wave(self) -> bool:
-        return self.rotor.magnets_per_pitch == 0 or self.repeats == self.poles
+        unlike = self.repeats != self.poles  # then a pole further on the slots must be the same, and no magnets left
+        return not unlike or (not self.rotor.magnets_per_pitch and self.slots % self.poles == 0)
 
     @property
     def airgap(self) -> float:

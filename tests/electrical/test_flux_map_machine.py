@@ -13,6 +13,13 @@ from electrical.dq import DriveLimits
 from electrical.flux_map_export import flux_tables, write_mat, write_npz
 from electrical.flux_map_machine import FluxMapMachine, FluxMapMachineError
 from electrical.synchronous_machine import SynchronousMachine
+from geometry.cross_section import mesh_cross_section
+from geometry.half_cell import MeshDensity
+from magnetostatics.flux_map import CurrentGrid, flux_map, map_angles
+from magnetostatics.flux_map_stage import CURRENTS
+from magnetostatics.model import FieldModel
+from study.machine_file import read_machine
+from units import DEGREE
 
 PLAIN = SynchronousMachine(5, 7.5e-3, 85e-6, 95e-6, 14e-3)  # a small surface-magnet machine, R counted
 BURIED = SynchronousMachine(4, 0.05, 0.4e-3, 1.1e-3, 0.05)
@@ -64,6 +71,25 @@ def test_the_spline_follows_the_map_between_its_points():
     i_d, i_q = fine_currents()
     exact = np.array(saturating(i_d, i_q))
     assert MACHINE.flux_linkage(i_d, i_q) == pytest.approx(exact, abs=2e-4 * MACHINE.psi_d.max())
+
+
+def test_a_flat_optimum_hides_what_the_spline_does_to_the_best_angle():
+    """Buried magnets; a map of every second current against all of it."""
+    found = read_machine("prius_2004")
+    section = mesh_cross_section(found.machine, found.layout, MeshDensity(gap_edges=96, gap_layers=1, across_iron=1.0))
+    model, reach = FieldModel(section, found.materials), 1000.0
+    fine = flux_map(model, CurrentGrid.motoring(reach, 2 * CURRENTS - 1), map_angles(model, 2))
+    every_second = fine.isel(id=slice(None, None, 2), iq=slice(None, None, 2))
+    all_of_it, stage = (
+        FluxMapMachine.from_per_turn(one, turns=1.0, active_length=1.0, resistance=0.0) for one in (fine, every_second)
+    )
+    current = np.linspace(0.2, 1.0, 41) * reach
+    best, currents = (dq.mtpa_currents(machine, current) for machine in (all_of_it, stage))
+    off = np.arctan2(-currents[0], currents[1]) - np.arctan2(-best[0], best[1])
+    assert 0.05 * DEGREE < np.abs(off).max() < 0.25 * DEGREE
+    assert np.all(all_of_it.torque(*currents) > (1 - 3e-5) * all_of_it.torque(*best))
+    assert stage.torque(*currents) == pytest.approx(all_of_it.torque(*best), rel=5e-3)
+    assert stage.torque(*currents)[-1] == pytest.approx(all_of_it.torque(*best)[-1], rel=3e-4)
 
 
 def test_one_call_gives_flux_linkages_and_torque():

@@ -169,6 +169,8 @@ def test_two_unlike_poles_with_all_alike_are_one(exported):
     one = OutlineRotor(4, read_outline(exported), RELUCTANCE.rotor.outer_radius)
     machines = [replace(RELUCTANCE, rotor=rotor) for rotor in (one, replace(one, repeats_after=2))]
     assert machines[1].sectors == 2 and not machines[1].is_antiperiodic and machines[1].half_wave
+    between = [replace(machine, stator=replace(machine.stator, slots=30)).half_wave for machine in machines]
+    assert between == [True, False]  # a pole further on is between two slots
     areas = [part_areas(machine).rotor_laminations for machine in machines]
     assert areas[1] == pytest.approx(areas[0], rel=1e-9)
     models = [model_of(machine, DENSITY) for machine in machines]

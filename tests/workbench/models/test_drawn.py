@@ -60,6 +60,19 @@ def test_a_polynomial_between_angles_is_met():
     assert np.allclose((weights * (places**5 - 3 * places)).sum(1), here**5 - 3 * here)
 
 
+@pytest.mark.parametrize("name", ["outrunner_9_12", "consequent_12_8", "szesynrm"])  # poles alike, not, without magnets
+def test_states_that_differ_by_the_names_of_the_phases_are_solved_once(name):
+    samples = DrawnBench(COARSE, cache=None).prepared(DrawnBench().design({"machine_file": name}), ()).expansion.samples
+    design, part = samples.nominal.in_field, samples.period // samples.parts
+    lines = [(70.0, -60.0, -10.0), (-10.0, 70.0, -60.0), (-60.0, -10.0, 70.0)]
+    states = [State(1 + k * part, currents) for currents in lines for k in range(samples.parts)]
+    fields = [samples.model(design).solve(PhaseCurrents(s.step * samples.step, s.ampere_turns)) for s in states]
+    own = np.array([[arkkio_torque(one), *phase_flux_linkage(one)] for one in fields])
+    assert np.allclose(samples.at(design, states), own, rtol=0, atol=1e-8 * np.abs(own).max(axis=0))
+    solved = {samples.alike(one).state for one in states}
+    assert len(states) == len(solved) * (3 if design.machine.rotor.magnets_per_pitch else 6)
+
+
 def test_the_voltage_is_the_slope_of_the_fields_linkage(outrunner):
     bench, design = outrunner
     model, h = bench.expansion.samples.model(design), bench.expansion.samples.step

@@ -169,8 +169,8 @@ class Answers:
         A sixth of a period of all phases makes a whole one of A: B and C lag by a third each, half a period turns the
         sign; a third where north and south poles are not alike.
         """
-        samples, pairs = self.expansion.samples, self.design.machine.pole_pairs
-        period, parts = samples.steps // pairs, self._parts
+        samples = self.expansion.samples
+        period, parts = samples.period, samples.parts
         strides = (d for d in range(2, period // parts + 1) if period % (parts * d) == 0 and period // d >= _ORDERS)
         stride = max(strides, default=1)
         states = [State(k * stride, (0.0, 0.0, 0.0)) for k in range(period // stride // parts)]
@@ -179,11 +179,6 @@ class Answers:
         found = 2 * np.fft.rfft(whole) / len(whole)
         found[0] /= 2
         return self.design.turns * self.design.length * self.kept * found
-
-    @property
-    def _parts(self) -> int:
-        """Into which an electrical period divides, of which each has all that the three phases see."""
-        return 6 if self.design.machine.half_wave else 3
 
     def linkage_slopes(self, angle: np.ndarray) -> np.ndarray:
         """d psi/d angle of the phases at rotor angles [rad] (n,): [Wb] (n, 3)."""
@@ -230,8 +225,8 @@ class Answers:
     @cached_property
     def _common_inductance(self) -> float:
         """L_0 of a phase of a delta [H]: its flux linkage by one small current in all three, mean over a part."""
-        step = self.expansion.samples.step
-        angle = step * np.round(np.arange(3) * 2 * pi / self.design.machine.pole_pairs / self._parts / 3 / step)
+        samples = self.expansion.samples
+        angle = samples.step * np.round(np.arange(3) * samples.period / samples.parts / 3)
         change = self._coil_change(angle, np.full((3, 3), _SMALL / self._paths)) / self._paths
         return float(change.mean() / _SMALL)
 
@@ -275,7 +270,7 @@ class Answers:
     @property
     def common_orders(self) -> np.ndarray:
         """Lowest orders of what all phases have in common (orders,) [1]: 3 and 9, and 6 where poles are not alike."""
-        return np.array([3, 9] if self._parts == 6 else [3, 6, 9])
+        return np.array([3, 9] if self.expansion.samples.parts == 6 else [3, 6, 9])
 
     def _turning_linkages(self, i_d: np.ndarray, i_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Electrical angles (positions,) [rad] over a part of a period, and flux linkages there of all coils of each
@@ -284,12 +279,13 @@ class Answers:
         Of the magnets' part the share that leaks at the ends is missing, whatever the current. Twice as many positions
         for a delta, of which the orders that go round it are asked.
         """
-        positions = (36 if self.design.drawing.is_delta else 18) // self._parts
-        step = self.expansion.samples.steps / self.design.machine.pole_pairs / self._parts / positions
+        samples = self.expansion.samples
+        positions = (36 if self.design.drawing.is_delta else 18) // samples.parts
+        step = samples.period / samples.parts / positions
         places = [round((k + 0.5) * step) for k in range(positions)]
         coils = np.stack([self._turning_coils(np.append(i_d, 0.0), np.append(i_q, 0.0), place) for place in places])
         coils = coils[:, :-1] - self.design.end_leakage * coils[:, -1:]
-        theta = self.design.machine.pole_pairs * self.expansion.samples.step * np.array(places)
+        theta = self.design.machine.pole_pairs * samples.step * np.array(places)
         return theta, self.design.turns * self.design.length * coils
 
     def _turning_coils(self, i_d: np.ndarray, i_q: np.ndarray, place: int) -> np.ndarray:

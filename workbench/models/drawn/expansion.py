@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from effects.drawn_design import DrawnAsBuilt, rim_field
-from workbench.models.drawn.field import FieldSamples, State, in_field
+from workbench.models.drawn.field import FieldSamples, State
 
 Values = np.ndarray
 _OF_A_DIMENSION = 0.1  # of itself
@@ -84,9 +84,10 @@ class Expansion:
     """
 
     def __init__(self, samples: FieldSamples, centre: DrawnAsBuilt | None = None):
-        self.samples, self.drawn, self.drawn_turns = samples, in_field(samples.nominal), samples.nominal.turns
-        self.centre = in_field(centre or samples.nominal)
+        self.samples, self.drawn, self.drawn_turns = samples, samples.nominal.in_field, samples.nominal.turns
+        self.centre = (centre or samples.nominal).in_field
         self._coordinates = tuple(coordinates(self.drawn))
+        self._nodes: dict[tuple[str, float], DrawnAsBuilt] = {}
 
     def about(self, design: DrawnAsBuilt) -> Expansion:
         """The same, exact at another design."""
@@ -108,8 +109,9 @@ class Expansion:
         return total
 
     def _node(self, c: Coordinate, size: float, states: Sequence[State]) -> Values:
-        design = c.change(self.drawn, c.read(self.drawn) + size) if size else self.drawn
-        return self.samples.at(design, states)
+        if (c.name, size) not in self._nodes:
+            self._nodes[c.name, size] = c.change(self.drawn, c.read(self.drawn) + size) if size else self.drawn
+        return self.samples.at(self._nodes[c.name, size], states)
 
 
 def _parabola(nodes: tuple[float, float, float], x: float) -> Values:

@@ -60,6 +60,22 @@ class State:
     ampere_turns: tuple[float, float, float]
 
 
+@dataclass(frozen=True)
+class Alike:
+    """A state whose field is that of another one but for the names of the phases.
+
+    sixths: of an electrical period that it is before the other;  sign: of its currents and flux linkages over those
+    """
+
+    state: State
+    sixths: int
+    sign: int
+
+    def sample(self, solved: np.ndarray) -> np.ndarray:
+        """Of the other state from that of this one (4,)."""
+        return np.append(solved[:1], self.sign * np.roll(solved[1:], -self.sixths))
+
+
 class FieldSamples:
     """Samples of one drawing and of designs that differ from it in dimensions and materials; cache: folder or None."""
 
@@ -99,29 +115,43 @@ class FieldSamples:
 
     @property
     def period(self) -> int:
-        """Steps after which a sample is the same at the same currents: two poles, or one where there is no magnet and
-        all poles are alike."""
-        m = self.nominal.drawing.machine
-        return self.steps // (m.pole_pairs if m.rotor.magnets_per_pitch else m.repeats)
+        """Steps of two poles, after which a sample is the same at the same currents."""
+        return self.steps // self.nominal.drawing.machine.pole_pairs
 
     @property
-    def idle_period(self) -> int:
-        """Steps after which the torque without current is the same."""
-        m = self.nominal.drawing.machine
-        return self.steps // lcm(m.slots, m.repeats)
+    def parts(self) -> int:
+        """Into which an electrical period divides, of which each has all that the three phases see."""
+        return 6 if self.nominal.drawing.machine.half_wave else 3
+
+    def alike(self, state: State) -> Alike:
+        """In the first part of an electrical period, to which a turn of the stator by some slots brings any state.
+
+        A sixth later i_a, i_b, i_c are what -i_c, -i_a, -i_b were, and so are the linkages: B lags A by a third, and a
+        pole further on all signs are turned. Without magnets a field has no sign but that of its currents.
+        """
+        part, step = divmod(state.step % self.period, self.period // self.parts)
+        sixths = part * 6 // self.parts
+        sign = (-1) ** sixths
+        turned = sign * np.roll(state.ampere_turns, sixths)
+        if not self.nominal.drawing.machine.rotor.magnets_per_pitch and turned.tolist() < (-turned).tolist():
+            sign, turned = -sign, -turned
+        a, b, c = turned.tolist()
+        return Alike(State(step, (a, b, c)), sixths, sign)
 
     # ---- samples ------------------------------------------------------------------------------------------------
 
     def at(self, design: DrawnAsBuilt, states: Sequence[State]) -> np.ndarray:
         """Samples of a design (states, 4)."""
         known = self._of(design)
-        missing = [state for state in dict.fromkeys(states) if state not in known]
-        if missing:
-            self._solve(design, sorted(missing, key=lambda s: (s.ampere_turns, s.step)))
+        missing = {state: self.alike(state) for state in states if state not in known}
+        unsolved = {one.state for one in missing.values()} - known.keys()
+        if unsolved:
+            self._solve(design, sorted(unsolved, key=lambda s: (s.ampere_turns, s.step)))
+        known.update({state: one.sample(known[one.state]) for state, one in missing.items()})
         return np.array([known[state] for state in states]).reshape(-1, 4)
 
     def _of(self, design: DrawnAsBuilt) -> dict[State, np.ndarray]:
-        name = _name(design)
+        name = design.field_name
         if name not in self._known:
             rows = self._kept.read(name)
             found = {} if rows is None else {_state(row): row[4:] for row in rows["samples"]}
@@ -135,7 +165,7 @@ class FieldSamples:
             last = model.solve(point, last)
             known[state] = _read(last)
             if done % _WRITTEN_EVERY == 0 or done == len(states):
-                self._kept.write(_name(design), {"samples": np.array([_row(*one) for one in known.items()])})
+                self._kept.write(design.field_name, {"samples": np.array([_row(*one) for one in known.items()])})
             if self.progress is not None:
                 self.progress(f"field solutions of this machine: {done} of {len(states)}, kept for the next time")
 
@@ -179,27 +209,6 @@ def _altered(law: Reluctivity, design: DrawnAsBuilt) -> Reluctivity:
     if design.saturation_scale != 1.0:
         law = ScaledSaturation(law, design.saturation_scale)
     return stacked(law, design.stacking_factor)
-
-
-def in_field(design: DrawnAsBuilt) -> DrawnAsBuilt:
-    """The design with what its field does not know left out, so that alike fields are found again."""
-    magnet = replace(design.magnet, temperature_coefficient=0.0, reference_temperature=0.0)
-    return DrawnAsBuilt(
-        design.drawing,
-        design.machine,
-        turns=1.0,
-        magnet=magnet,
-        length=1.0,
-        field_scale=design.field_scale,
-        saturation_scale=design.saturation_scale,
-        stacking_factor=design.stacking_factor,
-    )
-
-
-def _name(design: DrawnAsBuilt) -> str:
-    d = in_field(design)
-    words = repr((d.machine, d.magnet, d.field_scale, d.saturation_scale, d.stacking_factor))
-    return hashlib.sha256(words.encode()).hexdigest()[:16]
 
 
 def _read(solution: FieldSolution) -> np.ndarray:
