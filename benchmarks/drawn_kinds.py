@@ -11,9 +11,9 @@ from tempfile import TemporaryDirectory
 
 from export.dxf import laminations, write_dxf
 from geometry.magnetisation import PARALLEL, HalbachMagnetisation
-from geometry.outline import outline_of
+from geometry.outline import Curve, outline_of
 from geometry.outline_file import read_outline
-from geometry.parts import Rotor
+from geometry.parts import ComposedMachine, Rotor
 from geometry.rotors.bread_loaf_magnets import BreadLoafMagnets
 from geometry.rotors.outline_magnets import OutlineMagnets
 from geometry.rotors.ribbed_v_shape import RibbedVShape
@@ -40,9 +40,15 @@ def drawn() -> Iterator[tuple[str, MachineFile]]:
     v, twelve = read_machine("prius_2004"), read_machine("consequent_12_8")
     rib = RibbedVShape(rib=1.2 * mm, **vars(v.machine.rotor))
     yield "prius_2004, a rib between its magnets", _with_rotor(v, rib)
-    yield "prius_2004, cut out of its own outlines", _with_rotor(v, _from_outlines(v))
+    yield cut_out_with_magnets()
     for rotor in INSIDE_OF_TWELVE_SLOTS:
         yield "consequent_12_8, another rotor", _with_rotor(twelve, rotor)
+
+
+def cut_out_with_magnets() -> tuple[str, MachineFile]:
+    """The Prius motor, its rotor by outlines of lamination and magnets."""
+    found = read_machine("prius_2004")
+    return "prius_2004, cut out of its own outlines", _with_rotor(found, _from_outlines(found))
 
 
 def halbach() -> tuple[str, MachineFile]:
@@ -63,10 +69,14 @@ def _with_rotor(found: MachineFile, rotor: Rotor) -> MachineFile:
 
 
 def _from_outlines(found: MachineFile) -> OutlineMagnets:
-    """The V as a workshop has it: lamination and magnets in DXF files, written and read back."""
-    with TemporaryDirectory() as name:
-        for file, layers in laminations(outline_of(found.machine)).items():
-            write_dxf(Path(name) / file, layers)
-        outline, magnets = (read_outline(Path(name) / f"{file}.dxf") for file in ("lamination_rotor", "magnets"))
     rotor = found.machine.rotor
+    outline, magnets = read_back(found.machine, "lamination_rotor", "magnets")
     return OutlineMagnets(rotor.poles, outline, rotor.rim_radius, magnets=magnets, magnetised=(rotor.tilt - pi / 2,))
+
+
+def read_back(machine: ComposedMachine, *parts: str) -> tuple[tuple[Curve, ...], ...]:
+    """Outlines as a workshop has them: drawn parts in DXF files, written and read back."""
+    with TemporaryDirectory() as name:
+        for file, layers in laminations(outline_of(machine)).items():
+            write_dxf(Path(name) / file, layers)
+        return tuple(read_outline(Path(name) / f"{part}.dxf") for part in parts)

@@ -10,22 +10,12 @@ from benchmarks.airgap_run import solve_cold
 from benchmarks.comparison import EXACT
 from benchmarks.drawn_kinds import halbach, own
 from benchmarks.other_kinds import TABLE, case_of, machines
-from geometry.cross_section import mesh_cross_section
-from geometry.half_cell import MeshDensity
 from geometry.kinds import ROTORS
 from geometry.magnetisation import RadialMagnetisation
-from magnetostatics.currents import PhaseCurrents
-from magnetostatics.flux_linkage import phase_flux_linkage
-from magnetostatics.model import FieldModel
-from magnetostatics.newton import NewtonSettings
-from magnetostatics.torque import arkkio_torque
 from study.machine_file import read_machine
 
 MACHINES = tuple(machines())
 WITHIN = 1e-5  # relative
-EVERY = pytest.mark.parametrize(
-    ("name", "found"), MACHINES, ids=[type(found.machine.rotor).__name__ for _, found in MACHINES]
-)
 
 
 def table():
@@ -46,23 +36,12 @@ def test_both_codes_agree():
         assert max(float(value) for name, value in row.items() if name.endswith("difference")) < WITHIN
 
 
-@EVERY
+@pytest.mark.parametrize(("name", "found"), MACHINES, ids=[type(found.machine.rotor).__name__ for _, found in MACHINES])
 def test_torque_is_still_that_of_the_other_code(name, found):
     case = case_of(found)
     row = table()[type(found.machine.rotor).__name__, name]
     assert case.section.mesh.nelements == int(row["triangles"])
     assert solve_cold(case, EXACT).torque == pytest.approx(float(row["torque_Nm_per_m"]), rel=WITHIN)
-
-
-@EVERY
-def test_a_sector_is_the_whole_machine(name, found):
-    density, settings = MeshDensity(gap_edges=96, gap_layers=2, across_iron=1.0), NewtonSettings(tolerance=3e-11)
-    sections = [mesh_cross_section(found.machine, found.layout, density, whole) for whole in (False, True)]
-    assert sections[0].sectors > 1 == sections[1].sectors
-    point = PhaseCurrents(0.07, (60.0, -45.0, -15.0))
-    part, whole = (FieldModel(section, found.materials, settings).solve(point) for section in sections)
-    assert arkkio_torque(part) == pytest.approx(arkkio_torque(whole), rel=1e-10)
-    assert phase_flux_linkage(part) == pytest.approx(phase_flux_linkage(whole), rel=1e-10)
 
 
 @pytest.mark.parametrize(("name", "grounded"), [("outrunner_9_12", {0.02}), ("prius_2004", {0.05532, 0.13462})])

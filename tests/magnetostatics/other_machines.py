@@ -5,17 +5,20 @@ from math import atan2
 
 import numpy as np
 
+from benchmarks.drawn_kinds import cut_out_with_magnets, own, read_back
 from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.half_cell import MeshDensity
-from geometry.magnetisation import HalbachMagnetisation
+from geometry.magnetisation import PARALLEL, HalbachMagnetisation
 from geometry.parts import ComposedMachine
 from geometry.rotors.bread_loaf_magnets import BreadLoafMagnets
 from geometry.rotors.consequent_pole import ConsequentPole
 from geometry.rotors.flux_barriers import FluxBarriers
 from geometry.rotors.inset_magnets import InsetMagnets
 from geometry.rotors.outer_magnets import OuterMagnets
+from geometry.rotors.outline_rotor import OutlineRotor
 from geometry.rotors.ribbed_v_shape import RibbedVShape
 from geometry.rotors.spoke import Spoke
+from geometry.rotors.surface_magnets import SurfaceMagnets
 from geometry.rotors.two_layer_v_shape import TwoLayerVShape
 from geometry.rotors.v_shape import VShape
 from geometry.stators.outward_teeth import OutwardTeeth
@@ -67,11 +70,15 @@ TWO_LAYERS = ComposedMachine(
 )  # fmt: skip
 LOAVES = ComposedMachine(STATOR, BreadLoafMagnets(10, 15.7 * mm, 12.8 * mm, 7.6 * mm, 5.0 * mm))
 CONSEQUENT = ComposedMachine(STATOR, ConsequentPole(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 1.1, 0.08))
+SURFACE = ComposedMachine(STATOR, SurfaceMagnets(8, 15.7 * mm, 2.5 * mm, 5.0 * mm, 0.85, PARALLEL))
 HALBACH = replace(OUTRUNNER, rotor=replace(OUTRUNNER.rotor, magnetisation=HalbachMagnetisation()))
-PITCHES = {(48, 8): 6, (24, 4): 5}  # of coils, by slots and poles; of all others one tooth
+CUT_OUT = replace(RELUCTANCE, rotor=OutlineRotor(4, *read_back(RELUCTANCE, "lamination_rotor"), 42.0 * mm))
+PITCHES = {(48, 8): 6, (24, 4): 5, (48, 4): 11}  # of coils, by slots and poles; of all others one tooth
 NAMED = {
     "outrunner": OUTRUNNER, "V shape": V_SHAPE, "inset": INSET, "spoke": SPOKE, "reluctance": RELUCTANCE,
     "two layers": TWO_LAYERS, "loaves": LOAVES, "consequent": CONSEQUENT, "ribbed V": RIBBED, "Halbach": HALBACH,
+    "cut out": CUT_OUT, "cut out, magnets": cut_out_with_magnets()[1].machine, "own": own()[1].machine,
+    "surface": SURFACE,
 }  # fmt: skip
 
 
