@@ -84,7 +84,7 @@ class Effect:
     def at(self, z: np.ndarray) -> Effect:
         """This effect with its parameters at standard normal numbers z (one a parameter), kept inside their bounds."""
         priors = parameters_of(self).items()
-        values = {name: float(np.clip(p.prior.value(z_i), p.low, p.high)) for (name, p), z_i in zip(priors, z)}
+        values = {name: float(min(max(p.prior.value(z_i), p.low), p.high)) for (name, p), z_i in zip(priors, z)}
         return replace(self, **values)
 
 

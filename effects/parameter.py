@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 from effects.prior import Prior
@@ -27,6 +30,12 @@ def parameter(null: float, unit: str, *, prior: Prior, low: float, high: float, 
     return field(default=null, metadata={_KEY: Parameter(unit, null, low, high, prior, source)})
 
 
-def parameters_of(effect: Any) -> dict[str, Parameter]:
+def parameters_of(effect: Any) -> Mapping[str, Parameter]:
     """Parameters of an effect (class or instance) by name, in the order of declaration."""
-    return {f.name: f.metadata[_KEY] for f in fields(effect) if _KEY in f.metadata}
+    return _parameters(effect if isinstance(effect, type) else type(effect))
+
+
+@cache
+def _parameters(effect: type) -> Mapping[str, Parameter]:
+    found = {f.name: f.metadata[_KEY] for f in fields(effect) if _KEY in f.metadata}
+    return MappingProxyType(found)  # every fit asks for them thousands of times

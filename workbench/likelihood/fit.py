@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 import scipy
@@ -34,8 +35,13 @@ FAR = 20.0  # a standard normal number is not followed beyond
 
 def prior_cost(z: np.ndarray) -> float:
     """Minus ln of Student's t density of z over the standard normal one at zero."""
-    level = scipy.stats.t.logpdf(0.0, TAILS) - scipy.stats.norm.logpdf(0.0)
-    return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - level))
+    return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - _level()))
+
+
+@cache
+def _level() -> float:
+    """ln of Student's t density at zero over the standard normal one there."""
+    return float(scipy.stats.t.logpdf(0.0, TAILS) - scipy.stats.norm.logpdf(0.0))
 
 
 def prior_weight(z: np.ndarray) -> np.ndarray:

@@ -84,8 +84,20 @@ def impedance(design: Damper, drive: Drive) -> np.ndarray:
     """
     if is_linear(design) and not design.mount_clearance:
         return linear_impedance(design, drive)
-    points, places = np.unique(drive.columns(), axis=1, return_inverse=True)
-    return _impedance_of_points(design, points.tobytes())[places]  # repeats share their point
+    points, places = _points(drive)
+    return _impedance_of_points(design, points.tobytes())[places]
+
+
+def _points(drive: Drive) -> tuple[np.ndarray, np.ndarray]:
+    """The different points of a drive, (fields, k), and which of them every row is, (n,): repeats share their point."""
+    columns = drive.columns()
+    return _different(columns.tobytes(), len(columns))
+
+
+@lru_cache(maxsize=64)  # every step of a fit asks at the same conditions again
+def _different(columns: bytes, rows: int) -> tuple[np.ndarray, np.ndarray]:
+    points, places = np.unique(np.frombuffer(columns).reshape(rows, -1), axis=1, return_inverse=True)
+    return points, places
 
 
 @lru_cache(maxsize=64)  # instruments, held-out rows and every step of a fit ask for the same damper again
@@ -148,7 +160,7 @@ def _impedance(design: Damper, conditions: Columns) -> dict[str, np.ndarray]:
 def _loop(design: Damper, conditions: Columns) -> dict[str, np.ndarray]:
     if design.mount_clearance:
         raise WorkbenchError("force_loop is not answered for a mount with free play: use impedance tables")
-    points, rows = np.unique(_drive(design, conditions).columns(), axis=1, return_inverse=True)
+    points, rows = _points(_drive(design, conditions))
     force = force_over_a_period(design, Drive(*points), LOOP_POINTS)  # all phases of a sine share their period
     place = np.mod(conditions["phase"] / (2 * np.pi), 1.0) * LOOP_POINTS - 0.5
     below = np.floor(place).astype(int)
