@@ -48,7 +48,10 @@ def drawn() -> Iterator[tuple[str, MachineFile]]:
 def cut_out_with_magnets() -> tuple[str, MachineFile]:
     """The Prius motor, its rotor by outlines of lamination and magnets."""
     found = read_machine("prius_2004")
-    return "prius_2004, cut out of its own outlines", _with_rotor(found, _from_outlines(found))
+    rotor = found.machine.rotor
+    outline, magnets = read_back(found.machine, "lamination_rotor", "magnets")
+    cut = OutlineMagnets(rotor.poles, outline, rotor.rim_radius, magnets=magnets, magnetised=(rotor.tilt - pi / 2,))
+    return "prius_2004, cut out of its own outlines", _with_rotor(found, cut)
 
 
 def halbach() -> tuple[str, MachineFile]:
@@ -66,12 +69,6 @@ def own() -> tuple[str, MachineFile]:
 
 def _with_rotor(found: MachineFile, rotor: Rotor) -> MachineFile:
     return replace(found, machine=replace(found.machine, rotor=rotor))
-
-
-def _from_outlines(found: MachineFile) -> OutlineMagnets:
-    rotor = found.machine.rotor
-    outline, magnets = read_back(found.machine, "lamination_rotor", "magnets")
-    return OutlineMagnets(rotor.poles, outline, rotor.rim_radius, magnets=magnets, magnetised=(rotor.tilt - pi / 2,))
 
 
 def read_back(machine: ComposedMachine, *parts: str) -> tuple[tuple[Curve, ...], ...]:

@@ -17,7 +17,7 @@ from units import FACTORS, RPM
 
 FLUX_MAP_CAPTION = (
     "Flux linkages over the currents, with MTPA, the envelope and, where it is reached, MTPV. Where cubics between "
-    "the solved currents bend MTPA by some tenths of a degree, the torque does not feel it."
+    "the solved currents bend MTPA by a fifth of a degree, the torque does not feel it."
 )
 _SAMPLES = 121
 _FIELD_LOOK: dict[str, Any] = {"color": BLUE, "label": "flux map"}
@@ -105,6 +105,4 @@ def _draw_currents(axes: Axes, found: Performance, current_peak: float) -> None:
     axes.plot(found.mtpa_direct, found.mtpa_quadrature, color=BLACK, label="MTPA")
     if np.isfinite(found.mtpv_direct).any():
         axes.plot(found.mtpv_direct, found.mtpv_quadrature, color=BLACK, linestyle="--", label="MTPV")
-    axes.plot(
-        found.envelope.i_d, found.envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed"
-    )
+    axes.plot(found.envelope.i_d, found.envelope.i_q, color=VERMILION, linewidth=2.2, label="envelope over speed")

@@ -386,8 +386,9 @@ class ComposedMachine(Pitches):
 
     @property
     def half_wave(self) -> bool:
-        unlike = self.repeats != self.poles  # then a pole further on the slots must be the same, and no magnets left
-        return not unlike or (not self.rotor.magnets_per_pitch and self.slots % self.poles == 0)
+        if self.repeats == self.poles:
+            return True
+        return self.rotor.magnets_per_pitch == 0 and self.slots % self.poles == 0  # then by the slots and the currents
 
     @property
     def airgap(self) -> float:

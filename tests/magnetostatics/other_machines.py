@@ -1,4 +1,4 @@
-"""Machines of other kinds: two drawings that another code has solved, a motor with inset magnets, one with spokes."""
+"""A machine of every kind of rotor, two of them drawings that another code has solved, and one with one's own rotor."""
 
 from dataclasses import replace
 from math import atan2

@@ -109,7 +109,7 @@ class Expansion:
         return total
 
     def _node(self, c: Coordinate, size: float, states: Sequence[State]) -> Values:
-        if (c.name, size) not in self._nodes:
+        if (c.name, size) not in self._nodes:  # kept, so that the name of its field is made once
             self._nodes[c.name, size] = c.change(self.drawn, c.read(self.drawn) + size) if size else self.drawn
         return self.samples.at(self._nodes[c.name, size], states)
 
