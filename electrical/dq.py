@@ -483,7 +483,8 @@ def _root(
     """Root between low, where the function is not positive, and high, elementwise; low where both are one point.
 
     The Illinois rule: a chord, with the value at an end halved that two steps in turn have left where it is. What is
-    returned is on the side of ``low``.
+    returned is on the side of ``low``, to rounding: a chord that meets the root at once, from the other side, leaves
+    the low end where it was.
     """
     side, before = np.zeros(np.shape(low)), low
     hardly = _ROUND_OFF * (np.abs(low) + np.abs(high))
@@ -493,7 +494,7 @@ def _root(
         new = low + np.clip(share, 0, 1) * (high - low)
         at_new = function(new)
         if not np.any(np.abs(new - before) > hardly):
-            return np.where(at_new <= 0, new, low)
+            return np.where(at_new <= 0, new, np.maximum(low, new - hardly))
         before, fits = new, at_new <= 0
         at_high = np.where(fits & (side > 0), at_high / 2, np.where(fits, at_high, at_new))
         at_low = np.where(~fits & (side < 0), at_low / 2, np.where(fits, at_new, at_low))

@@ -71,6 +71,15 @@ def test_mtpa_is_the_best_angle(machine):
     assert np.degrees(np.arctan2(i_q, i_d)) == pytest.approx(np.degrees(angle[torque.argmax()]), abs=2e-3)
 
 
+@pytest.mark.parametrize("last_digits", range(-6, 7))
+def test_mtpa_is_the_q_axis_where_the_inductances_differ_by_rounding_alone(last_digits):
+    """A chord then meets the root at once, from either side."""
+    inductance = 9.85782e-5
+    almost = SynchronousMachine(5, 6.87365e-3, inductance + last_digits * np.spacing(inductance), inductance, 0.0)
+    for current in np.linspace(100.0, 140.0, 21):
+        assert abs(mtpa_currents(almost, current)[0]) < 1e-10 * current
+
+
 def test_mtpa_stays_exact_when_the_saliency_vanishes():
     """i_d -> (L_d - L_q) I^2 / psi_m, where the textbook root cancels to nothing."""
     almost = replace(BURIED, inductance_d=BURIED.inductance_q - 1e-10)
