@@ -12,8 +12,7 @@ LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set
 
 def scans_of(table: Table) -> list[np.ndarray]:
     """Rows of every scan of every repeat."""
-    _, which = np.unique(np.stack([table.scan, table.repeat]), axis=1, return_inverse=True)
-    return [np.flatnonzero(which == k) for k in range(which.max(initial=-1) + 1)]
+    return list(table.scans)
 
 
 def follows(table: Table) -> np.ndarray:

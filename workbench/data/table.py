@@ -72,6 +72,12 @@ class Table:
         return len(self.held_out)
 
     @cached_property
+    def scans(self) -> tuple[np.ndarray, ...]:
+        """Rows of every scan of every repeat."""
+        _, which = np.unique(np.stack([self.scan, self.repeat]), axis=1, return_inverse=True)
+        return tuple(np.flatnonzero(which == k) for k in range(which.max(initial=-1) + 1))
+
+    @cached_property
     def order(self) -> np.ndarray:
         """How far each row is through its scan in the order of acquisition, 0 to 1 (n,)."""
         progress = np.zeros(self.rows)
