@@ -91,9 +91,9 @@ def test_controlled_damping_is_that_of_the_wound_machine(design):
     """At rest the peak effort over the speed; where the voltage rules, what the search finds on the wound machine."""
     assert ControlledDamping(1.0, 1e-3).reached(design) == pytest.approx(design.effort_peak / 1e-3, rel=1e-3)
     limits = DriveLimits.from_dc_bus(AMPERES, 48.0)
-    wound = strongest_braking(closed_form(), limits, np.array([3.0 / 2e-3])).torque[0]
-    assert design.braking_at(3.0) == pytest.approx(wound / 2e-3, rel=1e-6)
-    assert wound / 2e-3 > design.effort_at(3.0), "the resistance helps a brake and hinders a motor"
+    wound = strongest_braking(closed_form(), limits, np.array([6.0 / 2e-3])).torque[0]
+    assert design.braking_at(6.0) == pytest.approx(wound / 2e-3, rel=1e-6)
+    assert wound / 2e-3 > 1.01 * design.effort_at(6.0), "the resistance helps a brake and hinders a motor"
 
 
 # ---- requirements ---------------------------------------------------------------------------------------------------
