@@ -139,6 +139,10 @@ class MassModel:
         """Inertia of the rotor about its axis [kg m^2] at an active length [m]."""
         raise NotImplementedError
 
+    def mass_and_inertia(self, section: SectionWithCopper, length: float) -> tuple[float, float]:
+        """Both, [kg] and [kg m^2], at an active length [m]; a search asks for them together."""
+        return self.mass(section, length), self.rotor_inertia(section, length)
+
 
 @dataclass(frozen=True)
 class DrawnParts(MassModel):
@@ -158,6 +162,11 @@ class DrawnParts(MassModel):
     def rotor_inertia(self, section: SectionWithCopper, length: float) -> float:
         """See ``MassModel``."""
         return self.parts(section, length).rotor_inertia
+
+    def mass_and_inertia(self, section: SectionWithCopper, length: float) -> tuple[float, float]:
+        """See ``MassModel``."""
+        parts = self.parts(section, length)
+        return parts.total, parts.rotor_inertia
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, nan
 
 import numpy as np
@@ -68,7 +69,7 @@ class SizedSection:
     torque_per_length_nominal: float
     torque_per_length_overload: float
 
-    @property
+    @cached_property
     def end_turn_length(self) -> float:
         """l_et [m], with the shoe (3.84-3.90), of the coil pitch."""
         return machine_end_turn(self.machine, self.coil_pitch)
@@ -335,8 +336,8 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
     ratio: tau_t [m/rad]; length: l_em [m]; model: motor mass m_em and rotor inertia J_em are those of its masses
     """
     scales, weights = model.scales, model.weights
-    motor_mass = model.masses.mass(section, length)
-    motor_equivalent = model.masses.rotor_inertia(section, length) / ratio**2
+    motor_mass, rotor_inertia = model.masses.mass_and_inertia(section, length)
+    motor_equivalent = rotor_inertia / ratio**2
     equivalent = motor_equivalent + gearbox.equivalent_mass
     return Cost(
         motor_mass=motor_mass,
