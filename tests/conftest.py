@@ -20,11 +20,15 @@ os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
 LONGEST = (
     "workbench/test_machine_walks.py", "test_static.py", "pipeline/test_whole_pipeline.py",
     "magnetostatics/test_other_machines.py", "pipeline/test_cluster.py", "pipeline/test_drive_study.py",
-    "workbench/test_users_walk.py", "workbench/models/test_machine_surrogate.py", "workbench/test_commands.py",
-    "workbench/explain/test_unknown_laws.py", "workbench/test_four_values.py", "magnetostatics/test_weak_form.py",
-    "workbench/models/test_machine_field.py", "workbench/test_walk.py", "pipeline/test_second_design.py",
-    "workbench/test_bad_campaigns.py", "workbench/report/test_pages.py", "magnetostatics/test_mesh_error.py",
-    "physics/test_defect_orders.py", "physics/test_magnetic_pull.py", "optimisation/test_optimum.py",
+    "workbench/test_users_walk.py", "workbench/models/test_machine_surrogate.py", "pipeline/test_machine_command.py",
+    "workbench/test_commands.py", "pipeline/test_pools.py", "benchmarks/test_synrm_readings.py",
+    "workbench/explain/test_unknown_laws.py", "workbench/test_four_values.py",
+    "workbench/models/test_machine_field.py", "magnetostatics/test_weak_form.py", "drivetrain/test_matching.py",
+    "vehicle/test_actuator_ride.py", "workbench/test_walk.py", "pipeline/test_second_design.py",
+    "workbench/test_bad_campaigns.py", "figures/test_energy.py", "benchmarks/test_virtual_benches.py",
+    "workbench/models/test_drawn.py", "workbench/report/test_pages.py", "pipeline/test_machine_winding.py",
+    "magnetostatics/test_mesh_error.py", "physics/test_defect_orders.py", "physics/test_magnetic_pull.py",
+    "optimisation/test_optimum.py",
 )  # fmt: skip
 
 
