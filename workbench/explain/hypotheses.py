@@ -185,9 +185,8 @@ def _without_laws(problem: Problem, laws: Sequence[LawError]) -> tuple[Problem, 
 def _law(problem: Problem, number: int, changes: Sequence[np.ndarray]) -> LawError:
     channel = problem.stack.channels[number]
     shapes = smooth(problem.stack.tables[channel.table], LAW_LENGTH)
-    raw = np.zeros((problem.stack.size, shapes.shape[1] * len(changes)))
-    raw[channel.rows] = np.hstack([change[channel.rows, None] * shapes for change in changes])
-    return law_error(channel.rows, problem.white(raw)[channel.rows])
+    raw = np.hstack([change[channel.rows, None] * shapes for change in changes])
+    return law_error(channel.rows, problem.white.of(np.arange(problem.stack.size)[channel.rows])(raw))
 
 
 def exact(hypothesis: Hypothesis) -> Hypothesis:
@@ -276,23 +275,16 @@ def _in_other_channels(shapes: Sequence[Shape], chosen: Sequence[Seen]) -> list[
 
 def _rewhitened(shapes: Sequence[Shape], problem: Problem) -> list[Shape]:
     """Shapes as the whitener of a problem sees them, the errors of laws taken out."""
-    return [replace(shape, columns=problem.white(_spread(shape, problem))[shape.rows]) for shape in shapes]
-
-
-def _spread(shape: Shape, problem: Problem) -> np.ndarray:
-    raw = shape.raw
-    out = np.zeros((problem.stack.size, raw.shape[1]))
-    out[shape.rows] = raw
-    return out
+    return [replace(shape, columns=problem.white.of(shape.rows)(shape.raw)) for shape in shapes]
 
 
 def _without_unknown(problem: Problem, leading: Sequence[Seen]) -> tuple[Problem, float]:
     """The problem with unknown functions of some shapes and sizes integrated out, and half the ln determinant."""
     laws = []
     for s in leading:
-        white = problem.white(s.size * _spread(s.shape, problem))
-        channels = [c for c in problem.stack.channels if c.name in s.shape.channels]
-        laws += [law_error(c.rows, white[c.rows]) for c in channels]
+        rows, white = s.shape.rows, problem.white.of(s.shape.rows)(s.size * s.shape.raw)
+        own = [c.rows for c in problem.stack.channels if c.name in s.shape.channels]
+        laws += [law_error(at, white[(at.start <= rows) & (rows < at.stop)]) for at in own]
     return _without_laws(problem, laws)
 
 

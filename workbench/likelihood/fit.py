@@ -29,6 +29,8 @@ ITERATIONS = 15
 CLOSE = 1e-4  # change of the objective [nats] at which a fit is done
 ROUND_CLOSE = 1e-2  # change of the objective [nats] that new slopes may still bring when it is
 TRIALS = ((1.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.05, 0.0), (1.0, 1.0), (1.0, 30.0))  # length of a step, its damping
+NEAR = 0.1  # move of an effect's standard normal number, up to which its slopes are taken for those a step before
+POOR = 0.25  # of what a step promises, below which its slopes are not those of the place
 ROUNDS = 4  # times the slopes of the nuisances are taken anew
 FAR = 20.0  # a standard normal number is not followed beyond
 
@@ -196,25 +198,40 @@ class _Search:
         return self.problem.white(slopes)
 
     def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray, close: float = CLOSE) -> tuple[np.ndarray, float]:
-        """Where steps with these slopes end, the last of which gains less than ``close`` [nats], and what the objective
-        gains by all of them [nats]."""
-        residual, nuisance_slopes = self.residual(p), self.problem.white(nuisance_slopes)
+        """Where a step with these slopes promises or gains less than ``close`` [nats], or little of what it promises,
+        and what the objective gains by all of them [nats]. The slopes by the effects are taken anew where these have
+        moved, and before a step is believed to be the last."""
+        nuisance_slopes, residual = self.problem.white(nuisance_slopes), self.residual(p)
         first = value = self.objective(p, residual)
+        taken_at, is_last = p, True
         for _ in range(ITERATIONS):
-            slopes = np.hstack([nuisance_slopes, self.effect_slopes(p)])
-            p, residual, new = self._step(p, residual, value, slopes)
-            value, gain = new, value - new
-            if gain < close:
+            is_new = is_last or self._is_far(p, taken_at)
+            if is_new:
+                taken_at, slopes = p, np.hstack([nuisance_slopes, self.effect_slopes(p)])
+            normal, downhill = self._normal_equations(p, residual, slopes)
+            promised = gain = 0.5 * float(downhill @ np.linalg.solve(normal, downhill))
+            if promised >= close:
+                p, residual, new = self._step(p, residual, value, normal, downhill)
+                value, gain = new, value - new
+            is_last = gain < max(close, POOR * promised)
+            if is_last and is_new:
                 break
         return p, first - value
 
-    def _step(self, p, residual, value, slopes):
+    def _is_far(self, p: np.ndarray, other: np.ndarray) -> bool:
+        return bool(np.any(np.abs(p - other)[self.m :] > NEAR))
+
+    def _normal_equations(
+        self, p: np.ndarray, residual: np.ndarray, slopes: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Curvature of the objective as Gauss and Newton have it, and minus its gradient."""
+        weights, prior = self.problem.weights(residual), self.prior_curvature(p)
+        normal = slopes.T @ (weights[:, None] * slopes) + np.diag(prior)
+        return normal, slopes.T @ (weights * residual) - prior * p
+
+    def _step(self, p, residual, value, normal, downhill):
         """Gauss-Newton, the step shortened until the objective falls: that stays on a ridge between an effect and a
         tolerance; then damped."""
-        weights = self.problem.weights(residual)
-        prior = self.prior_curvature(p)
-        normal = slopes.T @ (weights[:, None] * slopes) + np.diag(prior)
-        downhill = slopes.T @ (weights * residual) - prior * p
         for length, damping in TRIALS:
             move = length * np.linalg.solve(normal + damping * np.diag(np.diag(normal)), downhill)
             trial = p + move

@@ -167,7 +167,7 @@ def _shape(
     """A shape of channels, its prior still open."""
     rows = np.concatenate([np.arange(c.rows.start, c.rows.stop) for c in group])
     names = tuple(channel.name for channel in group)
-    return Shape(names, law, of, detail, rows, _whitened(stack, white, rows, _blocks(parts)), parts, 0.0)
+    return Shape(names, law, of, detail, rows, white.of(rows)(_blocks(parts)), parts, 0.0)
 
 
 def _rms(stack: Stack, channel: Channel) -> float:
@@ -182,12 +182,6 @@ def _blocks(parts: Sequence[np.ndarray]) -> np.ndarray:
         out[row : row + len(part), column : column + part.shape[1]] = part
         row, column = row + len(part), column + part.shape[1]
     return out
-
-
-def _whitened(stack: Stack, white: Whitener, rows: np.ndarray, raw: np.ndarray) -> np.ndarray:
-    spread = np.zeros((stack.size, raw.shape[1]))
-    spread[rows] = raw
-    return white(spread)[rows]
 
 
 def _alone(table: Table) -> list[str]:
@@ -260,15 +254,16 @@ def _kernel(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def seen(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarray) -> tuple[Seen, ...]:
     """Every shape beside an explanation. background: its columns (n, m);  residual: whitened (n,)"""
-    root = np.linalg.cholesky(np.eye(background.shape[1]) + background.T @ background)
-    own = np.linalg.solve(root, background.T @ residual)
-    return tuple(Seen(shape, _gains(shape, background, residual, root, own)) for shape in shapes)
+    turned = np.linalg.inv(np.linalg.cholesky(np.eye(background.shape[1]) + background.T @ background))
+    own = turned @ (background.T @ residual)
+    taken = turned @ background.T
+    return tuple(Seen(shape, _gains(shape, taken, residual, own)) for shape in shapes)
 
 
-def _gains(shape: Shape, background: np.ndarray, residual: np.ndarray, root: np.ndarray, own: np.ndarray) -> np.ndarray:
+def _gains(shape: Shape, taken: np.ndarray, residual: np.ndarray, own: np.ndarray) -> np.ndarray:
     """1/2 sum over the principal shapes of (a^2 c^2 / (1 + a^2 e) - ln(1 + a^2 e)) at every size a (sizes,)."""
     x = shape.columns
-    beside = np.linalg.solve(root, background[shape.rows].T @ x)
+    beside = taken[:, shape.rows] @ x
     energy, turn = np.linalg.eigh(x.T @ x - beside.T @ beside)
     pull = turn.T @ (x.T @ residual[shape.rows] - beside.T @ own)
     a2e = np.square(SIZES)[:, None] * np.maximum(energy, 0.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -38,6 +39,10 @@ class LawError:
         """What ``apply`` takes of the products of rows of the channel (n_c, m) with one another, as the products of
         these (q, m): Z^T Z - apply(Z)^T apply(Z)."""
         return (self.size / np.sqrt(1 + self.size**2) * self.directions).T @ z
+
+
+def _length(rows: slice) -> int:
+    return rows.stop - rows.start
 
 
 def law_error(rows: slice, wrong: np.ndarray) -> LawError:
@@ -76,6 +81,17 @@ class Whitener:
         for law in self.laws:
             z[law.rows] = law.apply(z[law.rows])
         return z
+
+    def of(self, rows: np.ndarray) -> Whitener:
+        """That of the rows of some channels alone, each whole (k,)."""
+        own = (replace(law, rows=slice(first, first + _length(law.rows))) for law, first in self._among(rows))
+        return Whitener(self.sigma[rows], self.rho[rows], tuple(own))
+
+    def _among(self, rows: np.ndarray) -> Iterator[tuple[LawError, int]]:
+        """Errors of laws of some of the rows, and the place of their first row among these."""
+        for law in self.laws:
+            for first in np.flatnonzero(rows == law.rows.start):
+                yield law, int(first)
 
     def beyond(self, other: Whitener) -> tuple[LawError, ...]:
         """The errors of laws that this has besides those of another, which it must begin with."""

@@ -26,7 +26,7 @@ from workbench.errors import WorkbenchError
 from workbench.models.machine.answers import Answers, load_angles
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.drag import USUAL_SHEET, _region_waves, _torques, iron_torques
-from workbench.models.machine.kinds import dq_machine, loaded_states
+from workbench.models.machine.kinds import KINDS, dq_machine, loaded_states
 
 SPEED = np.array([-150.0, 20.0, 80.0, 300.0])
 AT = {"angle_mech": np.full(1, LOADED.angle)} | {f"i_{x}": np.full(1, i) for x, i in zip("abc", LOADED.currents)}
@@ -213,3 +213,33 @@ def test_inductances_are_the_mean_over_the_slots(slots, pairs):
     machine = replace(drawn().machine, slots=slots, pole_pairs=pairs)
     order = lcm(slots, 2 * pairs)
     assert abs(np.exp(1j * order * load_angles(replace(drawn(), machine=machine))).mean()) < 1e-9
+
+
+OTHER = {
+    **dict.fromkeys(("dry_friction", "viscous_friction", "windage", "undeclared_iron_loss", "recorder_loss"), 0.1),
+    **{"iron_loss": USUAL_SHEET, "iron_loss_factor": 1.3, "shorted_turns": 1.0, "shorted_coil": 2},
+    **{"phase_resistance": (0.01, 0.02, 0.03), "lead_resistance": (0.1, 0.2, 0.3), "cogging_of_mesh": 1.2},
+    "end_winding_inductance": 1e-5,
+}
+SUMMANDS = [(kind, one) for kind, summands in KINDS.items() for one in summands if one.unseen]
+
+
+@pytest.mark.parametrize(("kind", "summand"), SUMMANDS, ids=[kind for kind, _ in SUMMANDS])
+def test_what_is_said_to_be_unseen_has_no_say(kind, summand):
+    """To the last bit, everything that the summand does not see changed at once."""
+    at = AT | {"speed": np.full(1, 50.0), "direction": np.ones(1)}
+    changed = replace(drawn(), **{name: OTHER[name] for name in summand.unseen})
+    as_drawn, other = (summand.answer(Answers(surrogate(), design), at) for design in (drawn(), changed))
+    assert as_drawn.keys() == other.keys()
+    assert all(np.array_equal(as_drawn[name], other[name]) for name in as_drawn)
+
+
+@pytest.mark.parametrize("kind", ("cogging", "locked_rotor"))
+def test_what_brakes_asks_for_no_field_anew(kind):
+    """The torque of the field is kept; the brake alone is worked out again, and adds up."""
+    model, at = replace(bench()), {**AT, "direction": np.ones(1)}
+    still = model.respond(drawn(), kind, at)["torque"]
+    before = model._remembered.cache_info().misses
+    braked = model.respond(BearingFriction(level=0.01).on_design(drawn()), kind, at)["torque"]
+    assert model._remembered.cache_info().misses == before + 1
+    assert_allclose(braked - still, -0.01, rtol=1e-9)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import hypot, sqrt
 
 import numpy as np
@@ -15,6 +16,12 @@ from materials.conductor import COPPER
 from workbench.models.machine.spectra import averaged, evaluated, half_rate, slope
 from workbench.models.machine.surrogate import Surrogate
 
+# What of a design does not change its field, by what it is about.
+BRAKES = ("dry_friction", "viscous_friction", "windage", "iron_loss", "iron_loss_factor", "undeclared_iron_loss")
+BRAKES += ("shorted_turns", "shorted_coil")
+RESISTANCES = ("phase_resistance", "lead_resistance")
+_AROUND_FIELD = ("end_winding_inductance", "cogging_of_mesh", "end_leakage", "rotor_turn", "segment_angles")
+_AROUND_FIELD += ("recorder_loss",)
 _FEWEST_ANGLES = 2  # rotor positions of a sixth of an electrical period; their mean has no sixth electrical order
 _PROBE = 1e-3  # A, of an inductance; without current the surrogate is linear in it
 
@@ -33,16 +40,13 @@ class Answers:
         Of segments only the mean square of their angles counts for small angles: as of an even skew.
         """
         d, drawn = self.design, self.surrogate.nominal
-        names = ("phase_resistance", "lead_resistance", "end_winding_inductance", "dry_friction", "viscous_friction")
-        names += ("windage", "iron_loss", "iron_loss_factor", "undeclared_iron_loss", "cogging_of_mesh", "end_leakage")
-        names += ("rotor_turn", "segment_angles", "shorted_turns", "shorted_coil", "recorder_loss")
         stepped = (angle * sqrt(n**2 - 1) for n, angle in enumerate(d.segment_angles, 2))
-        return replace(d, **{name: getattr(drawn, name) for name in names}, skew=hypot(d.skew, *stepped))
+        return with_parts_of(drawn, replace(d, skew=hypot(d.skew, *stepped)), (*BRAKES, *RESISTANCES, *_AROUND_FIELD))
 
     @cached_property
     def spectrum(self) -> np.ndarray:
         """Of torque and phase flux linkages per metre over the revolution, skewed (4, orders)."""
-        found = self.surrogate.spectrum(self.in_field)
+        found = self.surrogate.spectrum(self.in_field).copy()
         found[0] += (self.design.cogging_of_mesh - 1.0) * self.surrogate.no_load[0]
         return self._along_the_length(found)
 
@@ -69,7 +73,7 @@ class Answers:
 
     def flux_slopes(self, angle: np.ndarray) -> np.ndarray:
         """d psi / d angle of the phases [Wb] (3, n), as a recorder shows them."""
-        slopes = slope(self.spectrum[1:]) * self._passed(half_rate(angle))
+        slopes = slope(self.spectrum[1:]) * self._passed(_half_rate(np.ascontiguousarray(angle).tobytes()))
         return self.design.length * self.kept * evaluated(slopes, self._on_the_rotor(angle))
 
     def _passed(self, half: float) -> np.ndarray:
@@ -135,6 +139,17 @@ class Answers:
         warm = 1.0 + COPPER.temperature_coefficient * (winding - COPPER.reference_temperature)
         warm = warm * at.get("resistance_factor", 1.0)
         return warm[:, None] * np.array(self.design.phase_resistance) + np.array(self.design.lead_resistance)
+
+
+@lru_cache(maxsize=32)
+def _half_rate(angle: bytes) -> float:
+    """Of angles given as the bytes of their array: every fit asks for the same few tables."""
+    return half_rate(np.frombuffer(angle))
+
+
+def with_parts_of(drawn: MachineAsBuilt, design: MachineAsBuilt, names: Sequence[str]) -> MachineAsBuilt:
+    """The design with what has these names as drawn."""
+    return replace(design, **{name: getattr(drawn, name) for name in names})
 
 
 def load_angles(design: MachineAsBuilt) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from math import pi, sqrt
 
@@ -15,7 +16,7 @@ from units import DEGREE
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamental, by_phase, phase_currents
-from workbench.models.machine.answers import Answers, load_angles
+from workbench.models.machine.answers import BRAKES, RESISTANCES, Answers, load_angles, with_parts_of
 from workbench.models.machine.drag import lost_torque
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.surrogate import Surrogate
@@ -32,11 +33,11 @@ def _back_emf(answers: Answers, at: Columns) -> Found:
 
 
 def _cogging(answers: Answers, at: Columns) -> Found:
-    return {"torque": answers.cogging(at["angle_mech"]) + lost_torque(answers, at)}
+    return {"torque": answers.cogging(at["angle_mech"])}
 
 
 def _locked_rotor(answers: Answers, at: Columns) -> Found:
-    return {"torque": answers.loaded_torque(at["angle_mech"], phase_currents(at)) + lost_torque(answers, at)}
+    return {"torque": answers.loaded_torque(at["angle_mech"], phase_currents(at))}
 
 
 def _flux_linkage(answers: Answers, at: Columns) -> Found:
@@ -117,18 +118,42 @@ def _mean_resistance(answers: Answers, at: Columns) -> np.ndarray:
     return answers.resistances(at).mean(axis=1)
 
 
-KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
-    "back_emf": _back_emf,
-    "cogging": _cogging,
-    "locked_rotor": _locked_rotor,
-    "flux_linkage": _flux_linkage,
-    "inductance": _inductance,
-    "phase_resistance": _phase_resistance,
-    "drag": _drag,
-    "short_circuit": _short_circuit,
-    "no_load": by_its_fundamental("no_load", dq_machine, _mean_resistance),
-    "dyno_map": by_its_fundamental("dyno_map", dq_machine, _mean_resistance),
+@dataclass(frozen=True)
+class Summand:
+    """What adds up to a reading. answer: from the machine and the conditions;  unseen: what of a design has no say in
+    it: designs that differ in nothing else have one answer, which is worked out once"""
+
+    answer: Callable[[Answers, Columns], Found]
+    unseen: tuple[str, ...] = ()
+
+    def seen(self, design: MachineAsBuilt, drawn: MachineAsBuilt) -> MachineAsBuilt:
+        """The design with what has no say as drawn."""
+        return with_parts_of(drawn, design, self.unseen) if self.unseen else design
+
+
+_UNSEEN_BY_FLUX = (*BRAKES, *RESISTANCES, "cogging_of_mesh")
+_UNSEEN_BY_TORQUE = (*BRAKES, *RESISTANCES, "recorder_loss", "end_winding_inductance")
+_BRAKE = Summand(_drag)
+
+KINDS: Mapping[str, tuple[Summand, ...]] = {
+    "back_emf": (Summand(_back_emf, _UNSEEN_BY_FLUX),),
+    "cogging": (Summand(_cogging, _UNSEEN_BY_TORQUE), _BRAKE),
+    "locked_rotor": (Summand(_locked_rotor, _UNSEEN_BY_TORQUE), _BRAKE),
+    "flux_linkage": (Summand(_flux_linkage, _UNSEEN_BY_FLUX),),
+    "inductance": (Summand(_inductance, _UNSEEN_BY_FLUX),),
+    "phase_resistance": (Summand(_phase_resistance),),
+    "drag": (_BRAKE,),
+    "short_circuit": (Summand(_short_circuit),),
+    "no_load": (Summand(by_its_fundamental("no_load", dq_machine, _mean_resistance)),),
+    "dyno_map": (Summand(by_its_fundamental("dyno_map", dq_machine, _mean_resistance)),),
 }
+
+
+def added_up(found: Sequence[Mapping[str, np.ndarray]]) -> Found:
+    """Readings from the answers of all summands, which have the same names."""
+    return {name: sum(one[name] for one in found) for name in found[0]}
+
+
 _WITH_CURRENTS = ("locked_rotor", "flux_linkage", "inductance")
 _WITH_INDUCTANCE = ("short_circuit", "no_load", "dyno_map")
 

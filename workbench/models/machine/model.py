@@ -42,7 +42,7 @@ from workbench.models.machine.answers import Answers
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.field import MachineField
-from workbench.models.machine.kinds import KINDS, beyond_states, loaded_states
+from workbench.models.machine.kinds import KINDS, Summand, added_up, beyond_states, loaded_states
 from workbench.models.machine.numerical import left_open, shapes_of
 from workbench.models.machine.options import options
 from workbench.models.machine.rough import ROUGH, RoughMachine, RoughSurrogate
@@ -50,7 +50,7 @@ from workbench.models.machine.surrogate import Surrogate
 from workbench.models.magnet_temperature import at_magnet_temperatures
 
 CACHE = Path("results") / "cache"
-_REMEMBERED = 24  # answers
+_REMEMBERED = 48  # answers
 _ON_A_MESH = ("back_emf", "cogging", "locked_rotor", "flux_linkage", "inductance")  # kinds that a mesh has a say in
 
 
@@ -103,16 +103,16 @@ class MachineBench(BaseModel):
             raise WorkbenchError("the machine bench answers after prepare: use prepared(design, tables)")
         if kind not in KINDS:
             raise WorkbenchError(f"the machine bench has no measurement kind {kind}: use one of {', '.join(KINDS)}")
-        return dict(self._remembered(design, kind, _Asked(conditions)))
+        asked, drawn = _Asked(conditions), self.surrogate.nominal
+        return added_up([self._remembered(summand.seen(design, drawn), summand, asked) for summand in KINDS[kind]])
 
     @cached_property
     def _remembered(self) -> Callable[..., Mapping[str, np.ndarray]]:
-        """An error of an instrument leaves the machine as it is: many fits ask the same again."""
+        """An error of an instrument leaves the machine as it is, and friction its field: many fits ask the same
+        again."""
 
-        def answer(design: MachineAsBuilt, kind: str, asked: _Asked) -> Mapping[str, np.ndarray]:
-            return at_magnet_temperatures(
-                lambda warm: KINDS[kind](Answers(self.surrogate, warm), asked.columns), design, asked.columns
-            )
+        def answer(design: MachineAsBuilt, summand: Summand, asked: _Asked) -> Mapping[str, np.ndarray]:
+            return _answered(summand, self.surrogate, design, asked.columns)
 
         return lru_cache(maxsize=_REMEMBERED)(answer)
 
@@ -160,8 +160,12 @@ class MachineBench(BaseModel):
 
 
 def _drawn_answers(surrogate: Surrogate, table: Table) -> Mapping[str, np.ndarray]:
-    at = table.conditions
-    return at_magnet_temperatures(lambda warm: KINDS[table.kind](Answers(surrogate, warm), at), surrogate.nominal, at)
+    drawn, at = surrogate.nominal, table.conditions
+    return added_up([_answered(summand, surrogate, drawn, at) for summand in KINDS[table.kind]])
+
+
+def _answered(summand: Summand, surrogate: Surrogate, design: MachineAsBuilt, at: Columns) -> Mapping[str, np.ndarray]:
+    return at_magnet_temperatures(lambda warm: summand.answer(Answers(surrogate, warm), at), design, at)
 
 
 class _Asked:

@@ -145,9 +145,18 @@ class Surrogate:
     # ---- without current -----------------------------------------------------------------------------------------
 
     def spectrum(self, design: MachineAsBuilt) -> np.ndarray:
-        """Fourier coefficients over the revolution of torque and phase flux linkages per metre (4, orders)."""
-        base = self._projection(design.turns) @ self.no_load
-        return base + _cut(self._idle_added(design), self.no_load.shape[1])
+        """Fourier coefficients over the revolution of torque and phase flux linkages per metre (4, orders), kept."""
+        return self._spectra(design)
+
+    @cached_property
+    def _spectra(self) -> Callable[[MachineAsBuilt], np.ndarray]:
+        """Tables ask for one design in turn, at the same temperatures of its magnets."""
+
+        def found(design: MachineAsBuilt) -> np.ndarray:
+            base = self._projection(design.turns) @ self.no_load
+            return base + _cut(self._idle_added(design), self.no_load.shape[1])
+
+        return lru_cache(maxsize=_REMEMBERED)(found)
 
     @cached_property
     def _idle_added(self) -> Callable[[MachineAsBuilt], np.ndarray]:
@@ -183,7 +192,7 @@ class Surrogate:
 
         Raises WorkbenchError where no solved state is near.
         """
-        states, which = self.states, self._nearest(angle, currents)
+        states, which = self.states, self._places(angle.tobytes(), currents.tobytes())
         apart = _wrapped(angle - states.states[which, 0])
         centre = states.states[which, 1:]
         power = (centre**2).sum(1)
@@ -193,12 +202,17 @@ class Surrogate:
         turned = turned_by(apart + states.turn, design.skew) - turned_by(np.full(1, states.turn), 0.0)
         sample = sample + np.einsum("nk,knq->nq", turned, states.angle[:, which])
         without = evaluated(averaged(self.no_load, design.skew), angle)
-        sample = sample + (without - evaluated(self.no_load, states.states[which, 0])).T
+        sample = sample + without.T - self._without_current[which]
         solved = self._ampere_turns(self._centre.turns, centre * (1 + scale)[:, None])
         rest = self._ampere_turns(design.turns, currents) - solved
         sample = sample + np.einsum("nc,ncq->nq", rest, states.coils[which])
         added = self._loaded_added(design)
         return sample @ self._projection(design.turns).T + added[:, which].T
+
+    @cached_property
+    def _without_current(self) -> np.ndarray:
+        """Samples at the angles of the loaded states without current (s, 1 + coils)."""
+        return evaluated(self.no_load, self.states.states[:, 0]).T
 
     def _ampere_turns(self, turns: tuple[float, ...], currents: np.ndarray) -> np.ndarray:
         """Of every coil (n, coils) for phase currents (n, 3)."""
@@ -207,6 +221,15 @@ class Surrogate:
     def beyond_states(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         """How far angles lie beyond the states that they are answered from (n,) [rad]."""
         return _wrapped(angle - self.states.states[self._nearest(angle, currents), 0])
+
+    @cached_property
+    def _places(self) -> Callable[[bytes, bytes], np.ndarray]:
+        """Of the nearest states, of angles and currents given as the bytes of their arrays."""
+
+        def found(angle: bytes, currents: bytes) -> np.ndarray:
+            return self._nearest(np.frombuffer(angle), np.frombuffer(currents).reshape(-1, 3))
+
+        return lru_cache(maxsize=_REMEMBERED)(found)
 
     def _nearest(self, angle: np.ndarray, currents: np.ndarray) -> np.ndarray:
         if self.states is None:

@@ -237,12 +237,12 @@ class Terms:
         return scaled + self._sum(self.steel, p)
 
     def _sum(self, parts: Sequence[tuple[Part, np.ndarray]], p: np.ndarray) -> np.ndarray:
-        total = np.zeros_like(self.drawn)
+        total = np.zeros(self.drawn.shape, self.drawn.dtype)
+        numbers = total.reshape(-1).view(float)
         for part, rows in parts:
             weights = part.weights(p)
             if weights is not None:
-                used = np.flatnonzero(weights)
-                total += np.einsum("t,tqn->qn", weights[used], rows[used])
+                numbers += weights @ rows.reshape(len(rows), -1).view(float)
         return total
 
     def each(self, form: Callable[[np.ndarray], np.ndarray]) -> Terms:

@@ -1,0 +1,69 @@
+"""What a fit by Gauss and Newton asks of the model, and where it ends."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from effects.base import DesignEffect
+from effects.parameter import parameter
+from effects.prior import Normal
+from workbench.likelihood.fit import Problem, fitted
+from workbench.likelihood.whitening import Whitener
+
+ROWS = 40
+PLACES = np.linspace(-1.0, 1.0, ROWS)
+
+
+@dataclass(frozen=True)
+class Bent(DesignEffect):
+    title = "a size"
+    size: float = parameter(0.0, "1", prior=Normal(1.0), low=-10.0, high=10.0, source="made up")
+
+
+@dataclass
+class Readings:
+    """Answers by a formula of x and the size; how often it was asked. No numerical error."""
+
+    formula: object
+    asked: int = 0
+    shapes: np.ndarray = field(default_factory=lambda: np.zeros((ROWS, 0)))
+
+    def predict(self, x, effects=()):
+        self.asked += 1
+        return self.formula(x[0], effects[0].size if effects else 0.0)
+
+
+def problem(formula, true):
+    predictor = Readings(formula)
+    channels = (SimpleNamespace(rows=slice(0, ROWS), size=ROWS),)
+    stack = SimpleNamespace(y=formula(*true), size=ROWS, channels=channels)
+    predictor.stack = stack
+    return Problem(predictor, stack, Whitener(np.full(ROWS, 1e-2), np.zeros(ROWS)), np.array([20.0]), np.zeros(1))
+
+
+def fit(formula, true):
+    asked = problem(formula, true)
+    return fitted(asked, (Bent(),), np.zeros(1), np.zeros(1)), asked.predictor.asked
+
+
+def test_a_linear_model_is_asked_eight_times():
+    """Value, slopes by both, one step, a slope where it ends, and slopes by both once more: nothing is promised
+    there, so that no other step is tried."""
+    found, asked = fit(lambda x, size: x * PLACES + size * PLACES**2, (0.3, -0.8))
+    assert_allclose((found.x[0], found.z[0]), (0.3, -0.8), atol=1e-3)
+    assert asked <= 8
+
+
+def test_a_model_bent_in_the_size_is_followed_to_its_maximum():
+    found, asked = fit(lambda x, size: x * PLACES + np.exp(size * PLACES), (0.3, 1.4))
+    assert_allclose((found.x[0], found.z[0]), (0.3, 1.4), atol=1e-3)
+    assert asked <= 16
+
+
+def test_a_model_bent_in_a_tolerance_gets_new_slopes_instead_of_short_steps():
+    """With slopes of the drawing a step gains little of what it promises: they are taken anew where it ended."""
+    found, asked = fit(lambda x, size: np.exp(2 * x * PLACES) + size * PLACES**2, (1.2, 0.5))
+    assert_allclose((found.x[0], found.z[0]), (1.2, 0.5), atol=1e-3)
+    assert asked <= 40
