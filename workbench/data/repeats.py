@@ -1,4 +1,4 @@
-"""What belongs together in a table: rows of one scan, and readings of several repeats at the same conditions."""
+"""What belongs together in a table: rows of one scan that follow, and readings of several repeats at one place."""
 
 from __future__ import annotations
 
@@ -8,11 +8,6 @@ from scipy.spatial import cKDTree
 from workbench.data.table import Table
 
 LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
-
-
-def scans_of(table: Table) -> list[np.ndarray]:
-    """Rows of every scan of every repeat."""
-    return list(table.scans)
 
 
 def follows(table: Table) -> np.ndarray:

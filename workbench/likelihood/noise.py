@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from workbench.data.repeats import follows, matched_rows, scans_of
+from workbench.data.repeats import follows, matched_rows
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 
@@ -166,7 +166,7 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
 def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
     """The deviations less mean and slope of every scan that is long enough to have them."""
     u, off, free = stack.u[channel.rows], np.zeros(channel.size), np.ones(channel.size)
-    for rows in scans_of(stack.tables[channel.table]):
+    for rows in stack.tables[channel.table].scans:
         known = rows[np.isfinite(whole.spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
@@ -197,7 +197,7 @@ class _Scans:
 
 def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _Scans:
     found, noise = [], []
-    for rows in scans_of(table):
+    for rows in table.scans:
         known = rows[np.isfinite(z[rows])]
         if len(known) >= SHORTEST_SCAN:
             shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
@@ -260,7 +260,7 @@ def _correlations(stack: Stack, deviations, scales) -> list[float]:
 
 def _lost_by_lines(table: Table, rho: float) -> float:
     """By how much a line through every scan makes the correlation of neighbours look smaller, 2 (1 + 2 rho) / n."""
-    sizes = [len(rows) for rows in scans_of(table) if len(rows) >= SHORTEST_SCAN]
+    sizes = [len(rows) for rows in table.scans if len(rows) >= SHORTEST_SCAN]
     return 2 * (1 + 2 * max(rho, 0.0)) / float(np.mean(sizes)) if sizes else 0.0
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from workbench.data.repeats import follows, scans_of
+from workbench.data.repeats import follows
 from workbench.data.stack import Channel, Stack
 from workbench.likelihood.noise import ChannelNoise, Noise, scan_shapes
 
@@ -127,7 +127,7 @@ def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitene
 def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise) -> np.ndarray:
     """What every scan of a channel may be off by as a whole, an offset and a slope each (rows, 2 scans), straight
     through its wild readings too."""
-    scans = scans_of(stack.tables[channel.table]) if channel.size and found.scans else []
+    scans = stack.tables[channel.table].scans if channel.size and found.scans else ()
     columns = np.zeros((channel.size, 2 * len(scans)))
     for k, rows in enumerate(scans):
         u = stack.u[channel.rows][rows]

@@ -243,3 +243,12 @@ def test_what_brakes_asks_for_no_field_anew(kind):
     braked = model.respond(BearingFriction(level=0.01).on_design(drawn()), kind, at)["torque"]
     assert model._remembered.cache_info().misses == before + 1
     assert_allclose(braked - still, -0.01, rtol=1e-9)
+
+
+def test_whole_numbers_are_conditions_too():
+    """What is kept by its bytes must not take an integer for a float."""
+    whole = {"angle_mech": np.array([0, 1, 2, 3, 5]), "speed": np.full(5, 50)}
+    design = replace(drawn(), recorder_loss=0.3)  # by how far readings lie apart
+    found = bench().respond(design, "back_emf", whole)
+    expected = bench().respond(design, "back_emf", {name: values.astype(float) for name, values in whole.items()})
+    assert all(np.array_equal(found[name], expected[name]) for name in expected)

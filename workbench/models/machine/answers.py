@@ -73,7 +73,7 @@ class Answers:
 
     def flux_slopes(self, angle: np.ndarray) -> np.ndarray:
         """d psi / d angle of the phases [Wb] (3, n), as a recorder shows them."""
-        slopes = slope(self.spectrum[1:]) * self._passed(_half_rate(np.ascontiguousarray(angle).tobytes()))
+        slopes = slope(self.spectrum[1:]) * self._passed(_half_rate(np.asarray(angle, dtype=float).tobytes()))
         return self.design.length * self.kept * evaluated(slopes, self._on_the_rotor(angle))
 
     def _passed(self, half: float) -> np.ndarray:

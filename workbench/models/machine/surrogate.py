@@ -150,11 +150,13 @@ class Surrogate:
 
     @cached_property
     def _spectra(self) -> Callable[[MachineAsBuilt], np.ndarray]:
-        """Tables ask for one design in turn, at the same temperatures of its magnets."""
+        """Tables ask for one design in turn, at the same temperatures of its magnets; what all share is read only."""
 
         def found(design: MachineAsBuilt) -> np.ndarray:
-            base = self._projection(design.turns) @ self.no_load
-            return base + _cut(self._idle_added(design), self.no_load.shape[1])
+            spectrum = self._projection(design.turns) @ self.no_load
+            spectrum = spectrum + _cut(self._idle_added(design), self.no_load.shape[1])
+            spectrum.flags.writeable = False
+            return spectrum
 
         return lru_cache(maxsize=_REMEMBERED)(found)
 
@@ -192,6 +194,7 @@ class Surrogate:
 
         Raises WorkbenchError where no solved state is near.
         """
+        angle, currents = np.asarray(angle, dtype=float), np.asarray(currents, dtype=float)
         states, which = self.states, self._places(angle.tobytes(), currents.tobytes())
         apart = _wrapped(angle - states.states[which, 0])
         centre = states.states[which, 1:]
