@@ -84,11 +84,11 @@ def _height(hypothesis: Hypothesis) -> float:
 
 
 def singles(folder: Path, bench: str) -> Iterator[tuple[dict[str, str], float]]:
-    """Tasks of the campaigns of a bench that hide one visible effect, with its visibility."""
+    """Tasks of the campaigns of a bench that hide one effect of a visibility in ``BANDS``, with that."""
     answers = json.loads((folder / bench / ANSWERS).read_text(encoding="utf-8"))
     for name, answer in answers.items():
         for effect, seen in answer["visibility"].items():
-            if answer["group"] == "single" and seen >= VISIBLE:
+            if answer["group"] == "single" and BANDS[0] <= seen < BANDS[-1]:
                 yield {"folder": str(folder / bench / name), "effect": effect}, seen
 
 
