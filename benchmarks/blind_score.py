@@ -59,6 +59,28 @@ class Code:
         return hashlib.sha256(b"".join(path.read_bytes() for path in files) + self.holdout.encode()).hexdigest()
 
 
+@dataclass(frozen=True)
+class Some:
+    """Which campaigns of a folder are asked for. most: of every bench and group, all where None"""
+
+    benches: Sequence[str] = BENCHES
+    groups: Sequence[str] = GROUPS
+    most: int | None = None
+
+    def of(self, folder: Path) -> dict[str, dict]:
+        """Their answers by bench/campaign."""
+        found = {}
+        for path in sorted(folder.glob(f"*/{ANSWERS}")):
+            if path.parent.name in self.benches:
+                answers = json.loads(path.read_text(encoding="utf-8"))
+                found |= {f"{path.parent.name}/{name}": answers[name] for name in self._names(answers)}
+        return found
+
+    def _names(self, answers: Mapping[str, Mapping]) -> list[str]:
+        groups = {group: sorted(n for n in answers if answers[n]["group"] == group) for group in self.groups}
+        return sorted(name for names in groups.values() for name in names[: self.most])
+
+
 # ---- one campaign ----------------------------------------------------------------------------------------------------
 
 
@@ -126,12 +148,9 @@ def _interval(parameters: Mapping[str, Mapping]) -> tuple[float, float]:
 # ---- many ------------------------------------------------------------------------------------------------------------
 
 
-def cases_of(folder: Path, code: Code, checkpoint: Path, pool: Pool, most: int | None = None) -> list[dict]:
-    """All campaigns of a folder diagnosed and laid beside their answers. most: of every bench and group"""
-    answers = {
-        path.parent.name: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob(f"*/{ANSWERS}"))
-    }
-    chosen = {f"{bench}/{name}": answers[bench][name] for bench in answers for name in _first(answers[bench], most)}
+def cases_of(folder: Path, code: Code, checkpoint: Path, pool: Pool, some: Some = Some()) -> list[dict]:
+    """Campaigns of a folder diagnosed and laid beside their answers; all where not said which."""
+    chosen = some.of(folder)
     tasks = {
         key: {"folder": str((folder / key).resolve()), "code": str(code.folder.resolve()), "holdout": code.holdout}
         for key in chosen
@@ -140,17 +159,6 @@ def cases_of(folder: Path, code: Code, checkpoint: Path, pool: Pool, most: int |
     workers = PooledWorkers("blind score", pool, lambda what: Checkpoint(checkpoint, inputs))
     said = workers.map("diagnoses", diagnosed, tasks)
     return [case_of(*key.split("/"), answer, said[key]) for key, answer in chosen.items()]
-
-
-def _first(answers: Mapping[str, Mapping], most: int | None) -> list[str]:
-    """Names of the first campaigns of every group, or all."""
-    counts: dict[str, int] = {}
-    names = []
-    for name in sorted(answers):
-        group = answers[name]["group"]
-        counts[group] = counts.get(group, 0) + 1
-        names += [name] if most is None or counts[group] <= most else []
-    return names
 
 
 def sets_of(cases: Sequence[Mapping]) -> dict[str, list[Metric]]:
@@ -279,9 +287,8 @@ def _run(chosen: argparse.Namespace, code: Code) -> None:
     start = perf_counter()
     folder = _campaigns(chosen)
     name = hashlib.sha256(f"{code.folder.resolve()} {code.holdout} {folder.resolve()}".encode()).hexdigest()[:12]
-    cases = cases_of(folder, code, WORK / f"diagnoses-{name}.jsonl", Processes(chosen.jobs), chosen.most)
-    benches, groups = chosen.bench or BENCHES, chosen.group or GROUPS
-    cases = [case for case in cases if case["bench"] in benches and case["group"] in groups]
+    some = Some(chosen.bench or BENCHES, chosen.group or GROUPS, chosen.most)
+    cases = cases_of(folder, code, WORK / f"diagnoses-{name}.jsonl", Processes(chosen.jobs), some)
     for case in cases if chosen.tune or chosen.folders else ():
         print(line_of(case))
     print(table_of(sets_of(cases)))

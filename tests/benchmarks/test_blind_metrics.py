@@ -20,7 +20,7 @@ from benchmarks.blind_metrics import (
     score,
     statements,
 )
-from benchmarks.blind_score import Code, case_of, cases_of, table_of
+from benchmarks.blind_score import Code, Some, case_of, cases_of, table_of
 from processes import Processes
 
 
@@ -159,6 +159,15 @@ def test_any_checkout_is_asked_in_a_process_of_its_own(tmp_path):
     assert [(c["campaign"], c["verdict"], c["names"]) for c in found] == [
         ("null-1", "effect", ['holdout = { rule = "none" }'])
     ]
+
+
+def test_only_what_is_asked_for_is_diagnosed(tmp_path):
+    groups = {"null-1": "null", "null-2": "null", "single-1": "single"}
+    for bench in ("damper", "dq"):
+        (tmp_path / bench).mkdir()
+        (tmp_path / bench / "answers.json").write_text(json.dumps({n: {"group": g} for n, g in groups.items()}))
+    assert list(Some(benches=("dq",)).of(tmp_path)) == ["dq/null-1", "dq/null-2", "dq/single-1"]
+    assert list(Some(groups=("null",), most=1).of(tmp_path)) == ["damper/null-1", "dq/null-1"]
 
 
 def _write_campaign(folder: Path) -> None:
