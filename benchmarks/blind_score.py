@@ -155,10 +155,14 @@ def cases_of(folder: Path, code: Code, checkpoint: Path, pool: Pool, some: Some 
         key: {"folder": str((folder / key).resolve()), "code": str(code.folder.resolve()), "holdout": code.holdout}
         for key in chosen
     }
-    inputs = hashlib.sha256((code.fingerprint() + json.dumps(hashes(folder))).encode()).hexdigest()
-    workers = PooledWorkers("blind score", pool, lambda what: Checkpoint(checkpoint, inputs))
-    said = workers.map("diagnoses", diagnosed, tasks)
+    said = workers_on(folder, code, checkpoint, pool).map("diagnoses", diagnosed, tasks)
     return [case_of(*key.split("/"), answer, said[key]) for key, answer in chosen.items()]
+
+
+def workers_on(folder: Path, code: Code, checkpoint: Path, pool: Pool) -> PooledWorkers:
+    """Workers whose finished tasks hold as long as neither the campaigns of a folder nor who diagnoses them change."""
+    inputs = hashlib.sha256((code.fingerprint() + json.dumps(hashes(folder))).encode()).hexdigest()
+    return PooledWorkers("blind score", pool, lambda what: Checkpoint(checkpoint, inputs))
 
 
 def sets_of(cases: Sequence[Mapping]) -> dict[str, list[Metric]]:

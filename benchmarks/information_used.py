@@ -5,37 +5,38 @@ Who made the campaign knows size, correlation and scatter of the noise, and of t
 
     seen   = chi2 that it adds beyond tolerances, instruments and scatter of mounting (``Answer.visibility``)
 
-The diagnosis has to find all of that in the readings. What it gets is the rise of the penalised likelihood
+The diagnosis has to find all of that in the readings. What it gets is the rise of the likelihood at the best fit,
+tolerances and instruments x at their prior's cost as they are for ``seen``, the size of the effect at none
 
-    gained = 2 (ln L(effect) - ln L(nothing)),  ln L = - misfit(residual) - |x|^2 / 2 - |z|^2 / 2
+    gained = 2 (ln L(effect) - ln L(nothing)),  ln L = - misfit(residual) - |x|^2 / 2
 
-Noise alone makes it scatter around a mean of ``seen``, with a standard deviation of 2 sqrt(seen). So the mean says what
-the likelihood wastes, and the scatter what no likelihood can help: 20 of chi2 are 20 +- 9 in the readings.
+Noise of known size makes it scatter by 2 sqrt(seen) around seen + 1, the one for the size that is fitted. So the mean
+says what the likelihood wastes, and such a scatter is what no likelihood can help: 20 of chi2 are 20 +- 9 as read.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.blind_campaigns import ANSWERS, LUMPED
+from benchmarks.blind_campaigns import LUMPED
+from benchmarks.blind_score import RESULTS, WORK, Code, Some, workers_on
 from benchmarks.tables import write_table
 from benchmarks.virtual_benches.case import VISIBLE
 from effects.library import library
+from pipeline.pools import Interrupted
 from processes import Pool, Processes
 from workbench.data.campaign import read_campaign
-from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.search import searched
 from workbench.likelihood.bench import bench_of
+from workbench.likelihood.fit import Fit, prior_cost
 from workbench.models.bases import nominal_model
 
 BANDS = (VISIBLE, 40.0, 80.0, 160.0, 400.0)  # chi2
-RESULT = Path(__file__).resolve().parent.parent / "results/reference/blind_score/lumped/information_used.csv"
 
 
 @dataclass(frozen=True)
@@ -75,41 +76,42 @@ def gained(task: Mapping[str, str]) -> float:
     campaign, effects = read_campaign(task["folder"]), library()
     search = searched(bench_of(nominal_model(campaign), campaign, effects), effects, lambda words: None)
     found = search.fitted.get(frozenset((task["effect"],)))
-    return 0.0 if found is None else 2.0 * (_height(found) - _height(search.fitted[frozenset()]))
+    return 0.0 if found is None else 2.0 * (_cost(search.fitted[frozenset()].fit) - _cost(found.fit))
 
 
-def _height(hypothesis: Hypothesis) -> float:
-    fit = hypothesis.fit
-    return -hypothesis.problem.misfit(fit.residual) - 0.5 * float(fit.x @ fit.x + fit.z @ fit.z)
+def _cost(fit: Fit) -> float:
+    """Minus ln L."""
+    return fit.objective - prior_cost(fit.z)
 
 
-def singles(folder: Path, bench: str) -> Iterator[tuple[dict[str, str], float]]:
-    """Tasks of the campaigns of a bench that hide one effect of a visibility in ``BANDS``, with that."""
-    answers = json.loads((folder / bench / ANSWERS).read_text(encoding="utf-8"))
-    for name, answer in answers.items():
-        for effect, seen in answer["visibility"].items():
-            if answer["group"] == "single" and BANDS[0] <= seen < BANDS[-1]:
-                yield {"folder": str(folder / bench / name), "effect": effect}, seen
+def singles(folder: Path) -> Iterator[tuple[str, str, float]]:
+    """Bench/campaign, effect and its visibility where one effect of a visibility in ``BANDS`` is hidden."""
+    for key, answer in Some(tuple(LUMPED), ("single",)).of(folder).items():
+        ((effect, seen),) = answer["visibility"].items()
+        if BANDS[0] <= seen < BANDS[-1]:
+            yield key, effect, seen
 
 
-def used(folder: Path, benches: Iterable[str], pool: Pool) -> list[Used]:
-    """What is used of what the campaigns of a folder hold, by bands of visibility."""
-    found = [one for bench in benches for one in singles(folder, bench)]
-    answers = [pool.submit(gained, task) for task, _ in found]
-    return list(bands(np.array([seen for _, seen in found]), np.array([pool.result(a) for a in answers])))
+def used(folder: Path, pool: Pool) -> list[Used]:
+    """What is used of what the campaigns of a folder hold, by bands of visibility; each campaign is printed."""
+    found = list(singles(folder))
+    tasks = {key: {"folder": str(folder / key), "effect": effect} for key, effect, _ in found}
+    gains = workers_on(folder, Code(), WORK / "information_used.jsonl", pool).map("information used", gained, tasks)
+    for key, effect, seen in found:
+        print(f"{key}: {effect} chi2 {seen:.1f}, gained {gains[key]:.1f}")
+    return list(bands(np.array([seen for _, _, seen in found]), np.array([gains[key] for key, _, _ in found])))
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Writes the table."""
     parser = argparse.ArgumentParser(description="what the diagnosis makes of what a campaign holds")
     parser.add_argument("folder", type=Path, help="campaigns that benchmarks.blind_campaigns wrote")
-    parser.add_argument("--out", type=Path, default=RESULT)
+    parser.add_argument("--out", type=Path, default=RESULTS / "lumped" / "information_used.csv")
     chosen = parser.parse_args(arguments)
-    pool = Processes()
     try:
-        write_table(chosen.out, used(chosen.folder, LUMPED, pool))
-    finally:
-        pool.end()
+        write_table(chosen.out, used(chosen.folder, Processes()))
+    except Interrupted as stopped:
+        raise SystemExit(str(stopped)) from None
 
 
 if __name__ == "__main__":

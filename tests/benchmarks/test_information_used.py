@@ -1,4 +1,4 @@
-"""What the diagnosis makes of what a campaign holds: bands, and a campaign whose noise is what the likelihood takes."""
+"""What the diagnosis makes of what a campaign holds: bands, and one campaign."""
 
 import json
 
@@ -22,5 +22,6 @@ def test_a_plain_effect_gains_about_what_can_be_seen_of_it(tmp_path):
     task = {"bench": "dq", "group": "single", "number": 78, "scored": True, "folder": str(tmp_path), "crime": False}
     name, answer = Wanted("dq", "single", 78, True).name, write_campaign(task)
     (tmp_path / "dq" / ANSWERS).write_text(json.dumps({name: answer}), encoding="utf-8")
-    [(task, seen)] = singles(tmp_path, "dq")
-    assert task["effect"] == "torque_offset" and abs(gained(task) - seen) < 3 * 2 * np.sqrt(seen)
+    [(key, effect, seen)] = singles(tmp_path)
+    assert effect == "torque_offset"
+    assert abs(gained({"folder": str(tmp_path / key), "effect": effect}) - seen) < 3 * 2 * np.sqrt(seen)
