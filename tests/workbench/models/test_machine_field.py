@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import COARSE, MIDDLE, PLAN, drawn, field
 from workbench.models.machine.expansion import no_load_slopes
-from workbench.models.machine.field import LoadedState, MachineField, idle, read
+from workbench.models.machine.field import LoadedState, MachineField, idle, mirror_axes, read
 from workbench.models.machine.pieces import Fields, Machinery
 
 PHASES = np.array([[(coil.phase == i) * coil.sign for coil in field().layout.coils] for i in range(3)])
@@ -37,8 +37,13 @@ def linkages(samples):
         drawn().with_one("opening_changes", 3, 0.4e-3),
         replace(drawn(), stator_shift=(0.05e-3, 0.08e-3)),
         replace(drawn(), rotor_shift=(0.05e-3, 0.08e-3)),
+        drawn().with_one("magnet_strengths", 3, 0.8),  # a south pole, which its mirror shows at another number
+        drawn().with_one("magnet_turns", 1, 0.01),  # no mirror
+        drawn().with_one("magnet_turns", 1, 0.01).with_one("magnet_turns", 4, -0.01),
+        replace(drawn(), stator_shift=(0.08e-3, 0.0)),
+        replace(drawn(), rotor_shift=(-0.08e-3, 0.0)).with_one("opening_changes", 0, 0.4e-3),
     ),
-    ids=("regular", "magnet", "slot", "static", "dynamic"),
+    ids=("regular", "magnet", "slot", "static", "dynamic", "south", "turned", "two turned", "along", "both along"),
 )
 def test_revolution_from_its_window_is_what_is_solved_there(design, step):
     model = field().model(design, whole=True)
@@ -109,6 +114,29 @@ def test_derivative_for_another_magnet_is_that_of_its_own_solution():
         for column in (0, 1, 6):
             scale = np.abs(expected[:, column]).max()
             assert_allclose(found[f"{name}[{index}]"][:, column], expected[:, column], atol=0.02 * scale)
+
+
+@pytest.mark.parametrize("breaks", ("stator", "rotor"))
+def test_derivative_for_a_shift_is_that_of_a_solution_there(breaks):
+    """In both halves of the window, of which one is the mirror image of the other; the torque goes with its square."""
+    fields, step = field(COARSE), 5e-6
+    found = no_load_slopes(fields, (breaks,))
+    for index, shift in enumerate(np.eye(2) * step):
+        designs = [replace(drawn(), **{f"{breaks}_shift": tuple(sign * shift)}) for sign in (1, -1)]
+        models = [fields.model(design, whole=True) for design in designs]
+        for n in (2, -2):
+            ahead, back = (read(model.solve(idle(2 * np.pi * n / fields.edges))) for model in models)
+            slope = found[f"{breaks}_shift[{index}]"]
+            assert_allclose(((ahead - back) / (2 * step))[1:], slope[n, 1:], atol=3e-3 * np.abs(slope).max())
+
+
+def test_mirrors_are_found_where_there_are_some():
+    assert mirror_axes(drawn()) == (0, 0)
+    assert mirror_axes(drawn().with_one("opening_changes", 2, 1e-4).with_one("magnet_strengths", 3, 0.9)) == (5, 6)
+    assert mirror_axes(drawn().with_one("magnet_turns", 1, 1e-3).with_one("magnet_turns", 4, -1e-3)) == (0, 5)
+    for broken in ({"stator_shift": (0.0, 1e-5)}, {"rotor_shift": (1e-5, 1e-5)}):
+        assert mirror_axes(replace(drawn(), **broken)) is None
+    assert mirror_axes(drawn().with_one("magnet_turns", 1, 1e-3)) is None
 
 
 def test_positive_current_makes_outward_flux_in_its_own_coils():

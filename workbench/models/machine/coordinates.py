@@ -32,6 +32,12 @@ class Coordinate:
     def name(self) -> str:
         return ".".join(self.path) + (f"[{self.index}]" if self.index >= 0 else "")
 
+    @property
+    def in_mirror(self) -> int:
+        """Sign that the number has in a mirror through the axes of tooth 0 and magnet 0."""
+        is_y = self.breaks in (STATOR, ROTOR) and self.index == 1
+        return -1 if is_y or self.path == MAGNET_TURNS else 1
+
     def read(self, design: MachineAsBuilt) -> float:
         """The number in a design."""
         value: Any = design
@@ -51,7 +57,7 @@ def _replaced(thing: Any, path: tuple[str, ...], value: float) -> Any:
     return replace(thing, **{first: _replaced(getattr(thing, first), tuple(rest), value) if rest else value})
 
 
-REMANENCE, AIRGAP = ("magnet", "remanence"), ("machine", "airgap")
+REMANENCE, AIRGAP, MAGNET_TURNS = ("magnet", "remanence"), ("machine", "airgap"), ("magnet_turns",)
 TOLERANCED = (REMANENCE, AIRGAP)  # of every machine: what they do to all other changes is known too
 STEEL = (
     ("saturation_scale",),
@@ -84,7 +90,7 @@ def smooth_coordinates(nominal: MachineAsBuilt) -> tuple[Coordinate, ...]:
         Coordinate(("edge_damage",), 1e-6, (0.5,)),
         Coordinate(("radial_share",), 1e-6, (-0.4, 0.4)),
         *(Coordinate(("magnet_strengths",), 1e-6, (-0.3, -0.12), k, MAGNET) for k in magnets),
-        *(Coordinate(("magnet_turns",), 1e-7, (0.012,), k, MAGNET) for k in magnets),
+        *(Coordinate(MAGNET_TURNS, 1e-7, (0.012,), k, MAGNET) for k in magnets),
         *(Coordinate(("opening_changes",), 1e-9, (0.15 * opening,), k, SLOT) for k in slots),
         *(Coordinate(path, 1e-9, (0.2 * gap, 0.4 * gap), k, breaks) for path, breaks in SHIFTS for k in (0, 1)),
     )

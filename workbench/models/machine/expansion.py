@@ -3,13 +3,13 @@
 At every state one factorised tangent serves all coordinates (``magnetostatics.sensitivity``). At nodes, designs some
 way off, the field is solved again, with its derivatives there. Without current they are taken in one window of the
 cogging period: what magnet or slot m does is what magnet or slot 0 does, seen from another place, and a shift of the
-stator towards slot m is one towards slot 0 seen from there.
+stator towards slot m is one towards slot 0 seen from there. In a mirror, half of the window is the other half.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from workbench.models.machine.coordinates import (
     all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import LoadedState, MachineField, complete, read, solve_idle
+from workbench.models.machine.field import LoadedState, MachineField, Symmetry, complete, half_of, read, solve_idle
 
 BATCH = 12  # coordinates whose changed field models are kept in memory at a time
 _IDLE_BATCH = 6  # on the finer mesh without current
@@ -151,14 +151,16 @@ def no_load_slopes(fields: MachineField, family: tuple[str, ...]) -> dict[str, n
     """Derivatives over a revolution by the coordinates that break a symmetry of this family (edges, 1 + coils) each."""
     nominal = fields.nominal
     own = [c for c in smooth_coordinates(nominal) if c.breaks in family]
-    steps = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
-    solutions, window = solve_idle(fields.model(nominal, whole=True), fields.edges // steps, fields.edges), {}
+    parts = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
+    steps, window = half_of(fields.edges // parts, fields.mirror().steps), {}
+    solutions = solve_idle(fields.model(nominal, whole=True), steps, fields.edges)
     for batch in (own[k : k + _IDLE_BATCH] for k in range(0, len(own), _IDLE_BATCH)):
         window |= _slopes(solutions, {c.name: CoordinateVariation(fields, c, nominal, True) for c in batch})
     found = {}
     for group in _families(own):
-        known = {(n, m): row for m, c in enumerate(group) for n, row in enumerate(window[c.name])}
-        rows = complete(known, fields.edges, len(group), _moves(fields, group[0].breaks))
+        known = {(n, m): row for m, c in enumerate(group) for n, row in zip(steps, window[c.name], strict=True)}
+        moves = (*_moves(fields, group[0].breaks), _mirror(fields, group[0]))
+        rows = complete(known, fields.edges, len(group), moves)
         found |= {c.name: _revolution(rows, fields.edges, m) for m, c in enumerate(group)}
     return found
 
@@ -182,6 +184,13 @@ def _moves(fields: MachineField, breaks: str) -> tuple:
         STATOR: ((pole, 0),),
         ROTOR: ((slot, 0),),
     }[breaks]
+
+
+def _mirror(fields: MachineField, c: Coordinate) -> tuple[Symmetry, int]:
+    """In the mirror through tooth 0 and magnet 0, magnet m is seen at -m, and slot s, after tooth s, at -1 - s."""
+    mirror = fields.mirror()
+    seen = replace(mirror, change=lambda sample: c.in_mirror * mirror.change(sample))
+    return seen, -1 if c.breaks == SLOT else 0
 
 
 def no_load_node(fields: MachineField, node: Node) -> dict[str, np.ndarray]:
