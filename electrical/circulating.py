@@ -14,10 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from electrical.dq import Values
+from labelled import xr
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import RectBivariateSpline
 
 from electrical.dq import LIMIT_SLACK, Values, torque_of, voltage_of
 from electrical.newton import damped_newton
 from electrical.synchronous_machine import SynchronousMachine
+from labelled import xr
 
 _FEWEST = 4  # points along an axis that a cubic spline needs
 _CHECKED_PER_CELL = 4  # where the Jacobian is looked at, points along each side of a cell

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
 from electrical.dq import (
     DqMachine,
@@ -21,6 +20,7 @@ from electrical.dq import (
 )
 from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
+from labelled import xr
 from magnetostatics.flux_map_stage import FluxMap
 
 _SPEEDS = 151  # of the envelope

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any, ClassVar, Protocol, TypeVar
 
-import xarray as xr
+from labelled import xr
 
 AXES = ("torque_level", "speed_level")
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
-import xarray as xr
 
 from electrical.circulating import ZeroSequence
 from electrical.dq import Values
@@ -17,6 +16,7 @@ from electrical.winding_design import WindingDesign
 from geometry.machine import Machine, dimensions_of
 from geometry.parts import DrawnMachine
 from geometry.winding import WindingLayout
+from labelled import xr
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
-import xarray as xr
 
 from gearbox.bodies import Construction
 from gearbox.planetary_set import PlanetarySet
@@ -17,6 +16,7 @@ from gearbox.rating import Rules, StageLoad
 from gearbox.search import CostScale, Found, GearRequest, Safety, strongest
 from gearbox.spectrum import LoadSpectrum, gaussian_spectrum, largest_swing, spectrum_from_history
 from gearbox.train import Gears, GearTrain
+from labelled import xr
 
 SETS_KEPT = 12
 WIDTH_SLACK = 1e-3  # relative; widths are drawn in steps and Miner's sum is met to its rounding

@@ -12,13 +12,13 @@ from itertools import product
 from math import atan2, hypot, pi
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from electrical.dq import OperatingMap, Values
 from electrical.wound_machine import WoundMachine
 from geometry.cross_section import CrossSection
 from geometry.parts import Rotor
+from labelled import xr
 from losses.copper import copper_loss
 from losses.iron import FrequencyTerms, iron_loss
 from losses.loci import Repetition, rotor_loci, solve_part, stator_loci

@@ -6,13 +6,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
 from electrical.dq import OperatingMap, operating_map, peak_torque, torque_speed_envelope
 from electrical.driven_machine import DrivenMachine
 from electrical.plane import plane_dataset, plane_record
 from geometry.family import MatchedMachine
 from geometry.parts import DrawnMachine
+from labelled import xr
 from losses.magnet import NDFEB_RESISTIVITY
 from losses.map import (
     FieldLosses,

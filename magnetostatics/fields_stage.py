@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from skfem import MeshTri
 
 from geometry.cross_section import CrossSection
 from geometry.family import MatchedMachine, StatedMachine
 from geometry.parts import DrawnMachine
+from labelled import xr
 from magnetostatics.case import FieldCase
 from magnetostatics.mesh_error import torque_errors
 from magnetostatics.model import OperatingPoint

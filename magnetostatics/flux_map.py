@@ -18,8 +18,8 @@ from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from labelled import xr
 from magnetostatics.flux_linkage import park, phase_flux_linkage
 from magnetostatics.model import FieldModel, FieldSolution, OperatingPoint, blended
 from magnetostatics.positions import torque_period

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from geometry.family import MatchedMachine
 from geometry.parts import DrawnMachine
+from labelled import xr
 from magnetostatics.case import FieldCase
 from magnetostatics.flux_map import (
     CurrentGrid,

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from math import lcm, pi
 
 import numpy as np
-import xarray as xr
 
 from geometry.parts import DrawnMachine
+from labelled import xr
 from magnetostatics.arc import Arc, angles_from_null, arcs, solved_over
 from magnetostatics.case import FieldCase
 from magnetostatics.gap_stress import StressWave, radial_stress_orders, stress_over_angle, stress_waves, torque_orders

@@ -11,8 +11,8 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-import xarray as xr
 
+from labelled import xr
 from magnetostatics.model import FieldSolution
 
 FUNDAMENTAL = 3  # lowest order of psi_0 over the electrical angle

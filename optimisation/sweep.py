@@ -9,11 +9,11 @@ from itertools import product
 from math import nan
 
 import numpy as np
-import xarray as xr
 
 from geometry.errors import GeometryError
 from geometry.family import Combination
 from geometry.machine import Machine
+from labelled import xr
 from magnetostatics.case import FamilyCase
 from magnetostatics.newton import NewtonSettings
 from optimisation.design import Design, DesignSolver, Judge

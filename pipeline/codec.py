@@ -16,9 +16,9 @@ from math import isfinite
 from typing import Any, Protocol
 
 import numpy as np
-import xarray as xr
 
 from geometry.own_kinds import is_loaded
+from labelled import xr
 from pipeline.modules import module_file
 
 _PLAIN = (str, int, bool, type(None))

@@ -15,9 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-import xarray as xr
-
 from disk import PART, write_atomically
+from labelled import xr
 from pipeline.codec import CodecError, decoded, encoded
 from pipeline.modules import PROJECT
 from study.schema import Study

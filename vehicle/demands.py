@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-import xarray as xr
 
 from drivetrain.requirements import Requirements
+from labelled import xr
 from tasks import Workers
 from vehicle.damping import DamperCurve, capped
 from vehicle.errors import VehicleError, require_not_negative

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 
 from actuator.linear import stiffness_about, tangent_plant
 from actuator.model import Actuator
@@ -15,6 +14,7 @@ from control.design import loop_for
 from control.errors import ControlError
 from control.force_loop import ForceLoop
 from control.transfer import bandwidth, margins
+from labelled import xr
 from tasks import Workers
 from thermal.stage import Assembled
 from vehicle.commands import Feedback

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 
+from labelled import xr
 from tasks import Workers
 from vehicle.designed import DesignedActuator
 from vehicle.energy_stage import STEP as FINE

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
+from labelled import xr
 from tasks import Workers
 from vehicle.comfort import WEIGHTING
 from vehicle.commands import Feedback

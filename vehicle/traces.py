@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
+from labelled import xr
 from vehicle.ride import RideHistory
 
 
