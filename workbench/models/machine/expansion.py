@@ -30,7 +30,16 @@ from workbench.models.machine.coordinates import (
     all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import LoadedState, MachineField, Symmetry, complete, half_of, read, solve_idle
+from workbench.models.machine.field import (
+    LoadedState,
+    MachineField,
+    Symmetry,
+    complete,
+    half_of,
+    is_symmetric,
+    read,
+    solve_idle,
+)
 
 BATCH = 12  # coordinates whose changed field models are kept in memory at a time
 _IDLE_BATCH = 6  # on the finer mesh without current
@@ -199,8 +208,7 @@ def no_load_node(fields: MachineField, node: Node) -> dict[str, np.ndarray]:
     design, nominal = node.design(fields.nominal), fields.nominal
     window = fields.no_load_window(design)
     found = {"change": fields.over_revolution(design, [read(s) for s in window]) - fields.no_load(nominal)}
-    whole = window[0].model.section.sectors == 1
-    slopes = _along(window, _variations(fields, node, design, whole))
+    slopes = _along(window, _variations(fields, node, design, whole=not is_symmetric(design)))
     found |= {name: fields.over_revolution(design, rows) for name, rows in slopes.items()}
     return {name: _members(fields, node.moves[0][0].breaks, rows) for name, rows in found.items()}
 
