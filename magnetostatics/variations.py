@@ -142,8 +142,27 @@ class Materials:
         return model.like(materials=self.change(model.materials, change)), point
 
 
+class _Once:
+    """Changes a model once for all its states, several of which are asked for together; the last one is kept."""
+
+    def _once(self, model: FieldModel, change: float, make: Callable[[], FieldModel]) -> FieldModel:
+        kept = self._models.get(change)
+        if kept is None or not _is_same(kept[0], model):
+            kept = self._models[change] = model, make()
+        return kept[1]
+
+    @cached_property
+    def _models(self) -> dict[float, tuple[FieldModel, FieldModel]]:
+        """By the change: the model that was changed, and what became of it."""
+        return {}
+
+
+def _is_same(one: FieldModel, other: FieldModel) -> bool:
+    return one.section is other.section and one.materials is other.materials and one.order is other.order
+
+
 @dataclass(frozen=True, eq=False)
-class Dimension:
+class Dimension(_Once):
     """Anything that changes the drawn machine: the nodes of the mesh follow.
 
     morpher: of the cross-section that the solution was made on, or was moved from
@@ -159,19 +178,9 @@ class Dimension:
 
         Raises what the drawing of the changed machine raises: GeometryError.
         """
-        return self._changed(model.finest, change).of_order(model.order), point
-
-    def _changed(self, model: FieldModel, change: float) -> FieldModel:
-        """Moved once for all states of a model; a gradient asks for several. The last one is kept."""
-        kept = self._models.get(change)
-        if kept is None or kept[0].section is not model.section or kept[0].materials is not model.materials:
-            kept = self._models[change] = model, model.like(self.morpher.to(self.machine(change)))
-        return kept[1]
-
-    @cached_property
-    def _models(self) -> dict[float, tuple[FieldModel, FieldModel]]:
-        """By the change: the model that was changed, and what became of it."""
-        return {}
+        fine = model.finest
+        changed = self._once(fine, change, lambda: fine.like(self.morpher.to(self.machine(change))))
+        return changed.of_order(model.order), point
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +200,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class SameAmpereTurns:
+class SameAmpereTurns(_Once):
     """A variation of a wound machine: the current stays that of its wires, however much room the slot leaves them.
 
     varied: what changes, under a balanced supply; step, change: [unit of that]
@@ -213,7 +222,7 @@ class SameAmpereTurns:
             raise TypeError(
                 f"ampere-turns are kept of a balanced supply, an OperatingPoint; found {type(point).__name__}"
             )
-        changed, _ = self.varied.at(model, point, change)
+        changed = self._once(model, change, lambda: self.varied.at(model, point, change)[0])
         more_room = changed.section.half_slot_area / model.section.half_slot_area
         return changed, replace(point, current_density=point.current_density / more_room)
 
