@@ -1,4 +1,5 @@
-"""xarray, loaded when it is first used: workers that solve fields have no table to make, and it brings 80 MB."""
+"""pandas and xarray, loaded when they are first used: workers that solve fields have no table to make, and the two
+bring 80 MB."""
 
 from __future__ import annotations
 
@@ -22,8 +23,9 @@ def _when_used(name: str) -> ModuleType:
 
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 else:
-    xr = _when_used("xarray")
+    pd, xr = _when_used("pandas"), _when_used("xarray")
 
-__all__ = ["xr"]
+__all__ = ["pd", "xr"]

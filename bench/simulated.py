@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from math import inf, pi
 
 import numpy as np
-import xarray as xr
 from scipy.optimize import brentq
 
 from actuator.errors import ActuatorError
@@ -38,6 +37,7 @@ from bench.impedance import sine_impedance
 from bench.record import Record
 from electrical.shunted_machine import Bridge, Circuit, ShortedAtTerminals
 from electrical.synchronous_machine import SynchronousMachine
+from labelled import xr
 from vehicle.comfort import weighted_acceleration
 from vehicle.designed import BenchMachine, DesignedActuator
 from vehicle.hardware_case import LOAD_CELL, NO_LOOP, LoopTest, WantedLoop, loop_numbers, low_levels

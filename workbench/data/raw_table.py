@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
+from labelled import pd
 from workbench.data.cells import GAPS, decimal_sign, is_time, looks_like_data, readings, values_of
 from workbench.data.headings import heading_parts, known_unit
 from workbench.errors import WorkbenchError
