@@ -84,7 +84,8 @@ def fields_stage(
     machines = {"reference": stated.machine} | ({"matched": matched.machine} if matched is not None else {})
     rotation = solve_rotation("rotation", case, stated.machine, workers)
     states = {f"{name}, null position": NullStates(case, machine) for name, machine in machines.items()}
-    reference, *others = workers.map("fields", solve_null_states, states).values()
+    solved = workers.map("fields", solve_null_states, states)
+    reference, *others = (_fields_of(wanted, solved[name]) for name, wanted in states.items())
     return SolvedFields(rotation, reference, others[0] if others else None)
 
 
@@ -94,34 +95,67 @@ def null_points(case: FieldCase, machine: DrawnMachine) -> tuple[OperatingPoint,
     return tuple(null_point(machine, case.layout(machine), amplitude, case.packing) for amplitude in amplitudes)
 
 
-def solve_null_states(wanted: NullStates) -> NullFields:
+@dataclass(frozen=True, eq=False)
+class NullSolutions:
+    """What a worker finds of ``NullFields``; node (2, n) [m], triangle (3, E), region (E,), a (state, dof) [Wb/m]: of
+    its data, which is made where the tables are."""
+
+    torque_error: float
+    sectors: int
+    antiperiodic: bool
+    rest: float
+    region_names: tuple[str, ...]
+    residuals: tuple[tuple[float, ...], ...]
+    node: np.ndarray
+    triangle: np.ndarray
+    region: np.ndarray
+    a: np.ndarray
+
+
+def solve_null_states(wanted: NullStates) -> NullSolutions:
     """The fields of a machine in the null position on the finer mesh, and the mesh error on that of the sweep."""
     case, machine = wanted.case, wanted.machine
     points, model = null_points(case, machine), case.detailed_model(machine)
     solutions = [model.solve(point) for point in points]
     section = model.section
-    return NullFields(
-        machine=machine,
+    return NullSolutions(
         torque_error=torque_errors([case.model(machine).solve(points[STATES.index("nominal")])])[0],
         sectors=section.sectors,
         antiperiodic=section.antiperiodic,
         rest=float(model.unknowns.turn(points[0].angle).rest),
         region_names=tuple(section.mesh.subdomains),
-        points=points,
         residuals=tuple(solution.newton.residuals for solution in solutions),
-        data=_dataset(section, np.stack([solution.a for solution in solutions])),
+        node=section.mesh.p,
+        triangle=section.mesh.t.astype(np.int32),
+        region=_regions(section),
+        a=np.stack([solution.a for solution in solutions]),
     )
 
 
-def _dataset(section: CrossSection, potentials: np.ndarray) -> xr.Dataset:
+def _regions(section: CrossSection) -> np.ndarray:
+    """Number of the region of every triangle (E,)."""
     region = np.empty(section.mesh.nelements, dtype=np.int32)
     for number, elements in enumerate(section.mesh.subdomains.values()):
         region[elements] = number
-    return xr.Dataset(
-        {
-            "node": (("xy", "corner_node"), section.mesh.p),
-            "triangle": (("corner", "element"), section.mesh.t.astype(np.int32)),
-            "region": ("element", region),
-            "a": (("state", "dof"), potentials),
-        }
+    return region
+
+
+def _fields_of(wanted: NullStates, solved: NullSolutions) -> NullFields:
+    return NullFields(
+        machine=wanted.machine,
+        torque_error=solved.torque_error,
+        sectors=solved.sectors,
+        antiperiodic=solved.antiperiodic,
+        rest=solved.rest,
+        region_names=solved.region_names,
+        points=null_points(wanted.case, wanted.machine),
+        residuals=solved.residuals,
+        data=xr.Dataset(
+            {
+                "node": (("xy", "corner_node"), solved.node),
+                "triangle": (("corner", "element"), solved.triangle),
+                "region": ("element", solved.region),
+                "a": (("state", "dof"), solved.a),
+            }
+        ),
     )

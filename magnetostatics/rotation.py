@@ -111,11 +111,28 @@ def solve_rotation(name: str, case: FieldCase, machine: DrawnMachine, workers: W
     cogging_periods = lcm(machine.slots, machine.poles) // machine.poles
     angles = angles_from_null(case, machine, machine.pole_pitch, COGGING_STEPS * cogging_periods)
     solved = workers.map(name, solve_arc, arcs(case, machine, angles))
-    return Rotation(machine, q_axis_angle(machine, case.layout(machine)), xr.concat(list(solved.values()), "angle"))
+    data = xr.concat([_dataset(one) for one in solved.values()], "angle")
+    return Rotation(machine, q_axis_angle(machine, case.layout(machine)), data)
 
 
-def solve_arc(arc: Arc) -> xr.Dataset:
-    """The data of ``Rotation`` at the angles of an arc."""
+@dataclass(frozen=True, eq=False)
+class SolvedArc:
+    """The data of ``Rotation`` at the angles of an arc, which become a table where the tables are.
+
+    torque, torque_circle: [Nm/m], (states, angles); stress: [Pa], (states, angles, 2, orders)
+    flux_density: [T], (states, angles, probes); probes: their names
+    """
+
+    angles: tuple[float, ...]
+    torque: np.ndarray
+    torque_circle: np.ndarray
+    stress: np.ndarray
+    flux_density: np.ndarray
+    probes: tuple[str, ...]
+
+
+def solve_arc(arc: Arc) -> SolvedArc:
+    """What ``Rotation`` holds of the angles of an arc."""
     model, case = arc.model(), arc.case
     states: list[list[FieldSolution]] = []
     for density in (0.0, case.nominal_density, case.overload_density):
@@ -123,13 +140,22 @@ def solve_arc(arc: Arc) -> xr.Dataset:
         states.append(solved_over(model, arc.angles, density, case.packing, start))
     reader, highest = probe_reader(model), _ORDERS_PER_SLOT * arc.machine.slots
     stress = np.array([[radial_stress_orders(one, highest) for one in solved] for solved in states])
+    return SolvedArc(
+        angles=arc.angles,
+        torque=np.array([[arkkio_torque(one) for one in solved] for solved in states]),
+        torque_circle=np.array([[maxwell_torque(one) for one in solved] for solved in states]),
+        stress=np.stack([stress.real, stress.imag], axis=2),
+        flux_density=np.array([[list(reader.read(one).values()) for one in solved] for solved in states]),
+        probes=tuple(reader.names),
+    )
+
+
+def _dataset(arc: SolvedArc) -> xr.Dataset:
     data = {
-        "torque": (("state", "angle"), [[arkkio_torque(one) for one in solved] for solved in states]),
-        "torque_circle": (("state", "angle"), [[maxwell_torque(one) for one in solved] for solved in states]),
-        "stress": (("state", "angle", "part", "order"), np.stack([stress.real, stress.imag], axis=2)),
-        "flux_density": (
-            ("state", "angle", "probe"), [[list(reader.read(one).values()) for one in solved] for solved in states]
-        ),
-    }  # fmt: skip
-    names = {"state": list(STATES), "part": ["real", "imaginary"], "probe": list(reader.names)}
+        "torque": (("state", "angle"), arc.torque),
+        "torque_circle": (("state", "angle"), arc.torque_circle),
+        "stress": (("state", "angle", "part", "order"), arc.stress),
+        "flux_density": (("state", "angle", "probe"), arc.flux_density),
+    }
+    names = {"state": list(STATES), "part": ["real", "imaginary"], "probe": list(arc.probes)}
     return xr.Dataset(data, {"angle": list(arc.angles), **names})
