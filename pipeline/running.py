@@ -57,7 +57,7 @@ def pool_of(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
         raise StudyError("--scheduler goes with --executor dask.")
     if options.jobs is not None and options.jobs < 1:
         raise StudyError(f"--jobs {options.jobs}: give one process or more.")
-    modules = tuple({stage.function.__module__: None for stage in graph.stages})
+    modules = modules_of(graph)
     dask = options.executor == "dask"
     pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, (*modules, *SHARED))
     try:
@@ -66,6 +66,11 @@ def pool_of(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
         pool.end(now=True)
         raise
     pool.end()
+
+
+def modules_of(graph: Graph) -> tuple[str, ...]:
+    """Where the stages stand: workers load these before they are forked, and share them."""
+    return tuple({stage.function.__module__: None for stage in graph.stages})
 
 
 def page(title: str, subtitle: str, source: dict[str, str], sections: list[Section], failures: list[Failure]) -> File:

@@ -15,6 +15,7 @@ ALLOWED = {
     "disk": set(),
     "processes": set(),
     "compiling": set(),
+    "labelled": set(),
     "materials": set(),
     "geometry": set(),
     "magnetostatics": {"materials", "geometry"},
@@ -38,7 +39,7 @@ ALLOWED = {
     "report": {*_DESIGN, "figures", "export"} - {"materials"},
     "pipeline": {*_DESIGN, "study", "figures", "export", "report", "effects", "workbench", "bench"},
 }
-BOTTOM = {"units", "tasks", "disk", "processes", "compiling"}
+BOTTOM = {"units", "tasks", "disk", "processes", "compiling", "labelled"}
 
 
 def modules():
