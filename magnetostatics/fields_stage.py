@@ -97,8 +97,11 @@ def null_points(case: FieldCase, machine: DrawnMachine) -> tuple[OperatingPoint,
 
 @dataclass(frozen=True, eq=False)
 class NullSolutions:
-    """What a worker finds of ``NullFields``; node (2, n) [m], triangle (3, E), region (E,), a (state, dof) [Wb/m]: of
-    its data, which is made where the tables are."""
+    """What a worker finds of ``NullFields``, whose data is made where the tables are.
+
+    torque_error: [Nm/m]; rest: [rad]; residuals: relative, dimensionless
+    node, triangle, region, a: the variables of the data [m], indices (3, E), indices (E,), and [Wb/m]
+    """
 
     torque_error: float
     sectors: int

@@ -119,13 +119,13 @@ def solve_rotation(name: str, case: FieldCase, machine: DrawnMachine, workers: W
 class SolvedArc:
     """The data of ``Rotation`` at the angles of an arc, which become a table where the tables are.
 
-    torque, torque_circle: [Nm/m], (states, angles); stress: [Pa], (states, angles, 2, orders)
-    flux_density: [T], (states, angles, probes); probes: their names
+    angles: [rad]; ring_average, circle_integral: of the stress, the torque [Nm/m], (states, angles)
+    stress: [Pa], (states, angles, 2, orders); flux_density: [T], (states, angles, probes); probes: their names
     """
 
     angles: tuple[float, ...]
-    torque: np.ndarray
-    torque_circle: np.ndarray
+    ring_average: np.ndarray
+    circle_integral: np.ndarray
     stress: np.ndarray
     flux_density: np.ndarray
     probes: tuple[str, ...]
@@ -142,8 +142,8 @@ def solve_arc(arc: Arc) -> SolvedArc:
     stress = np.array([[radial_stress_orders(one, highest) for one in solved] for solved in states])
     return SolvedArc(
         angles=arc.angles,
-        torque=np.array([[arkkio_torque(one) for one in solved] for solved in states]),
-        torque_circle=np.array([[maxwell_torque(one) for one in solved] for solved in states]),
+        ring_average=np.array([[arkkio_torque(one) for one in solved] for solved in states]),
+        circle_integral=np.array([[maxwell_torque(one) for one in solved] for solved in states]),
         stress=np.stack([stress.real, stress.imag], axis=2),
         flux_density=np.array([[list(reader.read(one).values()) for one in solved] for solved in states]),
         probes=tuple(reader.names),
@@ -152,8 +152,8 @@ def solve_arc(arc: Arc) -> SolvedArc:
 
 def _dataset(arc: SolvedArc) -> xr.Dataset:
     data = {
-        "torque": (("state", "angle"), arc.torque),
-        "torque_circle": (("state", "angle"), arc.torque_circle),
+        "torque": (("state", "angle"), arc.ring_average),
+        "torque_circle": (("state", "angle"), arc.circle_integral),
         "stress": (("state", "angle", "part", "order"), arc.stress),
         "flux_density": (("state", "angle", "probe"), arc.flux_density),
     }
