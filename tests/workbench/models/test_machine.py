@@ -153,6 +153,20 @@ def test_a_state_just_before_a_revolution_is_the_one_at_its_start():
     assert [s.angle for s in loaded_states(drawn(), [table]) if any(s.currents)] == [0.0]
 
 
+def test_states_are_solved_at_whole_degrees_where_these_are_near():
+    """There the two states of a pair in a mirror are one, beside an encoder that is off by some tenths too."""
+    angles = np.arange(-180.0, 540.0, 0.037)
+    currents = {f"i_{x}": np.full(len(angles), 30.0) for x in "abc"}
+    states = loaded_states(
+        drawn(), [SimpleNamespace(kind="locked_rotor", conditions={"angle_mech": angles * DEGREE, **currents})]
+    )
+    found = np.array([state.angle for state in states if any(state.currents)]) / DEGREE
+    assert_allclose(np.sort(found), np.arange(0.0, 360.0, 0.5), atol=1e-9)
+    at = {"angle_mech": np.array([0.265, 6.29, 11.72, 18.35]) * DEGREE} | {f"i_{x}": np.full(4, 30.0) for x in "abc"}
+    some = loaded_states(drawn(), [SimpleNamespace(kind="locked_rotor", conditions=at)])
+    assert_allclose([state.angle / DEGREE for state in some if any(state.currents)], [0.0, 6.0, 12.0, 18.5])
+
+
 def test_sentences():
     with pytest.raises(WorkbenchError, match="prepare"):
         BENCH.respond(drawn(), "cogging", {"angle_mech": ANGLES})

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.workbench.models.machine_case import COARSE, MIDDLE, PLAN, drawn, field
 from workbench.models.machine.expansion import no_load_slopes
-from workbench.models.machine.field import LoadedState, MachineField, idle, mirror_axes, read
+from workbench.models.machine.field import LoadedState, MachineField, idle, read
 from workbench.models.machine.pieces import Fields, Machinery
 
 PHASES = np.array([[(coil.phase == i) * coil.sign for coil in field().layout.coils] for i in range(3)])
@@ -128,15 +128,6 @@ def test_derivative_for_a_shift_is_that_of_a_solution_there(breaks):
             ahead, back = (read(model.solve(idle(2 * np.pi * n / fields.edges))) for model in models)
             slope = found[f"{breaks}_shift[{index}]"]
             assert_allclose(((ahead - back) / (2 * step))[1:], slope[n, 1:], atol=3e-3 * np.abs(slope).max())
-
-
-def test_mirrors_are_found_where_there_are_some():
-    assert mirror_axes(drawn()) == (0, 0)
-    assert mirror_axes(drawn().with_one("opening_changes", 2, 1e-4).with_one("magnet_strengths", 3, 0.9)) == (5, 6)
-    assert mirror_axes(drawn().with_one("magnet_turns", 1, 1e-3).with_one("magnet_turns", 4, -1e-3)) == (0, 5)
-    for broken in ({"stator_shift": (0.0, 1e-5)}, {"rotor_shift": (1e-5, 1e-5)}):
-        assert mirror_axes(replace(drawn(), **broken)) is None
-    assert mirror_axes(drawn().with_one("magnet_turns", 1, 1e-3)) is None
 
 
 def test_positive_current_makes_outward_flux_in_its_own_coils():

@@ -35,7 +35,7 @@ from workbench.models.machine.solver import Solver, in_kinds, solved
 from workbench.models.machine.surrogate import Surrogate, surrogate_of
 
 Progress = Callable[[str], None]
-_CODE = ("field", "coordinates", "expansion", "pieces", "spectra")  # modules here that results on disk depend on
+_CODE = ("field", "symmetry", "coordinates", "expansion", "pieces", "spectra")  # what results on disk depend on
 
 
 class SurrogateBuilder:

@@ -30,16 +30,8 @@ from workbench.models.machine.coordinates import (
     all_coordinates,
     smooth_coordinates,
 )
-from workbench.models.machine.field import (
-    LoadedState,
-    MachineField,
-    Symmetry,
-    complete,
-    half_of,
-    is_symmetric,
-    read,
-    solve_idle,
-)
+from workbench.models.machine.field import LoadedState, MachineField, read, solve_idle
+from workbench.models.machine.symmetry import Symmetry, complete, half_of, is_symmetric, symmetries_of
 
 BATCH = 12  # coordinates whose changed field models are kept in memory at a time
 _IDLE_BATCH = 6  # on the finer mesh without current
@@ -133,11 +125,13 @@ def _whole(fields: MachineField, states: Sequence[LoadedState]) -> list[FieldSol
 
 
 def loaded_node(fields: MachineField, states: Sequence[LoadedState], node: Node) -> dict[str, np.ndarray]:
-    """Change and slopes at a node with current; a regular one."""
+    """Change and slopes at a node with current; a regular one, whose slopes leave the machine symmetric too."""
     design = node.design(fields.nominal)
-    solutions = fields.loaded_solutions(design, states)
-    found = {"change": np.array([read(s) for s in solutions]) - fields.loaded(fields.nominal, states)}
-    return found | _along(solutions, _variations(fields, node, design, whole=False))
+    alike = fields.alike(design, states)
+    solutions = fields.loaded_solutions(design, alike.of(states))
+    found = {"change": alike.rows(np.array([read(s) for s in solutions])) - fields.loaded(fields.nominal, states)}
+    along = _along(solutions, _variations(fields, node, design, whole=False))
+    return found | {name: alike.rows(rows) for name, rows in along.items()}
 
 
 def _variations(fields: MachineField, node: Node, design: MachineAsBuilt, whole: bool) -> dict:
@@ -161,7 +155,7 @@ def no_load_slopes(fields: MachineField, family: tuple[str, ...]) -> dict[str, n
     nominal = fields.nominal
     own = [c for c in smooth_coordinates(nominal) if c.breaks in family]
     parts = {STATOR: nominal.machine.poles, ROTOR: nominal.machine.slots}.get(family[0], fields.edges // fields.window)
-    steps, window = half_of(fields.edges // parts, fields.mirror().steps), {}
+    steps, window = half_of(fields.edges // parts, _of_drawing(fields)[2].steps), {}
     solutions = solve_idle(fields.model(nominal, whole=True), steps, fields.edges)
     for batch in (own[k : k + _IDLE_BATCH] for k in range(0, len(own), _IDLE_BATCH)):
         window |= _slopes(solutions, {c.name: CoordinateVariation(fields, c, nominal, True) for c in batch})
@@ -185,7 +179,7 @@ def _families(coordinates: Sequence[Coordinate]) -> list[list[Coordinate]]:
 def _moves(fields: MachineField, breaks: str) -> tuple:
     """A slot pitch on, magnet m does to coil k what it did to coil k - 1, and slot s what slot s - 1 did. A pole pitch
     on, magnet m does what magnet m + 1 did, with the opposite sign, and slot s what slot s did."""
-    slot, pole = fields.slot_pitch, fields.pole_pitch
+    slot, pole, _ = _of_drawing(fields)
     return {
         BOTH: ((slot, 0), (pole, 0)),
         MAGNET: ((slot, 0), (pole, -1)),
@@ -197,9 +191,13 @@ def _moves(fields: MachineField, breaks: str) -> tuple:
 
 def _mirror(fields: MachineField, c: Coordinate) -> tuple[Symmetry, int]:
     """In the mirror through tooth 0 and magnet 0, magnet m is seen at -m, and slot s, after tooth s, at -1 - s."""
-    mirror = fields.mirror()
-    seen = replace(mirror, change=lambda sample: c.in_mirror * mirror.change(sample))
-    return seen, -1 if c.breaks == SLOT else 0
+    mirror = _of_drawing(fields)[2]
+    return replace(mirror, sign=c.in_mirror * mirror.sign), -1 if c.breaks == SLOT else 0
+
+
+def _of_drawing(fields: MachineField) -> tuple[Symmetry, ...]:
+    """A slot pitch on, a pole pitch on, and in a mirror."""
+    return symmetries_of(fields.nominal, fields.edges)
 
 
 def no_load_node(fields: MachineField, node: Node) -> dict[str, np.ndarray]:

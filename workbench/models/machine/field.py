@@ -1,17 +1,13 @@
 """Field solutions of a machine as built, coil by coil: torque and flux linkages at any angle and current.
 
 A sample is [torque, psi of coil 0, psi of coil 1, ...], per metre of length and per turn, the flux of a coil positive
-outwards through its tooth. Without current a revolution is put together from the smallest window of angles that the
-symmetry of the machine leaves:
-
-    a slot pitch on, with the same rotor:  coil k sees what coil k - 1 saw
-    a pole pitch on, with the same stator: every coil sees the same with the opposite sign
-    in a mirror, with both as they are:    the torque is the opposite, coil -k sees what coil k saw
+outwards through its tooth. Without current a revolution is put together from the smallest window of angles, and with
+current all states from few of them, as the symmetries of the machine allow (``symmetry.py``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import lcm, pi
 
@@ -35,6 +31,7 @@ from magnetostatics.torque import maxwell_torque
 from materials.altered_steel import ScaledSaturation, hardened, stacked
 from materials.library import load_steel
 from materials.reluctivity import Reluctivity
+from workbench.models.machine.symmetry import Alike, alike, complete, is_symmetric, symmetries_of, window_of
 
 _TIGHT = NewtonSettings(tolerance=1e-8)  # differences of solutions are wanted
 
@@ -147,21 +144,30 @@ class MachineField:
 
     def no_load_window(self, design: MachineAsBuilt) -> list[FieldSolution]:
         """Solutions without current over the angles that the symmetry of the design leaves."""
-        steps, _ = self._no_load_steps(design)
         model = self.model(design, not is_symmetric(design))
-        return solve_idle(model, steps, self.edges)
+        return solve_idle(model, window_of(design, self.edges), self.edges)
 
     def over_revolution(self, design: MachineAsBuilt, window: Sequence[np.ndarray]) -> np.ndarray:
         """Samples of a revolution (edges, 1 + coils) from those of the window, or their derivatives by something that
         leaves the symmetry of the design."""
-        steps, symmetries = self._no_load_steps(design)
+        steps = window_of(design, self.edges)
         known = {(n % self.edges, 0): row for n, row in zip(steps, window, strict=True)}
-        known = complete(known, self.edges, 1, [(symmetry, 0) for symmetry in symmetries])
+        moves = [(symmetry, 0) for symmetry in symmetries_of(design, self.edges)]
+        known = complete(known, self.edges, 1, moves)
         return np.array([known[n, 0] for n in range(self.edges)])
 
     def loaded(self, design: MachineAsBuilt, states: Sequence[LoadedState], turn: float = 0.0) -> np.ndarray:
-        """Samples with current (states, 1 + coils), the rotor turned beyond the states [rad]."""
-        return np.array([read(solution) for solution in self.loaded_solutions(design, states, turn)])
+        """Samples with current (states, 1 + coils), the rotor turned beyond the states [rad]; of states that are one
+        but for the symmetries of the design the first is solved."""
+        alike = self.alike(design, states, turn)
+        solutions = self.loaded_solutions(design, alike.of(states), turn)
+        return alike.rows(np.array([read(solution) for solution in solutions]))
+
+    def alike(self, design: MachineAsBuilt, states: Sequence[LoadedState], turn: float = 0.0) -> Alike:
+        """Which of some states have to be solved, the rotor turned beyond them [rad]."""
+        angles = np.array([state.angle + turn for state in states])
+        coils = [coil_ampere_turns(design, self.layout, np.array(state.currents)) for state in states]
+        return alike(angles, np.array(coils), symmetries_of(design, self.edges), self.edges)
 
     def loaded_solutions(
         self, design: MachineAsBuilt, states: Sequence[LoadedState], turn: float = 0.0
@@ -192,76 +198,6 @@ class MachineField:
         if not whole:
             return PhaseCurrents(state.angle, state.currents, design.turns[0])
         return CoilCurrents(state.angle, tuple(coil_ampere_turns(design, self.layout, np.array(state.currents))))
-
-    def _no_load_steps(self, design: MachineAsBuilt) -> tuple[range, tuple[Symmetry, ...]]:
-        stator, rotor = stator_is_regular(design), rotor_is_regular(design)
-        symmetries = ((self.slot_pitch,) if stator else ()) + ((self.pole_pitch,) if rotor else ())
-        m = self.nominal.machine
-        parts = {(True, True): lcm(m.slots, m.poles), (True, False): m.slots, (False, True): m.poles}
-        period, axes = self.edges // parts.get((stator, rotor), 1), mirror_axes(design)
-        if axes is None:
-            return range(period), symmetries
-        mirror = self.mirror(*axes)
-        return half_of(period, mirror.steps), (*symmetries, mirror)
-
-    @property
-    def slot_pitch(self) -> Symmetry:
-        coils = np.arange(self.nominal.machine.slots)
-        place = np.append(0, 1 + np.roll(coils, 1))
-        return Symmetry(self.edges // len(coils), lambda sample: sample[place])
-
-    @property
-    def pole_pitch(self) -> Symmetry:
-        sign = np.append(1.0, -np.ones(self.nominal.machine.slots))
-        return Symmetry(self.edges // self.nominal.machine.poles, lambda sample: sign * sample)
-
-    def mirror(self, tooth: int = 0, magnet: int = 0) -> Symmetry:
-        """The mirror in which tooth 0 is seen at ``tooth`` and magnet 0 at ``magnet``, all currents being zero.
-
-        Flux outwards stays so, but for the sign of the poles where north is seen at south.
-        """
-        coils = np.arange(self.nominal.machine.slots)
-        place = np.append(0, 1 + (tooth - coils) % len(coils))
-        sign = np.append(-1.0, np.full(len(coils), (-1.0) ** magnet))
-        steps = tooth * self.slot_pitch.steps - magnet * self.pole_pitch.steps
-        return Symmetry(steps, lambda sample: sign * sample[place], way=-1)
-
-
-@dataclass(frozen=True)
-class Symmetry:
-    """At step ``way * n + steps`` the sample is ``change`` of the one at n; way: -1 of a mirror, else 1"""
-
-    steps: int
-    change: Callable[[np.ndarray], np.ndarray]
-    way: int = 1
-
-    def __call__(self, n: int) -> int:
-        """The step that it leads to from step n."""
-        return self.way * n + self.steps
-
-
-def half_of(period: int, steps: int) -> range:
-    """Of the steps of a period those that all others follow from in a mirror, which leads from n to ``steps`` - n."""
-    return range(-(-steps // 2), (steps + period) // 2 + 1)
-
-
-def complete(
-    known: dict[tuple[int, int], np.ndarray], count: int, members: int, moves: Iterable[tuple[Symmetry, int]]
-) -> dict[tuple[int, int], np.ndarray]:
-    """Samples of a whole revolution by (step, member) from those of a window.
-
-    count: steps of a revolution; members: of a family of equal parts, 1 when there is none
-    moves: a symmetry, and by how much the number of the member grows with it; a mirror counts them backwards
-    """
-    known, waiting = dict(known), list(known)
-    while waiting:
-        n, m = waiting.pop()
-        for symmetry, shift in moves:
-            there = symmetry(n) % count, (symmetry.way * m + shift) % members
-            if there not in known:
-                known[there] = symmetry.change(known[n, m])
-                waiting.append(there)
-    return known
 
 
 def solve_in_turn(model: FieldModel, points: Sequence[OperatingState]) -> list[FieldSolution]:
@@ -312,49 +248,6 @@ def read(solution: FieldSolution) -> np.ndarray:
 
 
 # ---- what a design means in the field --------------------------------------------------------------------------------
-
-
-def stator_is_regular(design: MachineAsBuilt) -> bool:
-    """All slots alike and the bore about the axis of rotation."""
-    return not any(design.opening_changes) and not any(design.stator_shift)
-
-
-def rotor_is_regular(design: MachineAsBuilt) -> bool:
-    """All magnets alike, in their places, and about the axis of rotation."""
-    alike = all(strength == 1.0 for strength in design.magnet_strengths)
-    return alike and not any(design.magnet_turns) and not any(design.rotor_shift)
-
-
-def is_symmetric(design: MachineAsBuilt) -> bool:
-    return stator_is_regular(design) and rotor_is_regular(design)
-
-
-def mirror_axes(design: MachineAsBuilt) -> tuple[int, int] | None:
-    """Tooth and magnet at which a mirror that changes nothing of the design shows tooth 0 and magnet 0; None where
-    there is no such mirror. A shift is looked for along the axis of tooth 0 or magnet 0 only."""
-    tooth = next((k for k in range(design.machine.slots) if _stator_is_mirrored(design, k)), None)
-    magnet = next((k for k in range(design.machine.poles) if _rotor_is_mirrored(design, k)), None)
-    return None if tooth is None or magnet is None else (tooth, magnet)
-
-
-def _stator_is_mirrored(design: MachineAsBuilt, tooth: int) -> bool:
-    """Slot s lies between teeth s and s + 1, which are seen at tooth - s and tooth - s - 1."""
-    return _is_along(design.stator_shift, tooth) and design.opening_changes == _seen(design.opening_changes, tooth - 1)
-
-
-def _rotor_is_mirrored(design: MachineAsBuilt, magnet: int) -> bool:
-    turns = tuple(-turn for turn in design.magnet_turns)
-    alike = design.magnet_strengths == _seen(design.magnet_strengths, magnet)
-    return _is_along(design.rotor_shift, magnet) and alike and design.magnet_turns == _seen(turns, magnet)
-
-
-def _is_along(shift: tuple[float, float], number: int) -> bool:
-    return not any(shift) or (number == 0 and shift[1] == 0.0)
-
-
-def _seen(numbers: tuple[float, ...], first: int) -> tuple[float, ...]:
-    """Those that a mirror shows at 0, 1, ... when it shows the first one at ``first``."""
-    return tuple(numbers[(first - k) % len(numbers)] for k in range(len(numbers)))
 
 
 def defects_of(design: MachineAsBuilt) -> tuple[Defect, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import pi, sqrt
+from math import floor, sqrt
 
 import numpy as np
 
@@ -22,8 +22,7 @@ from workbench.models.machine.field import LoadedState
 from workbench.models.machine.surrogate import Surrogate
 
 _PROBE = 5e-4  # A, of an inductance; half of what still counts as no current
-_ANGLE_GRID = 0.5 * DEGREE  # loaded states are solved on; readings lie up to half of it away
-_AROUND = round(2 * pi / _ANGLE_GRID)
+_TO_WHOLE_DEGREES = 0.3 * DEGREE  # that rotors are set to, encoders off by tenths: there mirrors make two states one
 _TWO_DIGITS_WITHIN = 0.01  # relative; currents are solved at two digits where that is as near, else at three
 
 
@@ -203,7 +202,10 @@ def beyond_states(surrogate: Surrogate, design: MachineAsBuilt, tables: Sequence
 
 
 def _on_grid(angle: float) -> float:
-    return round(angle / _ANGLE_GRID) % _AROUND * _ANGLE_GRID
+    """A whole degree of the revolution where one is near enough, else between two; never farther than that [rad]."""
+    whole = round(angle / DEGREE)
+    near = abs(angle - whole * DEGREE) <= _TO_WHOLE_DEGREES
+    return (whole if near else floor(angle / DEGREE) + 0.5) % 360 * DEGREE
 
 
 def _few_digits(current: float) -> float:

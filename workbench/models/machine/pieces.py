@@ -203,12 +203,16 @@ class LoadedBeside(Piece):
 
     def solve(self, fields: Fields, states: States) -> Arrays:
         field = fields.only(fields.loaded)
-        here = field.loaded(fields.nominal, states)
-        turned = [self._at(field, states, [s.turned(step) for s in states]) - here for step in ANGLE_STEPS]
-        sides = ([_scaled(s, sign * _SCALE_STEP) for s in states] for sign in (1, -1))
-        up, down = (self._at(field, states, side) for side in sides)
+        alike = field.alike(fields.nominal, states)
+        solved = alike.of(states)
+        here = field.loaded(fields.nominal, solved)
+        turned = [self._at(field, solved, [s.turned(step) for s in solved]) - here for step in ANGLE_STEPS]
+        sides = ([_scaled(s, sign * _SCALE_STEP) for s in solved] for sign in (1, -1))
+        up, down = (self._at(field, solved, side) for side in sides)
         scale = [(up - down) / (2 * _SCALE_STEP), (up - 2 * here + down) / _SCALE_STEP**2]
-        return {"base": here, "angle": np.stack(turned, axis=1), "scale": np.stack(scale, axis=1)}
+        angle = alike.rows(np.stack(turned, axis=1))
+        angle[alike.are_mirrored] = angle[alike.are_mirrored, ::-1]  # as many steps ahead as behind
+        return {"base": alike.rows(here), "angle": angle, "scale": alike.rows(np.stack(scale, axis=1))}
 
     def _at(self, field: MachineField, states: States, beside: Sequence[LoadedState]) -> np.ndarray:
         """Samples at states beside others, each started from there."""
