@@ -10,7 +10,7 @@ import numpy as np
 from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.explain.hypotheses import Hypothesis
-from workbench.explain.tried import Progress, Promise, Search, Set, fit_set, label_of, start_from
+from workbench.explain.tried import NEGLIGIBLE, Progress, Promise, Search, Set, fit_set, label_of, start_from
 from workbench.likelihood.fit import with_parameters
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import law_error
@@ -32,9 +32,15 @@ def exchange(search: Search, leader: Set, progress: Progress) -> None:
         pulled = np.flatnonzero(np.abs(whole.fit.x) > PULLED)
         starts += [promise for k in pulled for promise in _instead_of_pull(search, whole, int(k))]
     for promise in starts:
-        if promise.every not in search.fitted and promise.label not in search.failed:
+        if not _is_weighed(search, promise.every) and promise.label not in search.failed:
             progress("fitting " + promise.label)
             fit_set(search, promise)
+
+
+def _is_weighed(search: Search, names: Set) -> bool:
+    """Whether a set was fitted and has a say. One that lies far behind what it could take the place of may have ended
+    in another valley, between a tolerance that is pulled far and a small effect: from here it may end higher."""
+    return names in search.fitted and search.log_posterior(names) > search.log_posterior(search.ranked[0]) - NEGLIGIBLE
 
 
 def _instead_of_effects(search: Search, whole: Hypothesis, kept: Set) -> list[Promise]:
