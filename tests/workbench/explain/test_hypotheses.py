@@ -425,17 +425,33 @@ def test_a_guess_learns_from_the_fits_of_what_it_holds(tmp_path):
     assert search.guessed == {far: 70.0, near: 100.0}
 
 
-def test_what_leads_is_weighed_against_its_twin(tmp_path):
-    """Two names for one law: the one that was found first is not sure of itself."""
+@pytest.mark.parametrize("behind", (None, 28.0))
+def test_what_leads_is_weighed_against_its_twin(tmp_path, behind):
+    """Two names for one law: the one that was found first is not sure of itself, nor where the other one was fitted
+    before and ended in another valley [nats]."""
     twin = type("Twin", (WAVES["wave2"],), {"name": classmethod(lambda cls: "twin")})
     bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
     signatures = signatures_of(bench, (WAVES["wave2"](), twin()))
     one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
     beliefs = beliefs_of({"wave2": WAVES["wave2"], "twin": twin}, signatures.names)
-    found = {frozenset(): null_of(bench), one.names: one}
+    found, other = {frozenset(): null_of(bench), one.names: one}, frozenset(("twin",))
+    if behind is not None:
+        found[other] = replace(one, log_evidence=one.log_evidence - behind)
     search = Search(bench, signatures, beliefs, (), found)
     exchange(search, one.names, lambda words: None)
-    assert search.log_evidence(frozenset(("twin",))) == pytest.approx(one.log_evidence, abs=1e-3)
+    assert search.log_evidence(other) == pytest.approx(one.log_evidence, abs=1e-3)
+
+
+def test_a_twin_that_has_a_say_already_is_not_fitted_again(tmp_path):
+    twin = type("Twin", (WAVES["wave2"],), {"name": classmethod(lambda cls: "twin")})
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    signatures = signatures_of(bench, (WAVES["wave2"](), twin()))
+    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    other, near = frozenset(("twin",)), replace(one, log_evidence=one.log_evidence - 3.0)
+    beliefs = beliefs_of({"wave2": WAVES["wave2"], "twin": twin}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), one.names: one, other: near})
+    exchange(search, one.names, lambda words: None)
+    assert search.fitted[other] is near
 
 
 def test_a_twin_is_one_that_tolerances_make_alike(tmp_path):
