@@ -7,7 +7,7 @@ unknown function where one is believed in. Terms are effects at a place of their
 
     ln p(r) = -1/2 (|r'|^2 - b^T A^-1 b + ln det A),   r' = r - shifts,  A = 1 + X^T X,  b = X^T r'
 
-All of it is read from the products of all columns with one another, so that one more explanation costs microseconds.
+All of it is read from products of columns with one another, so that one more explanation costs microseconds.
 """
 
 from __future__ import annotations
@@ -80,9 +80,24 @@ class Terms:
         return np.hstack([np.empty((self.rows, 0)), *every])
 
     @cached_property
-    def gram(self) -> np.ndarray:
-        """Products of all columns (Q, Q)."""
-        return self.columns.T @ self.columns
+    def own(self) -> tuple[np.ndarray, ...]:
+        """Products of what each term adds with one another (1 + k, 1 + k)."""
+        sizes = [1 + term.columns.shape[1] for term in self.all]
+        each = np.split(self.columns, np.cumsum(sizes)[:-1], axis=1) if sizes else []
+        return tuple(columns.T @ columns for columns in each)
+
+    def products(self, places: np.ndarray) -> np.ndarray:
+        """Of the columns at these places with all columns (k, Q). Few terms are ever in an explanation: what was asked
+        for is kept, products of all would take more memory than the columns."""
+        new = [place for place in dict.fromkeys(places.tolist()) if place not in self._known]
+        if new:
+            self._known.update(zip(new, self.columns[:, new].T @ self.columns))
+        return np.array([self._known[place] for place in places.tolist()]).reshape(len(places), self.columns.shape[1])
+
+    @cached_property
+    def _known(self) -> dict[int, np.ndarray]:
+        """Products of a column with all (Q,), by its place."""
+        return {}
 
     @cached_property
     def names(self) -> np.ndarray:
@@ -106,7 +121,12 @@ class Catalogue:
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        return tuple(term for term in self.whole.all if term.name not in self.without)
+        return tuple(self.whole.all[number] for number in self._numbers)
+
+    @cached_property
+    def _numbers(self) -> list[int]:
+        """Of the terms among all."""
+        return [number for number, term in enumerate(self.whole.all) if term.name not in self.without]
 
     @cached_property
     def _kept(self) -> np.ndarray:
@@ -142,7 +162,7 @@ class Catalogue:
         behind = places < m
         out[behind] = self._across[places[behind]]
         of_terms = places[~behind] - m
-        own = self.whole.gram[self._kept[of_terms]].take(self._kept, axis=1)
+        own = self.whole.products(self._kept[of_terms]).take(self._kept, axis=1)
         out[~behind, m:] = own - self._taken[:, of_terms].T @ self._taken
         out[~behind, :m] = self._across[:, places[~behind]].T
         return out
@@ -154,8 +174,9 @@ class Catalogue:
 
     def _blocks(self, which: np.ndarray, size: int) -> np.ndarray:
         places = self.first[which][:, None] + np.arange(1 + size) - self.background.shape[1]
-        kept, taken = self._kept[places], self._taken[:, places].transpose(1, 2, 0)
-        return self.whole.gram[kept[:, :, None], kept[:, None, :]] - taken @ taken.transpose(0, 2, 1)
+        taken = self._taken[:, places].transpose(1, 2, 0)
+        own = np.stack([self.whole.own[self._numbers[t]] for t in which])
+        return own - taken @ taken.transpose(0, 2, 1)
 
     def _on(self, whitened: np.ndarray) -> np.ndarray:
         """Products of all columns with whitened ones (n, R) that feel the laws (Q, R)."""
