@@ -194,8 +194,8 @@ def stator_is_regular(design: MachineAsBuilt) -> bool:
 
 def rotor_is_regular(design: MachineAsBuilt) -> bool:
     """All magnets alike, in their places, and about the axis of rotation."""
-    alike = all(strength == 1.0 for strength in design.magnet_strengths)
-    return alike and not any(design.magnet_turns) and not any(design.rotor_shift)
+    equal = all(strength == 1.0 for strength in design.magnet_strengths)
+    return equal and not any(design.magnet_turns) and not any(design.rotor_shift)
 
 
 def is_symmetric(design: MachineAsBuilt) -> bool:
@@ -218,8 +218,8 @@ def _stator_is_mirrored(design: MachineAsBuilt, tooth: int) -> bool:
 
 def _rotor_is_mirrored(design: MachineAsBuilt, magnet: int) -> bool:
     turns = tuple(-turn for turn in design.magnet_turns)
-    alike = design.magnet_strengths == _seen(design.magnet_strengths, magnet)
-    return _is_along(design.rotor_shift, magnet) and alike and design.magnet_turns == _seen(turns, magnet)
+    equal = design.magnet_strengths == _seen(design.magnet_strengths, magnet)
+    return _is_along(design.rotor_shift, magnet) and equal and design.magnet_turns == _seen(turns, magnet)
 
 
 def _is_along(shift: tuple[float, float], number: int) -> bool:
