@@ -255,8 +255,8 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Ranked:
-    """One effect that was tried. probability: that it is there, alone or with others; where something unknown is there
-    for sure, it may only be what its shape lacks of the true law, see ``explore.beside_the_unknown``.
+    """One effect that was tried. probability: that it is there, alone or with others; where something unknown is
+    likely, it may only be what its shape lacks of the true law, see ``explore.beside_the_unknown``.
 
     log_evidence: ln p of the fitted rows gained by its best explanation over nothing [nats]
     parameters: of that explanation;  at_bound: those that end on a bound of what is possible

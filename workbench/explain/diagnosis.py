@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.believed import DISAGREE
+from workbench.believed import DISAGREE, LIKELY
 from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
@@ -73,11 +73,11 @@ def diagnosis_of(
 ) -> Diagnosis:
     """The diagnosis of a search. power: size of an unknown discrepancy -> share noticed"""
     bench, p = search.bench, search.posterior
-    said = verdict(p, thresholds, plainly_nothing(simulator, p, bench.residual))
+    shown = beside_the_unknown(p, search.beliefs, search.stands_out) if p.remains >= LIKELY else p
+    said = verdict(shown, thresholds, plainly_nothing(simulator, p, bench.residual))
     best = leading(search, said)
     sealed = opened(bench, best)
     said = _with_sealed(said, sealed)
-    shown = beside_the_unknown(p, search.beliefs) if p.remains >= thresholds.sure else p
     ranked = ranking(search, shown)
     return Diagnosis(
         campaign=bench.campaign.id,

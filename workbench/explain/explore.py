@@ -3,7 +3,7 @@ beside each of the sets that lead, up to four at once beside what every other be
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -16,6 +16,8 @@ from effects.base import Effect
 from workbench.believed import MOST, UNKNOWN_RATE
 from workbench.likelihood.marginal import Catalogue, Readings
 from workbench.likelihood.unknown_laws import LAWS, without_laws
+
+StandsOut = Callable[[str, frozenset[str]], bool]  # an effect, of a set
 
 LEADERS = (1, 8, 6, 4)  # sets of none, one, two and three effects that are looked at with one effect more
 
@@ -270,22 +272,23 @@ def _add(shares: dict[frozenset[str], float], names: frozenset[str], share: floa
     shares[effects] = shares.get(effects, 0.0) + share
 
 
-def beside_the_unknown(p: Posterior, beliefs: Beliefs) -> Posterior:
-    """The same where something unknown is there for sure, so that an effect beside it may be there, or may only be what
+def beside_the_unknown(p: Posterior, beliefs: Beliefs, stands_out: StandsOut) -> Posterior:
+    """The same where something unknown is likely there, so that an effect beside it may be there, or may only be what
     its shape lacks of the true law.
 
     A law that takes k of N effects to be followed takes any of them with k/N, and one is there with its base rate pi,
     so that of those taken pi / (pi + k/N) are there. k: mean number of effects beside the unknown function
+    stands_out: whether an effect of a set explains too much to be what a law of another shape has taken
     Raises ValueError where nothing unknown is possible.
     """
     if not p.remains > 0:
         raise ValueError("nothing unknown is possible: its effects cannot be told from what it lacks")
     taken = fsum(len(names) * share for names, share in p.beside.items()) / fsum(p.beside.values())
     chance = taken / len(without_laws(frozenset(beliefs.log_odds)))
-    rates = {name: beliefs.base_rate(name) for names in p.beside for name in names}
-    there = {name: rate / (rate + chance) for name, rate in rates.items()}
     found: dict[frozenset[str], float] = {}
     for names, share in p.beside.items():
+        rates = {name: beliefs.base_rate(name) for name in names}
+        there = {name: 1.0 if stands_out(name, names) else rate / (rate + chance) for name, rate in rates.items()}
         for part, portion in _parts(names, there):
             found[part] = found.get(part, 0.0) + share * portion
     return Posterior(p.alone, found)

@@ -25,7 +25,7 @@ from workbench.likelihood.fit import FAR, Fit, misfit
 from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import Shape
-from workbench.likelihood.unknown_laws import LAWS, UnknownLaw
+from workbench.likelihood.unknown_laws import LAW_ERRORS, LAWS, UnknownLaw
 
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
@@ -222,6 +222,22 @@ class Search:
         if with_law and self.log_posterior(with_law) > least:
             words = next(e.words() for e in self.fitted[with_law].effects if isinstance(e, UnknownLaw))
         return words
+
+    def stands_out(self, name: str, names: Set) -> bool:
+        """Whether an effect of a set explains so much that it cannot stand for the law of an unknown function beside
+        the set: one that does is followed to a tenth at best, which leaves a hundredth of what it explains."""
+        if names not in self.fitted:
+            return False
+        known = self.log_evidence(names)
+        explained = known - max(self.log_evidence(part) for part in self.fitted if part <= names - {name})
+        return explained * LAW_ERRORS[-1] ** 2 > self._with_unknown(names) - known
+
+    def _with_unknown(self, names: Set) -> float:
+        """ln evidence of a set with what suits best of unknown functions and laws beside it [nats]."""
+        found = [self.log_evidence(n) for n in self.fitted if n - LAWS.keys() == names and n != names]
+        found += [self.log_evidence_beside(names)] if names in self.beside else []
+        found += [self.guessed_beside[names]] if names in self.guessed_beside else []
+        return max(found, default=np.inf)
 
     @property
     def posterior(self) -> Posterior:

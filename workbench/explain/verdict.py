@@ -39,15 +39,14 @@ class Thresholds:
 
 
 def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Verdict:
-    """Exactly one verdict. Where an unknown function is there for sure no name is printed beside it: an effect may be
-    what its shape lacks of the true law.
+    """Exactly one verdict.
 
+    p: where something unknown is likely, that of ``explore.beside_the_unknown``
     plainly_nothing: P(nothing that these data would show plainly); where that is unlikely, be the alarm threshold not
         reached, nothing is said to be missing and nothing to be right
     """
     sure, can_tell = thresholds.sure, thresholds.can_tell
-    named = p.nothing < thresholds.quiet and can_tell and p.remains < sure
-    if named and (groups := printed(p, sure)):
+    if p.nothing < thresholds.quiet and can_tell and (groups := printed(p, sure)):
         return _of_groups(p, groups)
     is_quiet = p.nothing >= thresholds.quiet
     if is_quiet and not can_tell:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from figures.report import Code, KeyNumber, KeyNumbers, Picture, Remark, Section, Table, write_report
+from workbench.believed import LIKELY
 from workbench.findings import ChannelFit, Comparison, Diagnosis, LearnedAt, Ledger, LedgerStep, Prediction, Ranked
 from workbench.report import beliefs, channels, operating_range, structure
 from workbench.report.sentences import (
@@ -290,11 +291,12 @@ def _probabilities(d: Diagnosis) -> tuple[str | Picture | Table, ...]:
 
 
 def _beside_the_unknown(d: Diagnosis) -> str:
-    if d.p_something_remains < d.sure:
+    if d.p_something_remains < LIKELY:
         return ""
     return (
-        " As something unknown is there for sure, an effect that helps beside it may only be what its shape lacks of "
-        "the true law. The probabilities count that, by how often an effect is met and how many are needed beside it."
+        " As something unknown is likely there, an effect that helps beside it may only be what its shape lacks of "
+        "the true law, unless it explains a hundred times as much. The probabilities count that, by how often an "
+        "effect is met and how many are needed beside it."
     )
 
 

@@ -39,6 +39,7 @@ from workbench.likelihood.fit import fitted, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
+from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener
 from workbench.models.model import Model
 
@@ -423,6 +424,26 @@ def test_a_guess_learns_from_the_fits_of_what_it_holds(tmp_path):
     search.origins = {far: none, near: frozenset(("wave4",))}
     tried_module._lower(search, frozenset(("wave2",)), 30.0)
     assert search.guessed == {far: 70.0, near: 100.0}
+
+
+def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(tmp_path):
+    """By hand: one effect explains 800 nats, another one 400; an unknown function beside both 3.9, then 5, a law 9."""
+    bench = sure_of_noise(tmp_path)
+    none, first, second = frozenset(), frozenset(("wave2",)), frozenset(("wave3",))
+    law, both = next(iter(LAWS)), first | second
+    nats = {none: 0.0, first: 500.0, second: 100.0, both: 900.0}
+    search = searching(bench, {names: replace(null_of(bench), log_evidence=v) for names, v in nats.items()})
+
+    def standing_out():
+        return [name for name in sorted(both) if search.stands_out(name, both)]
+
+    assert standing_out() == [], "nothing is known of what is unknown beside them"
+    for gain, expected in ((3.9, ["wave2", "wave3"]), (5.0, ["wave2"])):
+        search.beside[both] = Beside(search.fitted[both], 900.0 + gain, (), ())
+        assert standing_out() == expected
+    search.fitted[both | {law}] = replace(null_of(bench), log_evidence=909.0)
+    assert standing_out() == []
+    assert not search.stands_out("wave4", frozenset(("wave4",))), "what was not fitted explains nothing"
 
 
 @pytest.mark.parametrize("behind", (None, 28.0))

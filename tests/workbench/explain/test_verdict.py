@@ -35,7 +35,6 @@ CASES = {
     "four": (p({"a+b+c+d": 0.99, "": 0.01}), SURE, ("several", ("a", "b", "c", "d"), 0.99)),
     "two, one doubtful": (p({"a+b": 0.6, "a+c": 0.4}), SURE, ("partial", ("a",), 1.0)),
     "a name, and more": (p({"a": 0.4}, {"a": 0.6}), SURE, ("partial", ("a",), 1.0)),
-    "a name beside a law": (p({"a": 0.04}, {"a": 0.96}), SURE, ("none_of_these", (), 0.96)),
     "no name, and more": (p({"": 0.1, "a": 0.1}, {"": 0.7, "a": 0.1}), SURE, ("none_of_these", (), 0.8)),
     "something": (p({"": 0.1, "a": 0.5}, {"": 0.4}), SURE, ("cannot_tell", (), 0.9)),
     "nothing": (p({"": 0.9, "a": 0.1}), SURE, ("nothing_missing", (), 0.93)),
@@ -177,27 +176,42 @@ def test_rounding_carries_no_probability_beyond_one():
 USUAL = Beliefs({"usual": 0.0, **{f"n{k}": np.log(0.02 / 0.98) for k in range(49)}}, frozenset())  # 0.5 and 0.02
 
 
+def nothing_stands_out(name, names):
+    return False
+
+
 def test_beside_something_unknown_a_rare_effect_may_be_what_its_shape_lacks_of_the_law():
     """Three of fifty effects are needed beside it: 0.06 each by chance, 0.02 and 0.5 by what is met."""
-    shown = beside_the_unknown(p({}, {"usual+n1+n2": 1.0}), USUAL)
+    shown = beside_the_unknown(p({}, {"usual+n1+n2": 1.0}), USUAL, nothing_stands_out)
     assert shown.of("n1") == pytest.approx(0.02 / 0.08) == shown.of("n2")
     assert shown.of("usual") == pytest.approx(0.5 / 0.56)
     assert shown.none_of_these == pytest.approx((0.06 / 0.08) ** 2 * 0.06 / 0.56)
 
 
 def test_an_effect_that_is_needed_alone_is_believed_more_than_one_of_many():
-    one, many = (beside_the_unknown(p({}, {sets: 1.0}), USUAL).of("n1") for sets in ("n1", "n1+n2+n3+n4"))
+    every = [p({}, {sets: 1.0}) for sets in ("n1", "n1+n2+n3+n4")]
+    one, many = (beside_the_unknown(one, USUAL, nothing_stands_out).of("n1") for one in every)
     assert one == pytest.approx(0.02 / 0.04) and many == pytest.approx(0.02 / 0.1)
 
 
 def test_what_is_there_without_something_unknown_and_that_it_is_stay_as_they_are():
     before = p({"": 0.01, "n1": 0.04}, {"": 0.15, "n1": 0.5, "usual+n2": 0.3})
-    shown = beside_the_unknown(before, USUAL)
+    shown = beside_the_unknown(before, USUAL, nothing_stands_out)
     assert shown.alone == before.alone and shown.remains == pytest.approx(before.remains)
     assert sum(shown.sets.values()) == pytest.approx(1.0)
     assert shown.nothing == before.nothing and 0.04 < shown.of("n1") < before.of("n1")
 
 
+@pytest.mark.parametrize("remains", (0.6, 0.97))
+def test_beside_something_unknown_only_what_stands_out_is_named(remains):
+    """A drag from a threshold speed on is followed by windage, which explains ten times as much as what that leaves."""
+    given = p({"n1": 1 - remains}, {"n1": remains})
+    found = verdict(beside_the_unknown(given, USUAL, nothing_stands_out), SURE, 0.0)
+    assert (found.kind, found.names, found.probability) == ("none_of_these", (), pytest.approx(remains))
+    plain = verdict(beside_the_unknown(given, USUAL, lambda name, names: name == "n1"), SURE, 0.0)
+    assert (plain.kind, plain.names, plain.probability) == ("partial", ("n1",), pytest.approx(1.0))
+
+
 def test_an_unknown_function_that_needs_no_effect_stays_alone():
-    shown = beside_the_unknown(p({"n1": 0.02}, {"": 0.98}), USUAL)
+    shown = beside_the_unknown(p({"n1": 0.02}, {"": 0.98}), USUAL, nothing_stands_out)
     assert shown.beside == {frozenset(): 0.98}
