@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 
 from effects.parameter import parameters_of
-from workbench.believed import FALSE_ALARMS, LIKELY, MISSING, NAMED, PLAIN, SPARE
+from workbench.believed import FALSE_ALARMS, LIKELY, NAMED, PLAIN, SPARE
 from workbench.explain.explore import Beliefs, Names, Posterior, explored, posterior
 from workbench.explain.verdict import Thresholds
 from workbench.findings import DetectionLimit
@@ -143,7 +143,7 @@ class Simulator:
 def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]:
     """What is said from which probability on, and the share of unknown functions of a size that would be noticed."""
     empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
-    quiet = min(1.0 - MISSING, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
+    quiet = min(1.0 - NAMED, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
     sure = max(NAMED, -_lowest([-p for p in wrong], FALSE_ALARMS))
     if spare_readings(simulator.bench) < SPARE:
