@@ -65,10 +65,15 @@ class Simulator:
         return np.sum(shifts, axis=0) - np.sum(taken**2, axis=0)
 
     def noise(self, count: int) -> np.ndarray:
-        """Whitened residuals (n, count) of campaigns that hide nothing."""
+        """Whitened residuals (n, count) of campaigns that hide nothing.
+
+        Fits learn from the readings how large the noise is, to first order by the weight of a channel: of a noise that
+        is larger than expected only the rest that this leaves can be taken for a discovery.
+        """
         jacobian = self.bench.centre.jacobian
         tolerances = jacobian @ self.random.standard_normal((jacobian.shape[1], count))
-        return tolerances + drawn_noise(self.bench.fit.stack, self.bench.noise, self.random, count)
+        noise = drawn_noise(self.bench.fit.stack, self.bench.noise, self.random, count)
+        return tolerances + noise * np.sqrt(np.column_stack([self.bench.fit.weights(one) for one in noise.T]))
 
     def empty(self, count: int) -> list[Simulated]:
         """Campaigns that hide nothing."""

@@ -1,8 +1,12 @@
 """Stated probabilities against how often they are true, in campaigns drawn from what is believed before the data."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.random import default_rng
+from scipy.special import logsumexp
+from scipy.stats import multivariate_t
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.believed import FALSE_ALARMS, LIKELY, NAMED, UNKNOWN_RATE
@@ -11,8 +15,9 @@ from workbench.explain.calibrate import Simulated, Simulator, detection_limits, 
 from workbench.explain.explore import beliefs_of
 from workbench.explain.verdict import verdict
 from workbench.likelihood.bench import bench_of
+from workbench.likelihood.noise import drawn_noise
 from workbench.likelihood.signatures import candidates, signatures_of
-from workbench.likelihood.unknown import SIZES, shapes_of
+from workbench.likelihood.unknown import SIZES, Beside, shapes_of
 from workbench.models.model import Model
 
 CAMPAIGNS = 500
@@ -132,3 +137,27 @@ def test_detection_limits_are_sizes_that_nine_of_ten_campaigns_show(simulator):
 def test_the_same_seed_gives_the_same_thresholds(tmp_path):
     one, again, other = (thresholds_of(simulator_of(tmp_path / "c", seed, n=20)) for seed in (3, 3, 4))
     assert one == again and one != other
+
+
+def test_noise_larger_than_expected_is_no_discovery(simulator):
+    """ln p that unknown functions gain in campaigns that hide nothing, against dense Student densities."""
+    bench, count = simulator.bench, 400
+    jacobian, random = bench.centre.jacobian, default_rng(5)
+    tolerances = jacobian @ random.standard_normal((jacobian.shape[1], count))
+    drawn = tolerances + drawn_noise(bench.fit.stack, bench.noise, random, count)
+    null = np.eye(len(jacobian)) + jacobian @ jacobian.T
+
+    def student(covariance):
+        return multivariate_t(np.zeros(len(null)), covariance, df=bench.fit.dof[0]).logpdf(drawn.T)
+
+    shares = [
+        student(null + a * a * shape.columns @ shape.columns.T) + shape.log_prior - np.log(len(SIZES))
+        for shape in simulator.shapes
+        for a in SIZES
+    ]
+    exact = logsumexp(shares, axis=0) - student(null)
+    beside = Beside(simulator.shapes, jacobian)
+    ours = beside.log_evidences(replace(simulator, random=default_rng(5)).noise(count))
+    gaussian = beside.log_evidences(drawn)
+    off, was_off = (np.sqrt(np.mean((found - exact) ** 2)) for found in (ours, gaussian))
+    assert off < 0.15 and was_off > 0.3
