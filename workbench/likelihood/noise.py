@@ -71,7 +71,7 @@ def measured_noise(stack: Stack, predicted: np.ndarray) -> Noise:
     rhos = _correlations(stack, tame.within, tame.scales)
     found = [_of_channel(c.name, s, r) for c, s, r in zip(stack.channels, tame.scales, rhos)]
     scans = [
-        _of_whole_scans(stack.tables[c.table], stack.u[c.rows], d.spread / own.scale, own.rho)
+        _of_whole_scans(stack.tables[c.table], stack.u[c.rows], d, own)
         for c, d, own in zip(stack.channels, tame.whole, found)
     ]
     channels = [replace(own, scans=spread) for own, spread in zip(found, _spreads(scans))]
@@ -189,13 +189,18 @@ def _fence(values: np.ndarray) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Scans:
-    """Offsets and slopes of the scans of a channel, of the size of its noise, and their variance by noise (s,)."""
+    """Offsets and slopes of the scans of a channel, of the size of its noise, and their variance by noise (s,).
+
+    free: how many of them are independent, as they are taken from the mean of the repeats
+    """
 
     found: np.ndarray
     noise: np.ndarray
+    free: float
 
 
-def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _Scans:
+def _of_whole_scans(table: Table, u: np.ndarray, deviation: _Deviation, own: ChannelNoise) -> _Scans:
+    z, rho = deviation.spread / own.scale, own.rho
     found, noise = [], []
     for rows in table.scans:
         known = rows[np.isfinite(z[rows])]
@@ -204,7 +209,7 @@ def _of_whole_scans(table: Table, u: np.ndarray, z: np.ndarray, rho: float) -> _
             values = np.clip(z[known], *_fence(z[known]))
             found += list(np.linalg.lstsq(shapes, values, rcond=None)[0])
             noise += list((1 + rho) / (1 - rho) * np.diagonal(np.linalg.pinv(shapes.T @ shapes)))
-    return _Scans(np.array(found), np.array(noise))
+    return _Scans(np.array(found), np.array(noise), len(found) / deviation.growth**2)
 
 
 def scan_shapes(u: np.ndarray) -> np.ndarray:
@@ -216,11 +221,12 @@ def scan_shapes(u: np.ndarray) -> np.ndarray:
 
 def _spreads(scans: Sequence[_Scans]) -> list[float]:
     """Standard deviation of offset and of slope of the scans of every channel beyond what noise gives them, drawn
-    towards the one common to all: three repeats alone say little of it."""
+    towards the one common to all, as three repeats alone say little of it: that of the next scan, which is one of
+    Student's t as the variance of n scans is not known but has a posterior of n degrees of freedom."""
     found, noise = (np.concatenate([getattr(s, name) for s in scans]) for name in ("found", "noise"))
     common = _excess(found, noise)
-    own = [(_excess(s.found, s.noise), len(s.found)) for s in scans]
-    return [float(np.sqrt((POOLED_SCANS * common + n * e) / (POOLED_SCANS + n))) for e, n in own]
+    own = [(_excess(s.found, s.noise), s.free) for s in scans]
+    return [float(np.sqrt((POOLED_SCANS * common + n * e) / (POOLED_SCANS + n - 2.0))) for e, n in own]
 
 
 def _excess(found: np.ndarray, noise: np.ndarray) -> float:

@@ -123,6 +123,19 @@ def test_what_a_scan_as_a_whole_is_off_by_is_found(offset, slope):
     assert found.scale == pytest.approx(1.0, rel=0.05) and abs(found.rho) < 0.05
 
 
+def test_the_next_scan_is_off_by_as_much_as_two_repeats_let_expect():
+    """Four channels of two scans each, off by 1.5 of their noise; square of what the next one is off by, expected 1."""
+    random, found = np.random.default_rng(2), []
+    shapes = np.array([np.ones(40), np.sqrt(12) * np.linspace(-0.5, 0.5, 40)])
+    for _ in range(200):
+        off = 1.5 * random.standard_normal((4, 2, 2)) @ shapes
+        number, place = np.repeat((0, 1), 40), np.tile(np.linspace(0, 1, 40), 2)
+        errors = 0.2 * (off + random.standard_normal(off.shape)).reshape(4, 80)
+        stack = stacked([table({"force": e}, 0.2, number, number, displacement=place) for e in errors])
+        found += [1.5 / (channel.scans * channel.scale) for channel in noise_of(stack).channels]
+    assert 0.9 < np.mean(np.square(found)) < 1.1
+
+
 @pytest.mark.parametrize("rho", [0.0, 0.5])
 def test_neighbours_that_go_together_are_no_remounting(rho):
     found = noise_of(scans(rho=rho)).channels[0]
