@@ -58,10 +58,9 @@ def diagnose(
     if not conventions.are_right:
         return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")
-    bench = bench_of(model, campaign, library, progress=progress)
-    search = searched(bench, library, progress)
+    search = searched(bench_of(model, campaign, library, progress=progress), library, progress)
     progress("simulating campaigns of this bench")
-    simulator = Simulator(bench, search.signatures, search.beliefs, search.shapes, np.random.default_rng(seed))
+    simulator = Simulator(search.bench, search.signatures, search.beliefs, search.shapes, np.random.default_rng(seed))
     thresholds, power = thresholds_of(simulator)
     progress("what to measure next")
     found = diagnosis_of(search, simulator, thresholds, power)

@@ -16,7 +16,7 @@ from workbench.explain.explore import Beliefs, beliefs_of
 from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
-from workbench.likelihood.bench import Bench
+from workbench.likelihood.bench import Bench, reweighed
 from workbench.likelihood.signatures import Signatures, candidates, signatures_of
 from workbench.likelihood.unknown import shapes_of
 from workbench.likelihood.unknown_laws import LAWS
@@ -32,7 +32,16 @@ PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give 
 
 
 def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None) -> Search:
-    """Tries every effect of a library and every unknown law, alone and with others, and unknown functions."""
+    """Tries every effect of a library and every unknown law, alone and with others, and unknown functions; once more
+    where what leads takes other readings for wild than the model did that lacks it."""
+    search = _searched(bench, library, progress)
+    leader = search.fitted[search.ranked[0]]
+    predictor = leader.problem.predictor.on(bench.stack)
+    again = reweighed(bench, predictor.predict(leader.fit.x, leader.effects))
+    return search if again is bench else _searched(again, library, progress)
+
+
+def _searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress) -> Search:
     every = {**library, **LAWS}
     signatures = signatures_of(bench, candidates(bench, every), progress)
     beliefs = beliefs_of(every, signatures.names)

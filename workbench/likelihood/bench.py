@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import log
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -17,7 +18,7 @@ from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
-from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
+from workbench.likelihood.noise import REPORTED, WILD, Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.predictor import DirectPredictor
@@ -48,7 +49,12 @@ class Bench:
     fit: Problem
     held_out: Problem | None
     null: Fit
-    complaints: tuple[str, ...] = field(default=())
+    remarks: tuple[str, ...] = field(default=())
+
+    @property
+    def complaints(self) -> tuple[str, ...]:
+        """What a reader must know of the readings."""
+        return self.remarks + _wildness(self.noise)
 
     @cached_property
     def centre(self) -> Fit:
@@ -120,27 +126,52 @@ def bench_of(
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = predictor.stack
     stack = replace(stack, u=_with_conditions(predictor), left_open=left_open(predictor.model, stack))
-    chosen = [~table.held_out for table in tables]
+    chosen = _chosen(tables)
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
-    noise = _noise_at(predictor, stack, chosen, predictor.start)
+    noise = _noise_at(stack, chosen, predictor.predict(predictor.start))
     drawn = _problem(predictor, stack, noise, chosen)
     first = fitted(drawn, (), predictor.start, np.zeros(0))
-    noise = _noise_at(predictor, stack, chosen, first.x)
+    noise = _noise_at(stack, chosen, predictor.predict(first.x))
     drawn = _problem(predictor, stack, noise, chosen)
     fit, null = sharpened(drawn, refitted(drawn, first))
     fit = drawn if _far(fit, null) else fit
-    hidden = [~mask for mask in chosen]
-    held_out = _problem(fit.predictor, stack, noise, hidden) if any(m.any() for m in hidden) else None
-    complaints = campaign.complaints + _thinning(campaign.tables, tables) + _wildness(noise) + _untested(tables)
+    held_out = _held_out(fit.predictor, stack, noise, chosen)
+    remarks = campaign.complaints + _thinning(campaign.tables, tables) + _untested(tables)
     white = whitener(stack, noise)
-    return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, complaints)
+    return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, remarks)
 
 
-def _noise_at(predictor: DirectPredictor, stack: Stack, chosen: Sequence[np.ndarray], x: np.ndarray) -> Noise:
+def reweighed(bench: Bench, predicted: np.ndarray) -> Bench:
+    """The bench with its wild readings told by a model that explains the others; the same one where that changes none.
+
+    A model that lacks an effect larger than a wild reading takes the good one of two for it.
+
+    predicted: all readings (n,)
+    """
+    chosen = _chosen(bench.stack.tables)
+    noise = _noise_at(bench.stack, chosen, predicted)
+    if np.all(np.abs(np.log(noise.inflation / bench.noise.inflation)) < log(REPORTED / WILD)):
+        return bench
+    fit = _problem(bench.fit.predictor, bench.stack, noise, chosen)
+    held_out = _held_out(fit.predictor, bench.stack, noise, chosen)
+    white, null = whitener(bench.stack, noise), refitted(fit, bench.null)
+    return replace(bench, noise=noise, white=white, fit=fit, held_out=held_out, null=null)
+
+
+def _chosen(tables: Sequence[Table]) -> list[np.ndarray]:
+    """Rows of every table that may be fitted."""
+    return [~table.held_out for table in tables]
+
+
+def _held_out(predictor: DirectPredictor, stack: Stack, noise: Noise, chosen: Sequence[np.ndarray]) -> Problem | None:
+    hidden = [~mask for mask in chosen]
+    return _problem(predictor, stack, noise, hidden) if any(mask.any() for mask in hidden) else None
+
+
+def _noise_at(stack: Stack, chosen: Sequence[np.ndarray], predicted: np.ndarray) -> Noise:
     """Size and correlation of the noise from what all repeats disagree by, the sealed ones too; which readings are wild
-    is asked of fitted and of sealed rows apart, and of all where only one repeat is fitted."""
-    predicted = predictor.predict(x)
+    is asked of fitted and of sealed rows apart, and of all where only one repeat is fitted. predicted: readings (n,)"""
     whole = measured_noise(stack, predicted)
     inflation = whole.inflation.copy()
     for masks in (chosen, [~mask for mask in chosen]):
