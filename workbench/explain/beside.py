@@ -8,16 +8,7 @@ import numpy as np
 
 from workbench.explain.explore import Explanation, explored
 from workbench.explain.hypotheses import Beside, beside_unknown
-from workbench.explain.tried import (
-    REACH,
-    Progress,
-    Promise,
-    Search,
-    Set,
-    additions,
-    fit_set,
-    student_gain,
-)
+from workbench.explain.tried import REACH, Progress, Promise, Search, Set, additions, fit_set
 
 BESIDE = 4  # sets that are looked at beside an unknown function
 MOST_BESIDE = 16  # effects at most that are fitted beside one; BESIDE where it is far better than any without
@@ -60,7 +51,7 @@ def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None
     for found in explored(added.names, added.readings, search.beliefs, have, len(have) + 1).values():
         every = have | found.names
         if found.names and every not in search.beside:
-            gain = beside.log_evidence + search.forms.get(have, 0.0) + student_gain(hypothesis, found.gain)
+            gain = beside.log_evidence + search.forms.get(have, 0.0) + added.gain(found)
             search.guessed_beside[every] = max(gain, search.guessed_beside.get(every, -np.inf))
             promised[every] = found, gain + search.beliefs.log_prior(every)
     for promise in added.promises(promised):

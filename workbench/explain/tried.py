@@ -21,8 +21,8 @@ from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
 from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere, turned
 from workbench.likelihood.bench import Bench
-from workbench.likelihood.fit import FAR, Fit, misfit
-from workbench.likelihood.marginal import Readings
+from workbench.likelihood.fit import FAR, Fit
+from workbench.likelihood.marginal import Given, Readings
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import Shape
 from workbench.likelihood.unknown_laws import LAW_ERRORS, LAWS, UnknownLaw
@@ -31,6 +31,7 @@ REACH = 2.0  # nats behind the best, beyond which a set is left at what it promi
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
 NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
 STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
+MOVED = 3.0  # of the noise of all readings, that one standard deviation of a tolerance makes more or less beside a fit
 KEPT = 40  # promises beside one fit that are followed up
 
 Progress = Callable[[str], None]
@@ -70,6 +71,55 @@ class Additions:
         leading = sorted(found, key=lambda every: (-found[every][1], label_of(every)))[:KEPT]
         return [self._promise(e, *found[e]) for e in found if any(e <= every for every in leading)]
 
+    def gain(self, found: Explanation) -> float:
+        """Of a set, in the likelihood of the fits [nats]: what these gain from where the fit ended to where linear
+        algebra ends, less what the set costs by being one of many. Linear algebra takes as cost, too, what weights
+        beyond their reach would have gained: more than the set can cost by itself it does not.
+        """
+        after = self.names.catalogue.given(found.terms, self.readings)
+        itself = after.spread - self._bare.spread - float(self.names.priors[list(found.terms)].sum())
+        cost = min(self._bare.least - after.least - found.gain, itself)
+        return self._begins - self._ends(after, found.terms) - cost
+
+    @cached_property
+    def _bare(self) -> Given:
+        return self.names.catalogue.given((), self.readings)
+
+    @cached_property
+    def _begins(self) -> float:
+        """Minus ln p in the likelihood of the fits where the fit ended, or linear algebra without terms if that is
+        better [nats]."""
+        fit = self.parent.fit
+        return min(self._ends(self._bare, ()), self._student(fit.residual) + 0.5 * float(fit.x @ fit.x))
+
+    def _ends(self, given: Given, terms: tuple[int, ...]) -> float:
+        """The same where linear algebra ends with some terms, these within their reach [nats]."""
+        catalogue = self.names.catalogue
+        held = np.clip(given.weights[catalogue.background.shape[1] :], *catalogue.reach(terms))
+        left = at_zero(self.parent) - catalogue.added(terms, held)
+        pulled = self._pulls @ left
+        pulls = 0.5 * float(held @ held + pulled @ pulled)
+        return self._student(left - catalogue.background @ pulled) + pulls
+
+    @cached_property
+    def _pulls(self) -> np.ndarray:
+        """From a residual to the most probable weights of the background (m, n)."""
+        background = self.names.catalogue.background
+        return np.linalg.solve(np.eye(background.shape[1]) + background.T @ background, background.T)
+
+    def _student(self, residual: np.ndarray) -> float:
+        """Minus ln p of a residual in the likelihood of the fits, with the spread that it leaves the background
+        [nats]."""
+        problem, background = self.parent.problem, self.names.catalogue.background
+        curvature = np.eye(background.shape[1]) + np.tensordot(problem.channel_weights(residual), self._of_channels, 1)
+        return problem.misfit(residual) + 0.5 * float(np.linalg.slogdet(curvature)[1])
+
+    @cached_property
+    def _of_channels(self) -> np.ndarray:
+        """Products of the background's columns with one another in every channel (channels, m, m)."""
+        parts = [self.names.catalogue.background[c.rows] for c in self.parent.problem.stack.channels]
+        return np.array([part.T @ part for part in parts])
+
     def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
         weights = self.names.catalogue.given(found.terms, self.readings).weights
@@ -94,6 +144,7 @@ class Search:
     origins: the fitted sets beside which that was guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
+    elsewhere: signatures beside fits of large effects, with d readings / d x there (n, m)
     """
 
     bench: Bench
@@ -109,6 +160,7 @@ class Search:
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
+    elsewhere: list[tuple[np.ndarray, Signatures]] = field(default_factory=list)
 
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
@@ -145,6 +197,18 @@ class Search:
         except WorkbenchError:  # what cannot be built is not the same
             return True
         return not model.base.is_alike(model.design, changed)
+
+    def signatures_beside(self, hypothesis: Hypothesis) -> Signatures:
+        """Of all effects beside a fit: those of the centre or of a fit before, but where its effects are so large that
+        tolerances do there what they do at none of these, and so would effects."""
+        fit, white = hypothesis.fit, self.bench.fit.white
+        known = [(self.bench.centre.slopes, self.signatures), *self.elsewhere]
+        moved = [float(np.linalg.norm(white(fit.slopes - slopes), axis=0).max(initial=0.0)) for slopes, _ in known]
+        if min(moved) > MOVED:
+            here = self.signatures.beside(hypothesis.problem.predictor, fit.x, fit.at_maximum)
+            self.elsewhere.append((fit.slopes, here))
+            return here
+        return known[int(np.argmin(moved))][1]
 
     def log_evidence_beside(self, names: Set) -> float:
         """Of a set beside an unknown function, all its forms together [nats]. An unknown function makes good what an
@@ -340,7 +404,7 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     for every, found in ((have | found.names, found) for found in sets.values() if found.names):
         if every in search.fitted:
             continue
-        guess = search.by_expansion(have) + student_gain(hypothesis, found.gain)
+        guess = search.by_expansion(have) + added.gain(found)
         origin = search.origins.get(every, have)
         if origin == have or len(have) > len(origin) or guess > search.guessed.get(every, -np.inf):
             search.guessed[every], search.origins[every] = guess, have
@@ -353,19 +417,6 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
 
 def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
     """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
-    names = Names(search.signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
+    signatures = search.signatures_beside(hypothesis)
+    names = Names(signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
     return Additions(search, hypothesis, names, names.catalogue.readings(at_zero(hypothesis)[:, None])[0])
-
-
-def student_gain(hypothesis: Hypothesis, gain: float) -> float:
-    """A Gaussian gain of ln p in the likelihood of the fits [nats]: what pulled tolerances cost comes back as it is,
-    the rest is taken from the channels that fit worst."""
-    problem, x = hypothesis.problem, hypothesis.fit.x
-    squares, sizes = problem.squares(hypothesis.fit.residual), problem.sizes
-    excess = np.maximum(squares - sizes, 0.0)
-    pulls = 0.5 * float(x @ x)
-    left = gain - pulls
-    if left <= 0 or excess.sum() == 0:
-        return gain
-    fall = np.minimum(2 * left * excess / excess.sum(), excess)
-    return pulls + min(left, misfit(squares, problem.dof, sizes) - misfit(squares - fall, problem.dof, sizes))

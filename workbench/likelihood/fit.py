@@ -77,10 +77,13 @@ class Problem:
         """Minus ln likelihood, up to what all hypotheses share."""
         return misfit(self.squares(residual), self.dof, self.sizes)
 
+    def channel_weights(self, residual: np.ndarray) -> np.ndarray:
+        """Slope of the misfit to q/2 of every channel (channels,)."""
+        return (self.dof + self.sizes) / (self.dof + self.squares(residual))
+
     def weights(self, residual: np.ndarray) -> np.ndarray:
-        """Slope of the misfit to q/2 of the row's channel (n,)."""
-        per_channel = (self.dof + self.sizes) / (self.dof + self.squares(residual))
-        return np.repeat(per_channel, self.sizes)
+        """The same of the channel of every row (n,)."""
+        return np.repeat(self.channel_weights(residual), self.sizes)
 
 
 def misfit(squares: np.ndarray, dof: np.ndarray, sizes: np.ndarray) -> float:

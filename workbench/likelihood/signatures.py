@@ -5,8 +5,8 @@ One set of signatures serves the search, the simulated campaigns, the detection 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from math import log
@@ -21,6 +21,7 @@ from workbench.believed import TAILS
 from workbench.errors import WorkbenchError
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.marginal import Catalogue, Term, Terms
+from workbench.likelihood.predictor import Predictor
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener
 
@@ -188,6 +189,19 @@ class Signatures:
         every = [(s, k, len(variants)) for variants in self.found.values() for k, s in enumerate(variants)]
         terms = (term for s, k, count in every for term in s.terms(self.white, k, -log(count)))
         return Terms.in_one(terms, len(self.white.sigma), sum(s.term_columns for s, _, _ in every))
+
+    def beside(self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect]) -> Signatures:
+        """The same at nuisances x (m,) and beside effects that are there, of these each beside the others."""
+
+        def again(before: Signature) -> Signature:
+            others = tuple(effect for effect in effects if effect.name() != before.name)
+            try:
+                base = predictor.predict(x, others)
+                return signature(before.effect, lambda effect: predictor.predict(x, (*others, effect)) - base)
+            except (WorkbenchError, ArithmeticError, ValueError):  # the model has no answer there: as it was
+                return before
+
+        return replace(self, found={name: tuple(map(again, forms)) for name, forms in self.found.items()})
 
     def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
         """The catalogue beside a background that was whitened so (n, m), of all effects but some."""

@@ -13,7 +13,7 @@ import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
 from effects.base import ResponseEffect
 from effects.parameter import parameter
-from effects.prior import LogNormal, Uniform
+from effects.prior import LogNormal, Normal, Uniform
 from tests.workbench.toy_bench import LIBRARY, RATE, Bump, Hardening, Spring, SpringModel, written
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
@@ -22,6 +22,7 @@ from workbench.explain.beside import weigh
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import (
     Beside,
+    Hypothesis,
     at_zero,
     beside_unknown,
     exact,
@@ -33,9 +34,9 @@ from workbench.explain.hypotheses import (
 )
 from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.search import best_alone, searched
-from workbench.explain.tried import Promise, Search, expand, fit_set, student_gain
+from workbench.explain.tried import Promise, Search, expand, fit_set
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
-from workbench.likelihood.fit import fitted, misfit, refitted
+from workbench.likelihood.fit import fitted, linearised, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
@@ -294,27 +295,68 @@ def test_a_fit_ends_where_the_expansion_is_exact(bench):
 # ---- promises --------------------------------------------------------------------------------------------------------
 
 
+def with_few_repeats(bench, dof):
+    """The bench with a noise that so many degrees of freedom have measured."""
+    fit = replace(bench.fit, dof=np.full(1, float(dof)))
+    return replace(bench, fit=fit, null=fitted(fit, (), np.zeros(2), np.zeros(0)))
+
+
+def promised_and_gained(bench, cls):
+    """What an effect beside nothing is promised to gain, and gains [nats]."""
+    signatures, only = signatures_of(bench, (cls(),)), frozenset((cls.name(),))
+    beliefs = beliefs_of({cls.name(): cls}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench)})
+    expand(search, search.fitted[frozenset()], [])
+    gained = best_alone(bench, signatures, beliefs).log_evidence
+    return search.guessed[only] - bench.null.log_evidence, gained - bench.null.log_evidence
+
+
 def test_what_a_pulled_tolerance_would_give_back_is_promised(tmp_path):
     """A spring 10 % too soft, drawn to 1 %: all that the effect gains is the pull; no channel fits badly."""
-    bench = sure_of_noise(tmp_path, stiffness=900.0)
-    null = null_of(bench)
-    assert abs(null.fit.x[0]) > 6 and np.mean(null.fit.residual**2) < 1.5
-    soft = alone(bench, LIBRARY["soft_spring"])
-    gain = soft.log_evidence - null.log_evidence
-    assert gain > 15
-    campaign = replace(null, problem=replace(null.problem, dof=np.full(1, 30.0)))
-    assert student_gain(campaign, gain) == pytest.approx(gain, abs=1.0)
+    bench = with_few_repeats(sure_of_noise(tmp_path, stiffness=900.0), 30)
+    assert abs(bench.null.x[0]) > 6 and np.mean(bench.null.residual**2) < 1.5
+    promised, gained = promised_and_gained(bench, LIBRARY["soft_spring"])
+    assert gained > 15 and promised == pytest.approx(gained, abs=1.5)
 
 
-def test_a_gain_of_misfit_is_less_where_the_noise_is_not_known_for_sure(tmp_path):
-    """Of the whole excess the likelihood with few degrees of freedom gains its own difference, no more."""
-    bench = sure_of_noise(tmp_path, extra=lambda x: 2e6 * x**3)
-    null = replace(null_of(bench), problem=replace(bench.fit, dof=np.full(1, 10.0)))
-    squares, sizes = bench.fit.squares(bench.null.residual), bench.fit.sizes
-    most = misfit(squares, np.full(1, 10.0), sizes) - misfit(sizes, np.full(1, 10.0), sizes)
-    pulls = 0.5 * bench.null.x @ bench.null.x
-    assert 0 < student_gain(null, 1e6) == pytest.approx(most + pulls)
-    assert student_gain(null, 1e6) < 0.5 * (squares - sizes).sum()
+@pytest.mark.parametrize("size", (0.3, 1.0))
+def test_what_a_large_misfit_would_give_back_is_promised_as_student_has_it(tmp_path, size):
+    """With ten degrees of freedom the likelihood gains much less than a Gaussian one."""
+    sure = sure_of_noise(tmp_path, extra=lambda x: size * np.cos(600 * x))
+    promised, gained = promised_and_gained(with_few_repeats(sure, 10), WAVES["wave2"])
+    assert gained < 0.5 * promised_and_gained(sure, WAVES["wave2"])[1]
+    assert gained > 10 and promised == pytest.approx(gained, abs=1.5)
+
+
+@dataclass(frozen=True)
+class Lever(ResponseEffect):
+    """The force is read through a lever: F (1 + more)."""
+
+    title = "lever"
+    looks_like = "more force"
+    more: float = parameter(0.0, "1", prior=Normal(1.0), low=-0.9, high=9.0, source="made up")
+
+    def on_response(self, response, conditions, kind, design):
+        return {**response, "force": response["force"] * (1.0 + self.more)}
+
+
+def test_beside_a_large_effect_others_do_what_they_do_there(bench):
+    """A lever that doubles the force doubles what a spring makes of it that is too soft; one of a tenth is as good as
+    none."""
+    soft = LIBRARY["soft_spring"]
+    signatures = signatures_of(bench, (Lever(), soft()))
+    beliefs = beliefs_of({"lever": Lever, "soft_spring": soft}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench)})
+
+    def beside(more):
+        return Hypothesis(linearised(bench.fit, bench.null.x, (Lever(),), [more]), bench.fit, 0.0)
+
+    assert search.signatures_beside(beside(0.1)) is signatures
+    there = search.signatures_beside(beside(1.0))
+    for name, times in (("soft_spring", 2.0), ("lever", 1.0)):
+        before = signatures.found[name][0].change
+        assert there.found[name][0].change == pytest.approx(times * before, rel=0.01, abs=1e-9)
+    assert search.signatures_beside(beside(1.1)) is there, "near enough"
 
 
 # ---- grids -----------------------------------------------------------------------------------------------------------
