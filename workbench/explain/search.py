@@ -6,7 +6,10 @@ A set is fitted when what it promises is within reach of the best that was fitte
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from heapq import heapify, heappop, heappush
+
+import numpy as np
 
 from effects.base import Effect
 from workbench.believed import PLAIN
@@ -18,7 +21,7 @@ from workbench.explain.neighbours import exchange, less_one
 from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
 from workbench.likelihood.bench import Bench, reweighed
 from workbench.likelihood.signatures import Signatures, candidates, signatures_of
-from workbench.likelihood.unknown import shapes_of
+from workbench.likelihood.unknown import Shape, shapes_of
 from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
@@ -32,25 +35,41 @@ PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give 
 
 
 def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None) -> Search:
-    """Tries every effect of a library and every unknown law, alone and with others, and unknown functions; once more
-    where what leads takes other readings for wild than the model did that lacks it."""
-    search = _searched(bench, library, progress)
-    leader = search.fitted[search.ranked[0]]
-    predictor = leader.problem.predictor.on(bench.stack)
-    again = reweighed(bench, predictor.predict(leader.fit.x, leader.effects))
-    return search if again is bench else _searched(again, library, progress)
-
-
-def _searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress) -> Search:
+    """Tries every effect of a library and every unknown law, alone and with others, and unknown functions. It begins
+    anew where the first that leads takes other readings for wild than the model that lacks it, and they are plainly
+    likelier so."""
     every = {**library, **LAWS}
     signatures = signatures_of(bench, candidates(bench, every), progress)
     beliefs = beliefs_of(every, signatures.names)
-    shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
-    search = Search(bench, signatures, beliefs, shapes, {frozenset(): null_of(bench)}, failed=dict(signatures.failed))
-    _until_exact(search, progress)
+    search, heap = _begun(bench, signatures, beliefs, _shapes(bench))
+    _best_first(search, heap, progress)
+    again = reweighed(bench, _answers(search.fitted[search.ranked[0]], bench))
+    if again is not bench:
+        search, heap = _begun(again, replace(signatures, white=again.fit.white), beliefs, _shapes(again))
+    _until_exact(search, heap, progress)
     weigh_unknown(search, progress)
     _exactly(search, progress)
     return search
+
+
+def _begun(
+    bench: Bench, signatures: Signatures, beliefs: Beliefs, shapes: tuple[Shape, ...]
+) -> tuple[Search, list[Promise]]:
+    """A search that has fitted nothing but the null, and what is promised beside it."""
+    null, heap = null_of(bench), list[Promise]()
+    search = Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed))
+    expand(search, null, heap)
+    return search, heap
+
+
+def _shapes(bench: Bench) -> tuple[Shape, ...]:
+    """Unknown functions of a bench."""
+    return shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+
+
+def _answers(hypothesis: Hypothesis, bench: Bench) -> np.ndarray:
+    """Of a fit for all rows of a bench (n,)."""
+    return hypothesis.problem.predictor.on(bench.stack).predict(hypothesis.fit.x, hypothesis.effects)
 
 
 def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypothesis:
@@ -59,22 +78,18 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
     Raises:
         WorkbenchError: the model has no answer with it.
     """
-    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench)})
-    heap: list[Promise] = []
-    expand(search, search.fitted[frozenset()], heap)
+    search, heap = _begun(bench, signatures, beliefs, ())
     if not (heap and fit_set(search, heap[0])):
         raise WorkbenchError(next(iter(search.failed.values()), "no answer"))
     _exactly(search, lambda words: None)
     return search.fitted[heap[0].every]
 
 
-def _until_exact(search: Search, progress: Progress) -> None:
+def _until_exact(search: Search, heap: list[Promise], progress: Progress) -> None:
     """Sets of effects; once more where exact models let another set lead, whose neighbours nobody has looked at, or
     bring a promise within reach, and where an unknown function had ended the search, but not beside a model that is
     exact."""
-    heap: list[Promise] = []
     settled: set[Set] = set()
-    expand(search, search.fitted[frozenset()], heap)
     for _ in range(ROUNDS):
         _effects_alone(search, heap, settled, progress)
         ended = search.is_over

@@ -22,7 +22,8 @@ from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, ex
 from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere, turned
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import FAR, Fit
-from workbench.likelihood.marginal import Given, Readings
+from workbench.likelihood.gains import Gains
+from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import Shape
 from workbench.likelihood.unknown_laws import LAW_ERRORS, LAWS, UnknownLaw
@@ -64,7 +65,12 @@ class Additions:
     search: Search
     parent: Hypothesis
     names: Names
-    readings: Readings
+    gains: Gains
+
+    @property
+    def readings(self) -> Readings:
+        """Residual of the parent at zero nuisances, as the catalogue has it."""
+        return self.gains.readings
 
     def promises(self, found: Mapping[Set, tuple[Explanation, float]]) -> list[Promise]:
         """Of sets with ln of their promised posterior; the best few and the smaller ones that they hold."""
@@ -72,53 +78,8 @@ class Additions:
         return [self._promise(e, *found[e]) for e in found if any(e <= every for every in leading)]
 
     def gain(self, found: Explanation) -> float:
-        """Of a set, in the likelihood of the fits [nats]: what these gain from where the fit ended to where linear
-        algebra ends, less what the set costs by being one of many. Linear algebra takes as cost, too, what weights
-        beyond their reach would have gained: more than the set can cost by itself it does not.
-        """
-        after = self.names.catalogue.given(found.terms, self.readings)
-        itself = after.spread - self._bare.spread - float(self.names.priors[list(found.terms)].sum())
-        cost = min(self._bare.least - after.least - found.gain, itself)
-        return self._begins - self._ends(after, found.terms) - cost
-
-    @cached_property
-    def _bare(self) -> Given:
-        return self.names.catalogue.given((), self.readings)
-
-    @cached_property
-    def _begins(self) -> float:
-        """Minus ln p in the likelihood of the fits where the fit ended, or linear algebra without terms if that is
-        better [nats]."""
-        fit = self.parent.fit
-        return min(self._ends(self._bare, ()), self._student(fit.residual) + 0.5 * float(fit.x @ fit.x))
-
-    def _ends(self, given: Given, terms: tuple[int, ...]) -> float:
-        """The same where linear algebra ends with some terms, these within their reach [nats]."""
-        catalogue = self.names.catalogue
-        held = np.clip(given.weights[catalogue.background.shape[1] :], *catalogue.reach(terms))
-        left = at_zero(self.parent) - catalogue.added(terms, held)
-        pulled = self._pulls @ left
-        pulls = 0.5 * float(held @ held + pulled @ pulled)
-        return self._student(left - catalogue.background @ pulled) + pulls
-
-    @cached_property
-    def _pulls(self) -> np.ndarray:
-        """From a residual to the most probable weights of the background (m, n)."""
-        background = self.names.catalogue.background
-        return np.linalg.solve(np.eye(background.shape[1]) + background.T @ background, background.T)
-
-    def _student(self, residual: np.ndarray) -> float:
-        """Minus ln p of a residual in the likelihood of the fits, with the spread that it leaves the background
-        [nats]."""
-        problem, background = self.parent.problem, self.names.catalogue.background
-        curvature = np.eye(background.shape[1]) + np.tensordot(problem.channel_weights(residual), self._of_channels, 1)
-        return problem.misfit(residual) + 0.5 * float(np.linalg.slogdet(curvature)[1])
-
-    @cached_property
-    def _of_channels(self) -> np.ndarray:
-        """Products of the background's columns with one another in every channel (channels, m, m)."""
-        parts = [self.names.catalogue.background[c.rows] for c in self.parent.problem.stack.channels]
-        return np.array([part.T @ part for part in parts])
+        """Of a set, in the likelihood of the fits [nats]."""
+        return self.gains.of(found.terms, found.gain, float(self.names.priors[list(found.terms)].sum()))
 
     def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
@@ -200,7 +161,10 @@ class Search:
 
     def signatures_beside(self, hypothesis: Hypothesis) -> Signatures:
         """Of all effects beside a fit: those of the centre or of a fit before, but where its effects are so large that
-        tolerances do there what they do at none of these, and so would effects."""
+        tolerances do there what they do at none of these, and so would effects. A base model that answers by an
+        expansion is compared about its drawing alone: it may have been pulled far from there."""
+        if self.bench.model.base.is_expansion:
+            return self.signatures
         fit, white = hypothesis.fit, self.bench.fit.white
         known = [(self.bench.centre.slopes, self.signatures), *self.elsewhere]
         moved = [float(np.linalg.norm(white(fit.slopes - slopes), axis=0).max(initial=0.0)) for slopes, _ in known]
@@ -419,4 +383,7 @@ def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) ->
     """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
     signatures = search.signatures_beside(hypothesis)
     names = Names(signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
-    return Additions(search, hypothesis, names, names.catalogue.readings(at_zero(hypothesis)[:, None])[0])
+    residual = at_zero(hypothesis)
+    readings = names.catalogue.readings(residual[:, None])[0]
+    gains = Gains(hypothesis.problem, hypothesis.fit, residual, names.catalogue, readings)
+    return Additions(search, hypothesis, names, gains)

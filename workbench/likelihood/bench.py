@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import log
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from effects.base import Effect
+from workbench.believed import PLAIN
 from workbench.data.campaign import columns_of_systematics
 from workbench.data.repeats import matched_rows, places_of
 from workbench.data.schema import BY_REGION
@@ -18,7 +18,7 @@ from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
-from workbench.likelihood.noise import REPORTED, WILD, Noise, measured_noise, noise_on_rows, with_wild_readings
+from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.predictor import DirectPredictor
@@ -143,20 +143,29 @@ def bench_of(
 
 
 def reweighed(bench: Bench, predicted: np.ndarray) -> Bench:
-    """The bench with its wild readings told by a model that explains the others; the same one where that changes none.
+    """The bench with its wild readings told by a model that explains the others; the same one where the rows to fit are
+    not plainly likelier so.
 
     A model that lacks an effect larger than a wild reading takes the good one of two for it.
 
-    predicted: all readings (n,)
+    predicted: all readings by that model (n,)
     """
     chosen = _chosen(bench.stack.tables)
     noise = _noise_at(bench.stack, chosen, predicted)
-    if np.all(np.abs(np.log(noise.inflation / bench.noise.inflation)) < log(REPORTED / WILD)):
-        return bench
     fit = _problem(bench.fit.predictor, bench.stack, noise, chosen)
+    residual = (bench.stack.y - predicted)[rows_in(bench.stack, chosen)]
+    if _log_likelihood(fit, residual) < _log_likelihood(bench.fit, residual) + PLAIN:
+        return bench
     held_out = _held_out(fit.predictor, bench.stack, noise, chosen)
     white, null = whitener(bench.stack, noise), refitted(fit, bench.null)
     return replace(bench, noise=noise, white=white, fit=fit, held_out=held_out, null=null)
+
+
+def _log_likelihood(problem: Problem, residual: np.ndarray) -> float:
+    """ln p of readings less prediction (n,), up to what any sizes of the noise share [nats]."""
+    white = problem.white
+    sizes = float(np.log(white.sigma).sum()) + sum(law.half_log_det for law in white.laws)
+    return -problem.misfit(white(residual)) - sizes
 
 
 def _chosen(tables: Sequence[Table]) -> list[np.ndarray]:

@@ -1,13 +1,14 @@
 """What every effect would do to the readings, on a grid over the sizes that are believed possible.
 
-One set of signatures serves the search, the simulated campaigns, the detection limits and the short list of shapes.
+One set of signatures, about the centre of a bench, serves the search, the simulated campaigns, the detection limits and
+the short list of shapes; beside fits of large effects the search takes its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import log
 
@@ -192,12 +193,12 @@ class Signatures:
 
     def beside(self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect]) -> Signatures:
         """The same at nuisances x (m,) and beside effects that are there, of these each beside the others."""
+        without = cache(lambda others: predictor.predict(x, others))
 
         def again(before: Signature) -> Signature:
             others = tuple(effect for effect in effects if effect.name() != before.name)
             try:
-                base = predictor.predict(x, others)
-                return signature(before.effect, lambda effect: predictor.predict(x, (*others, effect)) - base)
+                return signature(before.effect, lambda e: predictor.predict(x, (*others, e)) - without(others))
             except (WorkbenchError, ArithmeticError, ValueError):  # the model has no answer there: as it was
                 return before
 
