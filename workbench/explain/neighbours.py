@@ -3,20 +3,25 @@ with an unknown law in the place of all."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from workbench.errors import WorkbenchError
 from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.tried import NEGLIGIBLE, Progress, Promise, Search, Set, fit_set, label_of, start_from
 from workbench.likelihood.fit import with_parameters
+from workbench.likelihood.predictor import STEP
+from workbench.likelihood.signatures import Signature
 from workbench.likelihood.unknown_laws import LAWS
-from workbench.likelihood.whitening import law_error
+from workbench.likelihood.whitening import Whitener, law_error
 
 EXCHANGED = 2  # others that are tried in the place of each effect of what leads
 PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
+STEPS = 2  # of Gauss and Newton towards the size at which another effect does the same
 ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
 
 
@@ -46,38 +51,102 @@ def _is_weighed(search: Search, names: Set) -> bool:
 def _instead_of_effects(search: Search, whole: Hypothesis, kept: Set) -> list[Promise]:
     """Starts of a fit of which some effects are kept, with another one in the place of the others."""
     rest, z = _part_of(whole, kept)
-    x = whole.fit.x
-    return _twins(search, whole, rest, z, x, whole.problem.predictor.predict(x, with_parameters(rest, z)))
+    return _twins(search, whole, rest, z, whole.fit.x)
 
 
 def _instead_of_pull(search: Search, whole: Hypothesis, number: int) -> list[Promise]:
     """Starts of a fit with others in the place of a tolerance that it pulls far."""
     x = whole.fit.x.copy()
     x[number] = 0.0
-    return _twins(search, whole, whole.fit.effects, whole.fit.z, x, whole.problem.predictor.predict(x, whole.effects))
+    return _twins(search, whole, whole.fit.effects, whole.fit.z, x)
+
+
+@dataclass(frozen=True, eq=False)
+class _Gap:
+    """What a fit does beyond a part of it, which another effect is to fill, tolerances making good what they can.
+
+    rest: effects that stay, at their parameters;  x: nuisances beside them (m,)
+    """
+
+    whole: Hypothesis
+    rest: tuple[Effect, ...]
+    x: np.ndarray
+
+    @cached_property
+    def left(self) -> np.ndarray:
+        """Readings with what stays, SI (n,)."""
+        return self.whole.problem.predictor.predict(self.x, self.rest)
+
+    @cached_property
+    def change(self) -> np.ndarray:
+        """Of the readings, SI (n,)."""
+        return self.whole.problem.predictor.predict(self.whole.fit.x, self.whole.effects) - self.left
+
+    @cached_property
+    def free(self) -> Whitener:
+        """With the tolerances integrated out."""
+        white, tolerances = self.whole.problem.white, self.whole.fit.jacobian[:, : len(self.x)]
+        return replace(white, laws=(*white.laws, law_error(slice(None), tolerances)))
+
+    @cached_property
+    def size(self) -> float:
+        """Of the change, free of tolerances."""
+        return self._length(self.change)
+
+    def _length(self, change: np.ndarray) -> float:
+        return float(np.linalg.norm(self.free(change)))
+
+    def nearest(self, signature: Signature) -> tuple[float, Effect, np.ndarray]:
+        """What another effect leaves of the change, free of tolerances; the effect, and its z there.
+
+        Where a tolerance makes good nearly all, no more is left than that by which sizes differ from a line, and the
+        grid says nothing of it: there the size that is alike with the tolerances held is asked of the model.
+        """
+        left, effect, z = signature.nearest(self.change, self.free)
+        found = [(self._length(left), effect, z)]
+        held = self.whole.problem.white
+        left, effect, z = signature.nearest(self.change, held)
+        if np.linalg.norm(held(left)) < ALMOST * np.linalg.norm(held(self.change)):
+            found.append(self._by_model(effect, z))
+        return min(found, key=lambda one: one[0])
+
+    def _by_model(self, effect: Effect, z: np.ndarray) -> tuple[float, Effect, np.ndarray]:
+        """The same by steps of Gauss and Newton from z; infinitely much where the model has no answer."""
+        try:
+            for _ in range(STEPS):
+                z = z + self._step(effect, z)
+            return self._length(self.change - self._made(effect, z)), effect, z
+        except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError):
+            return np.inf, effect, z
+
+    def _step(self, effect: Effect, z: np.ndarray) -> np.ndarray:
+        """Of z, by no more than one standard deviation along each axis."""
+        held, moves = self.whole.problem.white, STEP * np.eye(len(z))
+        slopes = np.column_stack([self._made(effect, z + m) - self._made(effect, z - m) for m in moves]) / (2 * STEP)
+        left = self.change - self._made(effect, z)
+        return np.clip(np.linalg.lstsq(held(slopes), held(left), rcond=None)[0], -1.0, 1.0)
+
+    def _made(self, effect: Effect, z: np.ndarray) -> np.ndarray:
+        return self.whole.problem.predictor.predict(self.x, (*self.rest, effect.at(z))) - self.left
 
 
 def _twins(
-    search: Search, whole: Hypothesis, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray, left: np.ndarray
+    search: Search, whole: Hypothesis, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray
 ) -> list[Promise]:
-    """Starts with another effect that does most nearly what a fit does beyond what is left of it (n,), nearest first,
-    tolerances making good what they can; with unknown laws likewise, as two effects may take the place of a law that
-    nobody knows.
+    """Starts with another effect that does most nearly what a fit does beyond what stays of it, nearest first; with
+    unknown laws likewise, as two effects may take the place of a law that nobody knows.
 
     rest, z_rest, x: what stays of the fit
     """
-    problem = whole.problem
-    tolerances = law_error(slice(None), whole.fit.jacobian[:, : len(x)])
-    white = replace(problem.white, laws=(*problem.white.laws, tolerances))
-    target = white(problem.predictor.predict(whole.fit.x, whole.effects) - left)
-    starts = []
+    gap = _Gap(whole, with_parameters(rest, z_rest), x)
     kept = frozenset(effect.name() for effect in rest)
+    starts = []
     for other in search.signatures.names:
         if other in whole.names or not search.beliefs.may_join(other, kept):
             continue
-        nearest = min((s.nearest(target, white) for s in search.signatures.found[other]), key=lambda n: n[0])
-        if nearest[0] < ALMOST * float(np.linalg.norm(target)):
-            starts.append((nearest[0], other, *nearest[1:]))
+        away, effect, z = min((gap.nearest(s) for s in search.signatures.found[other]), key=lambda n: n[0])
+        if away < ALMOST * gap.size:
+            starts.append((away, other, effect, z))
     starts.sort(key=lambda start: start[:2])
     known, laws = ([s for s in starts if (s[1] in LAWS) is is_law][:EXCHANGED] for is_law in (False, True))
     return [

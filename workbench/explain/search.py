@@ -12,7 +12,6 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from effects.base import Effect
-from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
@@ -25,6 +24,7 @@ from workbench.likelihood.unknown import Shape, shapes_of
 from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
+FIRST_FITS = 8  # after which what leads is asked for the first time which readings are wild
 PATIENCE = 8  # fits of an expansion, after which an unknown function is weighed: those of other models take no time
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
@@ -36,16 +36,17 @@ PART_GAINS = 2.0  # times what an exact model gave what leads, that it may give 
 
 def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None) -> Search:
     """Tries every effect of a library and every unknown law, alone and with others, and unknown functions. It begins
-    anew where the first that leads takes other readings for wild than the model that lacks it, and they are plainly
-    likelier so."""
+    anew where what leads takes other readings for wild than the model that lacks it, and they are plainly likelier so:
+    after a few fits, as large effects lead early, and after the first pass."""
     every = {**library, **LAWS}
     signatures = signatures_of(bench, candidates(bench, every), progress)
     beliefs = beliefs_of(every, signatures.names)
     search, heap = _begun(bench, signatures, beliefs, _shapes(bench))
-    _best_first(search, heap, progress)
-    again = reweighed(bench, _answers(search.fitted[search.ranked[0]], bench))
-    if again is not bench:
-        search, heap = _begun(again, replace(signatures, white=again.fit.white), beliefs, _shapes(again))
+    for most in (FIRST_FITS, FITS):
+        _best_first(search, heap, progress, most)
+        again = reweighed(search.bench, _answers(search.fitted[search.ranked[0]], search.bench))
+        if again is not search.bench:
+            search, heap = _begun(again, replace(signatures, white=again.fit.white), beliefs, _shapes(again))
     _until_exact(search, heap, progress)
     weigh_unknown(search, progress)
     _exactly(search, progress)
@@ -136,19 +137,19 @@ def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress
             if promise.every not in search.fitted and promise.label not in search.failed:
                 progress("fitting " + promise.label)
                 fit_set(search, promise)
-                if search.beliefs.leaves_room(promise.every) and search.log_posterior(promise.every) > _least(search):
+                if _leads_on(search, promise.every):
                     expand(search, search.fitted[promise.every], heap)
 
 
-def _least(search: Search) -> float:
-    """ln posterior of a fit from which on it is worth to look for more beside it."""
-    return search.log_posterior(search.ranked[0]) - PLAIN
+def _leads_on(search: Search, names: Set) -> bool:
+    """Whether it is worth to look for more beside a fit."""
+    return search.is_near(names) and search.beliefs.leaves_room(names)
 
 
-def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None:
+def _best_first(search: Search, heap: list[Promise], progress: Progress, most: int = FITS) -> None:
     """No set is fitted that promises less than the best one, an unknown function beside what leads among them: of a
     machine that has what no effect is, dozens explain a little more than others."""
-    while heap and len(search.fitted) <= FITS:
+    while heap and len(search.fitted) <= most:
         promise = heappop(heap)
         if promise.every in search.fitted or label_of(promise.every) in search.failed:
             continue
@@ -166,7 +167,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress) -> None
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)
-        if fit_set(search, promise) and search.beliefs.leaves_room(promise.every):
+        if fit_set(search, promise) and _leads_on(search, promise.every):
             expand(search, search.fitted[promise.every], heap)
 
 

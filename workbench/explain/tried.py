@@ -196,6 +196,10 @@ class Search:
         """ln posterior of a set that was not fitted [nats]."""
         return self.guessed[names] + self.exactness(names) + self.beliefs.log_prior(names)
 
+    def is_near(self, names: Set) -> bool:
+        """Whether a fit is not plainly worse than the best one."""
+        return self.log_posterior(names) > self.log_posterior(self.ranked[0]) - PLAIN
+
     @property
     def is_beaten(self) -> bool:
         """Whether an unknown function is so much better than all that was fitted that it would be seen plainly."""
@@ -365,12 +369,15 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     added = additions(search, hypothesis, hypothesis.fit.jacobian)
     sets = explored(added.names, added.readings, search.beliefs, have, len(have) + 2)
     promised: dict[Set, tuple[Explanation, float]] = {}
+    is_near = search.is_near(have)
     for every, found in ((have | found.names, found) for found in sets.values() if found.names):
         if every in search.fitted:
             continue
         guess = search.by_expansion(have) + added.gain(found)
         origin = search.origins.get(every, have)
-        if origin == have or len(have) > len(origin) or guess > search.guessed.get(every, -np.inf):
+        nearer = len(have) - len(origin)
+        may_raise = nearer == 0 or is_near
+        if origin == have or nearer > 0 or (may_raise and guess > search.guessed.get(every, -np.inf)):
             search.guessed[every], search.origins[every] = guess, have
             promised[every] = found, promised_of(search, every)
     renewed = added.promises(promised)

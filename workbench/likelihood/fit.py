@@ -10,7 +10,7 @@ is Student's t for the size of an effect, whose prior is only a guess of its mag
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -28,7 +28,9 @@ from workbench.likelihood.whitening import Whitener
 ITERATIONS = 15
 CLOSE = 1e-4  # change of the objective [nats] at which a fit is done
 ROUND_CLOSE = 1e-2  # change of the objective [nats] that new slopes may still bring when it is
-TRIALS = ((1.0, 0.0), (0.5, 0.0), (0.2, 0.0), (0.05, 0.0), (1.0, 1.0), (1.0, 30.0))  # length of a step, its damping
+LENGTHS = (1.0, 0.5, 0.2, 0.05)  # of a bent step that are tried where a straight one is too long
+DAMPINGS = (1.0, 30.0)
+ALONG = 0.1  # of a step, over which its bend is taken by differences
 NEAR = 0.1  # move of an effect's standard normal number, up to which its slopes are taken for those a step before
 POOR = 0.25  # of what a step promises, below which its slopes are not those of the place
 ROUNDS = 4  # times the slopes of the nuisances are taken anew
@@ -135,20 +137,21 @@ def fitted(
     """
     search = _Search(problem, tuple(effects), len(x))
     p = np.concatenate([x, z])
-    p, gain = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes, ROUND_CLOSE)
-    return _with_new_slopes(search, p, gain)
+    p, _ = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes, ROUND_CLOSE)
+    return _with_new_slopes(search, p)
 
 
 def refitted(problem: Problem, fit: Fit) -> Fit:
     """The fit again where the problem is another one, from where it ended, with its slopes if that changes little."""
     search = _Search(problem, fit.effects, len(fit.x))
     p, gain = search.descend(np.concatenate([fit.x, fit.z]), fit.slopes)
-    return search.result(p, fit.slopes) if gain < ROUND_CLOSE else _with_new_slopes(search, p, gain)
+    return search.result(p, fit.slopes) if gain < ROUND_CLOSE else _with_new_slopes(search, p)
 
 
-def _with_new_slopes(search: _Search, p: np.ndarray, gain: float) -> Fit:
+def _with_new_slopes(search: _Search, p: np.ndarray) -> Fit:
     """The fit from p on, its slopes taken anew until that gains no more: each time by the same share of what the time
-    before did. gain: of the objective by the steps to p [nats]"""
+    before did."""
+    gain = 0.0
     for _ in range(ROUNDS):
         slopes, before = search.nuisance_slopes(p[: search.m], p[search.m :]), gain
         p, gain = search.descend(p, slopes)
@@ -214,7 +217,7 @@ class _Search:
             normal, downhill = self._normal_equations(p, residual, slopes)
             promised = gain = 0.5 * float(downhill @ np.linalg.solve(normal, downhill))
             if promised >= close:
-                p, residual, new = self._step(p, residual, value, normal, downhill)
+                p, residual, new = self._step(p, residual, value, normal, downhill, slopes)
                 value, gain = new, value - new
             is_last = gain < max(close, POOR * promised)
             if is_last and is_new:
@@ -232,11 +235,11 @@ class _Search:
         normal = slopes.T @ (weights[:, None] * slopes) + np.diag(prior)
         return normal, slopes.T @ (weights * residual) - prior * p
 
-    def _step(self, p, residual, value, normal, downhill):
-        """Gauss-Newton, the step shortened until the objective falls: that stays on a ridge between an effect and a
-        tolerance; then damped."""
-        for length, damping in TRIALS:
-            move = length * np.linalg.solve(normal + damping * np.diag(np.diag(normal)), downhill)
+    def _step(self, p, residual, value, normal, downhill, slopes):
+        """Gauss-Newton, the step shortened and bent until the objective falls: that stays on a ridge between an effect
+        and a tolerance; then damped."""
+        straight = np.linalg.solve(normal, downhill)
+        for move in self._moves(p, residual, straight, normal, downhill, slopes):
             trial = p + move
             trial[self.m :] = np.clip(trial[self.m :], -FAR, FAR)
             try:
@@ -247,6 +250,28 @@ class _Search:
             if new < value:
                 return trial, new_residual, new
         return p, residual, value
+
+    def _moves(self, p, residual, straight, normal, downhill, slopes) -> Iterator[np.ndarray]:
+        """Steps to be tried one after the other, each worked out when it is asked for."""
+        yield straight
+        bend = self._bend(p, residual, straight, normal, slopes)
+        for length in LENGTHS:
+            yield length * straight + length**2 * bend
+        for damping in DAMPINGS:
+            yield np.linalg.solve(normal + damping * np.diag(np.diag(normal)), downhill)
+
+    def _bend(self, p, residual, straight, normal, slopes) -> np.ndarray:
+        """By which a step leaves its line to follow the ridge, at its whole length (m + k,): the geodesic acceleration
+        of Transtrum and Sethna (2012), eq. 11; none where the model has no answer to either side.
+
+        -1/2 (J^T W J + P)^-1 J^T W f'',  f'' = d^2 f / dt^2 along p + t straight
+        """
+        try:
+            ahead, behind = (self.residual(p + side * ALONG * straight) for side in (1.0, -1.0))
+        except WorkbenchError:
+            return np.zeros(len(p))
+        curved = (ahead - 2 * residual + behind) / ALONG**2  # of the residual: minus that of the model
+        return 0.5 * np.linalg.solve(normal, slopes.T @ (self.problem.weights(residual) * curved))
 
     def result(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> Fit:
         residual = self.residual(p)

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import log
 
 import numpy as np
@@ -219,6 +219,7 @@ def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:
                 yield name, power, law / np.sqrt(np.mean(law**2))
 
 
+@lru_cache(maxsize=64)  # every fit asks at the same tables for the errors of its laws
 def smooth(table: Table, length: int) -> np.ndarray:
     """Phi (n, q) with Phi Phi^T = exp(-d^2 / 2) over all conditions of a table."""
     return smooth_over(table.conditions, length)

@@ -162,6 +162,26 @@ def test_two_starts_find_the_same_maximum(bench):
 # ---- beside an unknown function --------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("start", ((0.0, 0.0), (2.0, 4.0), (-3.0, 9.0), (2.0, -2.0)))
+def test_a_fit_follows_a_bent_ridge_to_its_end(tmp_path, start):
+    """Of two sizes one is told twenty times better than the other: w - u^2, as Rosenbrock has it."""
+
+    @dataclass(frozen=True)
+    class Bent(Bump):
+        u: float = parameter(0.0, "1", prior=Normal(1.0), low=-10.0, high=10.0, source="made up")
+        w: float = parameter(0.0, "1", prior=Normal(1.0), low=-100.0, high=100.0, source="made up")
+
+        def on_response(self, response, conditions, kind, design):
+            x = conditions["displacement"]
+            force = 4.0 * (self.w - self.u**2) * np.cos(600 * x) + 0.2 * self.u * np.cos(1500 * x)
+            return {**response, "force": response["force"] + force}
+
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.1 * np.cos(1500 * x))
+    found = fitted_from(bench, (Bent(),), bench.null.x, np.array([0.0, *start])).fit
+    best = fitted_from(bench, (Bent(),), bench.null.x, np.array([0.0, 0.5, 0.25])).fit
+    assert found.objective == pytest.approx(best.objective, abs=0.02)
+
+
 def test_evidence_beside_the_unknown_is_the_mean_over_all_shapes_and_sizes(bench):
     shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     logs = [
@@ -470,6 +490,22 @@ def test_a_guess_learns_from_the_fits_of_what_it_holds(tmp_path):
     assert search.guessed == {far: 70.0, near: 100.0}
 
 
+@pytest.mark.parametrize("behind, is_near", ((50.0, False), (1.0, True)))
+def test_a_fit_far_behind_does_not_raise_what_was_guessed_beside_a_nearer_one(tmp_path, monkeypatch, behind, is_near):
+    """Nor is it worth to look for more beside it."""
+    bench = sure_of_noise(tmp_path)
+    effects = [WAVES[f"wave{k}"]() for k in (2, 3)]
+    one, two = (fitted_from(bench, effects[:n], bench.null.x, np.full(n, 0.1)) for n in (1, 2))
+    every = two.names | {"wave4"}
+    search = searching(bench, {frozenset(): null_of(bench), two.names: replace(two, log_evidence=100.0)})
+    search.fitted[one.names] = replace(one, log_evidence=100.0 - behind)
+    search.guessed, search.origins = {every: 90.0}, {every: two.names}
+    monkeypatch.setattr(tried_module.Additions, "gain", lambda self, found: 1e3)
+    tried_module.expand(search, search.fitted[one.names], [])
+    assert search.guessed[every] == (1100.0 - behind if is_near else 90.0)
+    assert search_module._leads_on(search, one.names) is is_near
+
+
 def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(tmp_path):
     """By hand: one effect explains 800 nats, another one 400; an unknown function beside both 3.9, then 5, a law 9."""
     bench = sure_of_noise(tmp_path)
@@ -535,6 +571,32 @@ def test_a_twin_is_one_that_tolerances_make_alike(tmp_path):
     search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), one.names: one})
     exchange(search, one.names, lambda words: None)
     assert frozenset(("slanted",)) in search.fitted
+
+
+def test_a_twin_is_found_of_what_a_tolerance_makes_good_but_for_its_curvature(tmp_path):
+    """A stiffness, and small waves that move with it: no line between two places of the grid follows them, and with the
+    stiffness of the spring free nothing else is left."""
+
+    @dataclass(frozen=True)
+    class Stiffer(Bump):
+        size: float = parameter(0.0, "N", prior=LogNormal(0.3, 1.0), low=0.0, high=10.0, source="made up")
+
+        def on_response(self, response, conditions, kind, design):
+            x = conditions["displacement"]
+            waves = (np.cos(300 * k * x - 9 * k * self.size) - np.cos(300 * k * x) for k in (2, 5, 7))
+            return {**response, "force": response["force"] + 1e3 * self.size * x + 0.3 * sum(waves)}
+
+    one, twin = (type(name, (Stiffer,), {"name": classmethod(lambda cls, own=name: own)}) for name in ("one", "twin"))
+    hidden = one(0.5)
+    bench = sure_of_noise(
+        tmp_path, extra=lambda x: hidden.on_response({"force": 0.0}, {"displacement": x}, "", None)["force"]
+    )
+    signatures = signatures_of(bench, (one(), twin()))
+    found = fitted_from(bench, (one(),), bench.null.x, np.array([0.5]))
+    beliefs = beliefs_of({"one": one, "twin": twin}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), found.names: found})
+    exchange(search, found.names, lambda words: None)
+    assert search.log_evidence(frozenset(("twin",))) == pytest.approx(found.log_evidence, abs=1e-3)
 
 
 def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects_whatever_that_promises(tmp_path):

@@ -117,6 +117,7 @@ def test_the_description_is_written_as_it_is_read():
     again = read(written(design.drawn))
     assert again == design.drawn and again.actuator.gears.driven == 0.9
 
+
 def test_a_slow_loop_is_friction_braking_and_inertia():
     design = actuator(coulomb_friction_N=7.0)
     phase = np.linspace(0.0, 2 * np.pi, 9)
