@@ -70,7 +70,7 @@ class Additions:
     @property
     def readings(self) -> Readings:
         """Residual of the parent at zero nuisances, as the catalogue has it."""
-        return self.gains.readings
+        return self.names.catalogue.readings(self.gains.residual[:, None])[0]
 
     def promises(self, found: Mapping[Set, tuple[Explanation, float]]) -> list[Promise]:
         """Of sets with ln of their promised posterior; the best few and the smaller ones that they hold."""
@@ -83,7 +83,7 @@ class Additions:
 
     def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
-        weights = self.names.catalogue.given(found.terms, self.readings).weights
+        weights = self.gains.end(found.terms).weights
         effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
         place = self.names.catalogue.background.shape[1]
         for term in (self.names.catalogue.terms[t] for t in found.terms):
@@ -367,13 +367,9 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     have = hypothesis.names
     search.expanded.add(have)
     added = additions(search, hypothesis, hypothesis.fit.jacobian)
-    sets = explored(added.names, added.readings, search.beliefs, have, len(have) + 2)
     promised: dict[Set, tuple[Explanation, float]] = {}
     is_near = search.is_near(have)
-    for every, found in ((have | found.names, found) for found in sets.values() if found.names):
-        if every in search.fitted:
-            continue
-        guess = search.by_expansion(have) + added.gain(found)
+    for every, (found, guess) in _guesses_beside(search, have, added).items():
         origin = search.origins.get(every, have)
         nearer = len(have) - len(origin)
         may_raise = nearer == 0 or is_near
@@ -386,11 +382,19 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
     heapify(heap)
 
 
+def _guesses_beside(search: Search, have: Set, added: Additions) -> dict[Set, tuple[Explanation, float]]:
+    """Sets beside a fit that were not fitted, with their ln evidence as it is guessed: less by as much as that of a
+    fitted set that they hold would have been guessed too high beside the same fit."""
+    explored_ones = explored(added.names, added.readings, search.beliefs, have, len(have) + 2).values()
+    found = {have | e.names: (e, search.by_expansion(have) + added.gain(e)) for e in explored_ones if e.names}
+    short = {every: found[every][1] - search.by_expansion(every) for every in found if every in search.fitted}
+    less = {every: max((short[part] for part in short if part < every), default=0.0) for every in found}
+    return {n: (e, guess - max(less[n], 0.0)) for n, (e, guess) in found.items() if n not in search.fitted}
+
+
 def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
     """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
     signatures = search.signatures_beside(hypothesis)
     names = Names(signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
-    residual = at_zero(hypothesis)
-    readings = names.catalogue.readings(residual[:, None])[0]
-    gains = Gains(hypothesis.problem, hypothesis.fit, residual, names.catalogue, readings)
+    gains = Gains(hypothesis.problem, hypothesis.fit, at_zero(hypothesis), names.catalogue)
     return Additions(search, hypothesis, names, gains)

@@ -207,16 +207,13 @@ class Catalogue:
         inside += [np.arange(self.first[t] + 1, self.first[t + 1]) for t in chosen]
         return Given(self, np.concatenate(inside), self.first[list(chosen)].astype(int), readings)
 
-    def added(self, chosen: Sequence[int], weights: np.ndarray) -> np.ndarray:
-        """Whitened change of the readings (n,) by the terms of these numbers with their columns by weights (k,)."""
-        change, first = np.zeros(self.whole.rows), 0
-        for term in (self.terms[t] for t in chosen):
-            last = first + term.columns.shape[1]
-            change += term.shift + term.columns @ weights[first:last]
-            first = last
+    def felt(self, number: int) -> np.ndarray:
+        """Whitened shift of the term of a number and its columns, the errors of laws integrated out (n, 1 + k)."""
+        term = self.terms[number]
+        out = np.column_stack([term.shift, term.columns])
         for law in self.laws:
-            change[law.rows] = law.apply(change[law.rows])
-        return change
+            out[law.rows] = law.apply(out[law.rows])
+        return out
 
     def reach(self, chosen: Sequence[int]) -> np.ndarray:
         """Smallest and largest weights of the columns of the terms of these numbers (2, k)."""
@@ -278,24 +275,9 @@ class Given:
     @property
     def log_marginal(self) -> float:
         """ln p of the readings, up to what all explanations share [nats]."""
-        return -self.least - self.spread
-
-    @property
-    def least(self) -> float:
-        """Half the square of the residual and of the weights, where these are the most probable ones [nats]."""
         shifts, taken = self.shifts, self._taken[1]
         square = self.readings.square - 2 * self.readings.on[shifts].sum() + self._of_shifts[shifts].sum()
-        return float(0.5 * (square - taken @ taken))
-
-    @property
-    def spread(self) -> float:
-        """Half ln det A."""
-        return float(np.log(np.diagonal(self._root)).sum())
-
-    @property
-    def weights(self) -> np.ndarray:
-        """Expected weights of the columns inside, the background first (q,)."""
-        return np.linalg.solve(self._root.T, self._taken[1])
+        return float(-0.5 * (square - taken @ taken) - np.log(np.diagonal(self._root)).sum())
 
     def gains(self) -> np.ndarray:
         """ln p that each term of the catalogue would gain if it were added [nats] (terms,)."""

@@ -496,14 +496,28 @@ def test_a_fit_far_behind_does_not_raise_what_was_guessed_beside_a_nearer_one(tm
     bench = sure_of_noise(tmp_path)
     effects = [WAVES[f"wave{k}"]() for k in (2, 3)]
     one, two = (fitted_from(bench, effects[:n], bench.null.x, np.full(n, 0.1)) for n in (1, 2))
-    every = two.names | {"wave4"}
+    every, nearer = frozenset(("wave2", "wave4", "wave5")), frozenset(("wave4", "wave5"))
     search = searching(bench, {frozenset(): null_of(bench), two.names: replace(two, log_evidence=100.0)})
     search.fitted[one.names] = replace(one, log_evidence=100.0 - behind)
-    search.guessed, search.origins = {every: 90.0}, {every: two.names}
+    search.guessed, search.origins = {every: 90.0}, {every: nearer}
     monkeypatch.setattr(tried_module.Additions, "gain", lambda self, found: 1e3)
-    tried_module.expand(search, search.fitted[one.names], [])
+    expand(search, search.fitted[one.names], [])
     assert search.guessed[every] == (1100.0 - behind if is_near else 90.0)
     assert search_module._leads_on(search, one.names) is is_near
+
+
+def test_a_set_is_promised_less_where_a_part_of_it_was_fitted_and_promised_too_much(tmp_path, monkeypatch):
+    """By hand: 1000 nats are promised beside one effect; with a second one that was fitted 200 were gained."""
+    bench = sure_of_noise(tmp_path)
+    effects = [WAVES[f"wave{k}"]() for k in (2, 3)]
+    one, two = (fitted_from(bench, effects[:n], bench.null.x, np.full(n, 0.1)) for n in (1, 2))
+    search = searching(bench, {frozenset(): null_of(bench), one.names: replace(one, log_evidence=0.0)})
+    search.fitted[two.names] = replace(two, log_evidence=200.0)
+    monkeypatch.setattr(tried_module.Additions, "gain", lambda self, found: 1e3)
+    expand(search, search.fitted[one.names], [])
+    guessed = {names: round(guess, 9) for names, guess in search.guessed.items()}
+    assert guessed[one.names | {"wave4"}] == guessed[one.names | {"wave4", "wave5"}] == 1000.0
+    assert guessed[two.names | {"wave4"}] == 200.0
 
 
 def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(tmp_path):

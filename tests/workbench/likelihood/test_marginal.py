@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from workbench.likelihood.gains import Gains
 from workbench.likelihood.marginal import Catalogue, Term, Terms
 from workbench.likelihood.whitening import law_error
 
@@ -55,16 +56,24 @@ def test_first_gains_of_many_residuals_are_the_gains_of_each():
     assert each[2, 0] == pytest.approx(dense(catalogue, (2,), residuals[:, 0]) - dense(catalogue, (), residuals[:, 0]))
 
 
-def test_weights_are_those_of_ridge_regression():
+def test_linear_algebra_ends_at_the_weights_of_ridge_regression():
+    """With the errors of laws felt once by the terms, as the background feels them already."""
     catalogue, residuals = problem(5)
+    random = np.random.default_rng(5)
+    laws = tuple(law_error(rows, random.standard_normal((rows.stop - rows.start, 2))) for rows in CHANNELS)
+    catalogue = replace(catalogue, laws=laws)
+    felt = lambda z: np.concatenate([law.apply(z[law.rows]) for law in laws])  # noqa: E731
     chosen = (2, 0)
     terms = [catalogue.terms[t] for t in chosen]
-    x = np.hstack([catalogue.background, *(t.columns for t in terms)])
-    left = residuals[:, 0] - terms[0].shift - terms[1].shift
-    augmented = np.vstack([x, np.eye(x.shape[1])])
-    ridge = np.linalg.lstsq(augmented, np.r_[left, np.zeros(x.shape[1])], rcond=None)[0]
-    found = catalogue.given(chosen, catalogue.readings(residuals)[0]).weights
-    assert np.allclose(found, ridge, atol=1e-10)
+    x = np.hstack([catalogue.background, *(felt(t.columns) for t in terms)])
+    left = residuals[:, 0] - felt(terms[0].shift) - felt(terms[1].shift)
+    augmented, target = np.vstack([x, np.eye(x.shape[1])]), np.r_[left, np.zeros(x.shape[1])]
+    ridge = np.linalg.lstsq(augmented, target, rcond=None)[0]
+    found = Gains(None, None, residuals[:, 0], catalogue).end(chosen)
+    assert np.allclose(found.weights, ridge, atol=1e-10)
+    assert found.least == pytest.approx(0.5 * np.sum((target - augmented @ ridge) ** 2), abs=1e-9)
+    marginal = catalogue.given(chosen, catalogue.readings(residuals)[0]).log_marginal
+    assert -found.least - found.spread == pytest.approx(marginal, abs=1e-9)
 
 
 def test_a_background_of_nothing_is_no_hindrance():
