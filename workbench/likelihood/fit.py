@@ -262,7 +262,8 @@ class _Search:
 
     def _bend(self, p, residual, straight, normal, slopes) -> np.ndarray:
         """By which a step leaves its line to follow the ridge, at its whole length (m + k,): the geodesic acceleration
-        of Transtrum and Sethna (2012), eq. 11; none where the model has no answer to either side.
+        of Transtrum and Sethna (2012), "Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares
+        minimization"; none where the model has no answer to either side.
 
         -1/2 (J^T W J + P)^-1 J^T W f'',  f'' = d^2 f / dt^2 along p + t straight
         """
