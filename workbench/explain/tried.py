@@ -387,9 +387,9 @@ def _guesses_beside(search: Search, have: Set, added: Additions) -> dict[Set, tu
     fitted set that they hold would have been guessed too high beside the same fit."""
     explored_ones = explored(added.names, added.readings, search.beliefs, have, len(have) + 2).values()
     found = {have | e.names: (e, search.by_expansion(have) + added.gain(e)) for e in explored_ones if e.names}
-    short = {every: found[every][1] - search.by_expansion(every) for every in found if every in search.fitted}
-    less = {every: max((short[part] for part in short if part < every), default=0.0) for every in found}
-    return {n: (e, guess - max(less[n], 0.0)) for n, (e, guess) in found.items() if n not in search.fitted}
+    short = {n: max(found[n][1] - search.by_expansion(n), 0.0) for n in found if n in search.fitted}
+    less = {n: max((short[part] for part in short if part < n), default=0.0) for n in found}
+    return {n: (e, guess - less[n]) for n, (e, guess) in found.items() if n not in search.fitted}
 
 
 def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:

@@ -219,7 +219,7 @@ def _laws(table: Table) -> Iterator[tuple[str, float, np.ndarray]]:
                 yield name, power, law / np.sqrt(np.mean(law**2))
 
 
-@lru_cache(maxsize=64)  # every fit asks at the same tables for the errors of its laws
+@lru_cache(maxsize=16)  # every fit asks at the same few tables for the errors of its laws
 def smooth(table: Table, length: int) -> np.ndarray:
     """Phi (n, q) with Phi Phi^T = exp(-d^2 / 2) over all conditions of a table."""
     return smooth_over(table.conditions, length)
