@@ -4,15 +4,14 @@
     q: sum of squares of the whitened residuals of a channel;  nu: degrees of freedom of its measured noise
 
 The first is Student's t for a noise whose size was measured by repeats: the Gaussian with its size integrated out.
-The last
-is Student's t for the size of an effect, whose prior is only a guess of its magnitude.
+The last is Student's t for the size of an effect, whose prior is only a guess of its magnitude.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import scipy
@@ -167,6 +166,41 @@ def linearised(problem: Problem, x: np.ndarray, effects: Sequence[Effect] = (), 
     return search.result(np.concatenate([x, z]), search.nuisance_slopes(x, z))
 
 
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """The model as a line about a place of a descent.
+
+    p: the place (m + k,);  residual: whitened there (n,);  slopes: d f / d p, whitened (n, m + k)
+    weights: of the rows (n,);  prior: curvature of the prior (m + k,)
+    """
+
+    p: np.ndarray
+    residual: np.ndarray
+    slopes: np.ndarray
+    weights: np.ndarray
+    prior: np.ndarray
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """Curvature of the objective as Gauss and Newton have it."""
+        return self.slopes.T @ (self.weights[:, None] * self.slopes) + np.diag(self.prior)
+
+    @cached_property
+    def downhill(self) -> np.ndarray:
+        """Minus the gradient of the objective."""
+        return self.slopes.T @ (self.weights * self.residual) - self.prior * self.p
+
+    @cached_property
+    def straight(self) -> np.ndarray:
+        """The step of Gauss and Newton."""
+        return np.linalg.solve(self.normal, self.downhill)
+
+    @property
+    def promised(self) -> float:
+        """What it promises [nats]."""
+        return 0.5 * float(self.downhill @ self.straight)
+
+
 @dataclass
 class _Search:
     problem: Problem
@@ -214,12 +248,12 @@ class _Search:
             is_new = is_last or self._is_far(p, taken_at)
             if is_new:
                 taken_at, slopes = p, np.hstack([nuisance_slopes, self.effect_slopes(p)])
-            normal, downhill = self._normal_equations(p, residual, slopes)
-            promised = gain = 0.5 * float(downhill @ np.linalg.solve(normal, downhill))
-            if promised >= close:
-                p, residual, new = self._step(p, residual, value, normal, downhill, slopes)
+            line = self._line(p, residual, slopes)
+            gain = line.promised
+            if line.promised >= close:
+                p, residual, new = self._step(line, value)
                 value, gain = new, value - new
-            is_last = gain < max(close, POOR * promised)
+            is_last = gain < max(close, POOR * line.promised)
             if is_last and is_new:
                 break
         return p, first - value
@@ -227,40 +261,34 @@ class _Search:
     def _is_far(self, p: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.any(np.abs(p - other)[self.m :] > NEAR))
 
-    def _normal_equations(
-        self, p: np.ndarray, residual: np.ndarray, slopes: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Curvature of the objective as Gauss and Newton have it, and minus its gradient."""
-        weights, prior = self.problem.weights(residual), self.prior_curvature(p)
-        normal = slopes.T @ (weights[:, None] * slopes) + np.diag(prior)
-        return normal, slopes.T @ (weights * residual) - prior * p
+    def _line(self, p: np.ndarray, residual: np.ndarray, slopes: np.ndarray) -> _Line:
+        return _Line(p, residual, slopes, self.problem.weights(residual), self.prior_curvature(p))
 
-    def _step(self, p, residual, value, normal, downhill, slopes):
+    def _step(self, line: _Line, value: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Gauss-Newton, the step shortened and bent until the objective falls: that stays on a ridge between an effect
-        and a tolerance; then damped."""
-        straight = np.linalg.solve(normal, downhill)
-        for move in self._moves(p, residual, straight, normal, downhill, slopes):
-            trial = p + move
+        and a tolerance; then damped. The place, the residual and the objective there."""
+        for move in self._moves(line):
+            trial = line.p + move
             trial[self.m :] = np.clip(trial[self.m :], -FAR, FAR)
             try:
-                new_residual = self.residual(trial)
+                residual = self.residual(trial)
             except WorkbenchError:  # no steady state there: as bad as can be
                 continue
-            new = self.objective(trial, new_residual)
+            new = self.objective(trial, residual)
             if new < value:
-                return trial, new_residual, new
-        return p, residual, value
+                return trial, residual, new
+        return line.p, line.residual, value
 
-    def _moves(self, p, residual, straight, normal, downhill, slopes) -> Iterator[np.ndarray]:
+    def _moves(self, line: _Line) -> Iterator[np.ndarray]:
         """Steps to be tried one after the other, each worked out when it is asked for."""
-        yield straight
-        bend = self._bend(p, residual, straight, normal, slopes)
+        yield line.straight
+        bend = self._bend(line)
         for length in LENGTHS:
-            yield length * straight + length**2 * bend
+            yield length * line.straight + length**2 * bend
         for damping in DAMPINGS:
-            yield np.linalg.solve(normal + damping * np.diag(np.diag(normal)), downhill)
+            yield np.linalg.solve(line.normal + damping * np.diag(np.diag(line.normal)), line.downhill)
 
-    def _bend(self, p, residual, straight, normal, slopes) -> np.ndarray:
+    def _bend(self, line: _Line) -> np.ndarray:
         """By which a step leaves its line to follow the ridge, at its whole length (m + k,): the geodesic acceleration
         of Transtrum and Sethna (2012), "Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares
         minimization"; none where the model has no answer to either side.
@@ -268,17 +296,16 @@ class _Search:
         -1/2 (J^T W J + P)^-1 J^T W f'',  f'' = d^2 f / dt^2 along p + t straight
         """
         try:
-            ahead, behind = (self.residual(p + side * ALONG * straight) for side in (1.0, -1.0))
+            ahead, behind = (self.residual(line.p + side * ALONG * line.straight) for side in (1.0, -1.0))
         except WorkbenchError:
-            return np.zeros(len(p))
-        curved = (ahead - 2 * residual + behind) / ALONG**2  # of the residual: minus that of the model
-        return 0.5 * np.linalg.solve(normal, slopes.T @ (self.problem.weights(residual) * curved))
+            return np.zeros(len(line.p))
+        curved = (ahead - 2 * line.residual + behind) / ALONG**2  # of the residual: minus that of the model
+        return 0.5 * np.linalg.solve(line.normal, line.slopes.T @ (line.weights * curved))
 
     def result(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> Fit:
         residual = self.residual(p)
         slopes = np.hstack([self.problem.white(nuisance_slopes), self.effect_slopes(p)])
-        weights = self.problem.weights(residual)
-        hessian = slopes.T @ (weights[:, None] * slopes) + np.diag(self.prior_curvature(p))
+        hessian = self._line(p, residual, slopes).normal
         value = self.objective(p, residual)
         evidence = -value - 0.5 * np.linalg.slogdet(hessian)[1]
         x, z, covariance = p[: self.m], p[self.m :], np.linalg.inv(hessian)
