@@ -18,15 +18,15 @@ import numpy as np
 from workbench.data.repeats import follows, matched_rows
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
+from workbench.likelihood.restricted import DECLARED_WEIGHT, Repeated, Size, sizes_of
 
 WILD = 2.5  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
 TAME_SHARE = 0.9749  # mean of min(d^2, WILD^2) of a standard normal d
 REPORTED = 4.5  # standard deviations of disagreement from which a reading is called wild
-DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the repeats
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
-POOLED_PAIRS = 30.0  # neighbours that the correlation common to all channels counts for in each channel
-LARGEST_CORRELATION = 0.95
-POOLED_SCANS = 6.0  # offsets and slopes that the spread common to all channels counts for in each channel
+MOST_STATIONS = 4000  # that are asked how large the noise of a channel is; so many know it to 1 %
+MOST_SCANS = 80  # that are asked what a scan as a whole is off by; so many know it to 6 %
+RUN = 50  # neighbouring stations of a longer table that are kept together
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
 
 
@@ -67,14 +67,9 @@ def measured_noise(stack: Stack, predicted: np.ndarray) -> Noise:
     """
     residual = (stack.y - predicted) / stack.u
     raw = _disagreements(stack, residual)
-    tame = _disagreements(stack, residual - _wild_part(stack, raw))
-    rhos = _correlations(stack, tame.within, tame.scales)
-    found = [_of_channel(c.name, s, r) for c, s, r in zip(stack.channels, tame.scales, rhos)]
-    scans = [
-        _of_whole_scans(stack.tables[c.table], stack.u[c.rows], d, own)
-        for c, d, own in zip(stack.channels, tame.whole, found)
-    ]
-    channels = [replace(own, scans=spread) for own, spread in zip(found, _spreads(scans))]
+    tame = residual - _wild_part(stack, raw)
+    repeated = [_repeated(stack, channel, tame) for channel in stack.channels]
+    channels = [_of_channel(*each) for each in zip((c.name for c in stack.channels), repeated, sizes_of(repeated))]
     return with_wild_readings(channels, stack, predicted)
 
 
@@ -89,33 +84,67 @@ def with_wild_readings(channels: Sequence[ChannelNoise], stack: Stack, predicted
     return Noise(counted, np.maximum(np.concatenate(ratios) / WILD, 1.0) if ratios else np.ones(0))
 
 
-def _of_channel(name: str, scale: _Scale, rho: float) -> ChannelNoise:
-    """The measured size drawn towards the declared one."""
-    size = np.sqrt((DECLARED_WEIGHT + scale.pairs * scale.size**2) / (DECLARED_WEIGHT + scale.pairs))
-    return ChannelNoise(name, float(size), float(rho), _dof(scale.pairs, rho), scale.pairs, 0)
+def _of_channel(name: str, repeated: Repeated, size: Size) -> ChannelNoise:
+    dof = DECLARED_WEIGHT + repeated.free if repeated.free else DOF_WITHOUT_REPEATS
+    return ChannelNoise(name, size.scale, size.rho, float(dof), repeated.free, 0, size.scans)
+
+
+def _repeated(stack: Stack, channel: Channel, residual: np.ndarray) -> Repeated:
+    """The readings of a channel that have partners, in the order they were taken; residual: over u (n,)"""
+    table, u = stack.tables[channel.table], stack.u[channel.rows]
+    stations = _some(table)
+    place = np.full(channel.size, -1)
+    place[stations] = np.arange(len(stations))[:, None]
+    rows = np.flatnonzero(place >= 0)
+    next_to = follows(table)[rows] & (np.diff(rows, prepend=-2) == 1)
+    return Repeated(residual[channel.rows][rows], place[rows], next_to, _shapes(table, u, rows))
+
+
+def _some(table: Table) -> np.ndarray:
+    """Stations of a table (stations, repeats); of a long one runs of neighbours all over it, of very many scans some.
+    None where nothing was repeated."""
+    stations = matched_rows(table)
+    if stations is None:
+        return np.zeros((0, 1), dtype=int)
+    kept = np.unique(table.scan)[:: -(-len(table.scans) // MOST_SCANS)]
+    stations = stations[np.isin(table.scan[stations[:, 0]], kept)]
+    step = -(-len(stations) // MOST_STATIONS)
+    runs = np.array_split(stations, -(-len(stations) // RUN)) if step > 1 else [stations]
+    return np.concatenate(runs[::step])
+
+
+def _shapes(table: Table, u: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Offset and slope of every scan that is long enough to have them, at some rows of a table (rows, 2 scans)."""
+    place, columns = np.full(len(u), -1), [np.zeros((len(rows), 0))]
+    place[rows] = np.arange(len(rows))
+    for scan in table.scans:
+        known = place[scan] >= 0
+        if len(scan) >= SHORTEST_SCAN and known.any():
+            columns.append(np.zeros((len(rows), 2)))
+            columns[-1][place[scan[known]]] = scan_shapes(u[scan])[known]
+    return np.hstack(columns)
 
 
 @dataclass(frozen=True, eq=False)
 class _Disagreements:
-    """Of the repeats of every channel. within: less what a scan as a whole is off by"""
+    """Of the repeats of every channel, less what a scan as a whole is off by. sizes: robust standard deviations"""
 
-    whole: list[_Deviation]
     within: list[_Deviation]
-    scales: list[_Scale]
+    sizes: list[float]
 
 
 def _disagreements(stack: Stack, residual: np.ndarray) -> _Disagreements:
     whole = [_deviation(stack, channel, residual) for channel in stack.channels]
     within = [_within_scans(stack, c, residual, d) for c, d in zip(stack.channels, whole)]
-    return _Disagreements(whole, within, [_scale(d) for d in within])
+    return _Disagreements(within, [_size(d) for d in within])
 
 
 def _wild_part(stack: Stack, found: _Disagreements) -> np.ndarray:
     """By how much every reading is further off its repeats than WILD, of u (n,): left in, it would move their mean and
     make all of them look noisy. The model has no vote here: a wrong one must not look like noise."""
     parts = [
-        np.nan_to_num(np.sign(d.middle) * np.maximum(np.abs(d.middle) - WILD * scale.size, 0.0))
-        for d, scale in zip(found.within, found.scales)
+        np.nan_to_num(np.sign(d.middle) * np.maximum(np.abs(d.middle) - WILD * size, 0.0))
+        for d, size in zip(found.within, found.sizes)
     ]
     return np.concatenate(parts) if parts else np.zeros(0)
 
@@ -132,27 +161,20 @@ class _Deviation:
 
     spread: from the mean of the repeats, for the size of the noise;  middle: from their median, which no wild reading
     moves;  row: from the median of them and the model, which shows which one is wild
-    dof: differences that are independent;  growth: factor on the spread, as the mean of few is nearer than the truth
+    growth: factor on the spread, as the mean of few is nearer than the truth
     """
 
     spread: np.ndarray
     middle: np.ndarray
     row: np.ndarray
-    dof: int
     growth: float
-
-
-@dataclass(frozen=True)
-class _Scale:
-    size: float
-    pairs: int
 
 
 def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviation:
     stations = matched_rows(stack.tables[channel.table])
     spread, middle, row = np.full((3, channel.size), np.nan)
     if stations is None:
-        return _Deviation(spread, middle, row, 0, 1.0)
+        return _Deviation(spread, middle, row, 1.0)
     values = residual[channel.rows][stations]  # (stations, repeats)
     repeats = values.shape[1]
     votes = np.column_stack([values, np.zeros(len(values))])
@@ -160,7 +182,7 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
     spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
     middle[stations] = values - np.median(values, axis=1, keepdims=True)
     row[stations] = values - np.median(votes, axis=1, keepdims=True)
-    return _Deviation(spread, middle, row, len(stations) * (repeats - 1), growth)
+    return _Deviation(spread, middle, row, growth)
 
 
 def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
@@ -187,31 +209,6 @@ def _fence(values: np.ndarray) -> tuple[float, float]:
     return middle - reach, middle + reach
 
 
-@dataclass(frozen=True, eq=False)
-class _Scans:
-    """Offsets and slopes of the scans of a channel, of the size of its noise, and their variance by noise (s,).
-
-    free: how many of them are independent, as they are taken from the mean of the repeats
-    """
-
-    found: np.ndarray
-    noise: np.ndarray
-    free: float
-
-
-def _of_whole_scans(table: Table, u: np.ndarray, deviation: _Deviation, own: ChannelNoise) -> _Scans:
-    z, rho = deviation.spread / own.scale, own.rho
-    found, noise = [], []
-    for rows in table.scans:
-        known = rows[np.isfinite(z[rows])]
-        if len(known) >= SHORTEST_SCAN:
-            shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
-            values = np.clip(z[known], *_fence(z[known]))
-            found += list(np.linalg.lstsq(shapes, values, rcond=None)[0])
-            noise += list((1 + rho) / (1 - rho) * np.diagonal(np.linalg.pinv(shapes.T @ shapes)))
-    return _Scans(np.array(found), np.array(noise), len(found) / deviation.growth**2)
-
-
 def scan_shapes(u: np.ndarray) -> np.ndarray:
     """An offset and a slope in the unit of the reading over the rows of a scan, of rms 1 over their u (n, 2)."""
     shapes = np.column_stack([np.ones(len(u)), _through(len(u))]) / u[:, None]
@@ -219,61 +216,15 @@ def scan_shapes(u: np.ndarray) -> np.ndarray:
     return shapes / np.where(size > 0, size, 1.0)
 
 
-def _spreads(scans: Sequence[_Scans]) -> list[float]:
-    """Standard deviation of offset and of slope of the scans of every channel beyond what noise gives them, drawn
-    towards the one common to all, as three repeats alone say little of it: that of the next scan, which is one of
-    Student's t as the variance of n scans is not known but has a posterior of n degrees of freedom."""
-    found, noise = (np.concatenate([getattr(s, name) for s in scans]) for name in ("found", "noise"))
-    common = _excess(found, noise)
-    own = [(_excess(s.found, s.noise), s.free) for s in scans]
-    return [float(np.sqrt((POOLED_SCANS * common + n * e) / (POOLED_SCANS + n - 2.0))) for e, n in own]
-
-
-def _excess(found: np.ndarray, noise: np.ndarray) -> float:
-    """Variance of values beyond that of their noise, each weighed by how well it tells."""
-    excess = 0.0
-    for _ in range(5):
-        weight = 1.0 / (noise + excess) ** 2
-        excess = max(float(np.sum(weight * (found**2 - noise)) / weight.sum()), 0.0) if len(found) else 0.0
-    return excess
-
-
-def _scale(deviation: _Deviation) -> _Scale:
+def _size(deviation: _Deviation) -> float:
     """Standard deviation with disagreements cut at WILD times it (Huber's proposal 2)."""
     d = deviation.spread[np.isfinite(deviation.spread)]
     if len(d) == 0:
-        return _Scale(1.0, 0)
+        return 1.0
     size = np.sqrt(np.mean(d**2)) + 1e-12
     for _ in range(20):
         size = np.sqrt(np.mean(np.minimum(d**2, (WILD * size) ** 2)) / TAME_SHARE) + 1e-12
-    return _Scale(float(size), deviation.dof)
-
-
-def _correlations(stack: Stack, deviations, scales) -> list[float]:
-    """Correlation of neighbours of each channel, drawn towards the one common to all."""
-    sums = []
-    for channel, d, scale in zip(stack.channels, deviations, scales):
-        z = np.clip(d.spread / scale.size, -3, 3)
-        next_to = follows(stack.tables[channel.table]) & np.isfinite(z) & np.isfinite(np.roll(z, 1))
-        share = scale.pairs / max(np.isfinite(z).sum(), 1)
-        sums.append(((z * np.roll(z, 1))[next_to].sum() * share, (z**2)[next_to].sum() * share))
-    over, under = np.array(sums).T if sums else (np.zeros(1), np.zeros(1))
-    pooled = over.sum() / under.sum() if under.sum() > 0 else 0.0
-    rho = (over + POOLED_PAIRS * pooled) / (under + POOLED_PAIRS)
-    rho = rho + np.array([_lost_by_lines(stack.tables[c.table], r) for c, r in zip(stack.channels, rho)])
-    return list(np.clip(rho, -LARGEST_CORRELATION, LARGEST_CORRELATION))
-
-
-def _lost_by_lines(table: Table, rho: float) -> float:
-    """By how much a line through every scan makes the correlation of neighbours look smaller, 2 (1 + 2 rho) / n."""
-    sizes = [len(rows) for rows in table.scans if len(rows) >= SHORTEST_SCAN]
-    return 2 * (1 + 2 * max(rho, 0.0)) / float(np.mean(sizes)) if sizes else 0.0
-
-
-def _dof(pairs: int, rho: float) -> float:
-    if pairs == 0:
-        return DOF_WITHOUT_REPEATS
-    return float(DECLARED_WEIGHT + pairs * (1 - rho**2) / (1 + rho**2))
+    return float(size)
 
 
 def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: int) -> np.ndarray:

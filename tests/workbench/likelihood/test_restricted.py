@@ -1,0 +1,79 @@
+"""The restricted likelihood of what repeats disagree by: against dense matrices, and where moments go wrong."""
+
+import numpy as np
+import pytest
+
+from workbench.likelihood.restricted import (
+    CORRELATIONS,
+    DECLARED_WEIGHT,
+    SPREADS,
+    Repeated,
+    Size,
+    _likelihood,
+    sizes_of,
+)
+
+
+def shapes(repeats, rows):
+    """Offset and slope of every scan, of rms 1 (rows of all, 2 repeats)."""
+    line = np.column_stack([np.ones(rows), np.linspace(-1, 1, rows)])
+    return np.kron(np.eye(repeats), line / np.sqrt(np.mean(line**2, axis=0)))
+
+
+def channel(repeats, rows, rho=0.0, off=0.0, seed=0, shuffled=False):
+    """AR(1) noise of size one about stations of any value, every repeat a scan that is off by an offset and a slope."""
+    random = np.random.default_rng(seed)
+    fresh = random.standard_normal((repeats, rows))
+    for k in range(1, rows):
+        fresh[:, k] = rho * fresh[:, k - 1] + np.sqrt(1 - rho**2) * fresh[:, k]
+    form = shapes(repeats, rows)
+    values = fresh.ravel() + off * form @ random.standard_normal(2 * repeats)
+    order = [random.permutation(rows) if shuffled else np.arange(rows) for _ in range(repeats)]
+    station = np.concatenate(order)
+    follows = np.tile(np.arange(rows) > 0, repeats)
+    return Repeated(values + 100 * random.standard_normal(rows)[station], station, follows, form)
+
+
+@pytest.mark.parametrize("shuffled", [False, True])
+@pytest.mark.parametrize("r, t", [(3, 0), (8, 6), (20, 11)])
+def test_it_is_that_of_dense_matrices(shuffled, r, t):
+    """ln p with the values of the stations projected out, by covariance and inverse, one row of a scan lost."""
+    one = channel(3, 12, 0.4, 1.0, shuffled=shuffled)
+    follows = one.follows & (np.arange(36) != 17)
+    one = Repeated(one.values, one.station, follows, one.shapes)
+    chain, lag = np.cumsum(~follows), np.abs(np.subtract.outer(np.arange(36), np.arange(36)))
+    covariance = np.where(chain[:, None] == chain, CORRELATIONS[r] ** lag, 0.0)
+    covariance = covariance + SPREADS[t] ** 2 * one.shapes @ one.shapes.T
+    inverse, places = np.linalg.inv(covariance), np.eye(12)[one.station]
+    within = places.T @ inverse @ places
+    left = inverse - inverse @ places @ np.linalg.solve(within, places.T @ inverse)
+    square = DECLARED_WEIGHT + one.values @ left @ one.values
+    log_det = np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(within)[1]
+    found = _likelihood(one)
+    assert found.log_p[r, t] == pytest.approx(-0.5 * ((DECLARED_WEIGHT + 24) * np.log(square) + log_det), abs=1e-6)
+    assert found.variance[r, t] == pytest.approx(square / (DECLARED_WEIGHT + 24), rel=1e-8)
+
+
+def test_short_scans_tell_the_correlation_without_bias():
+    """Ten rows less a line have a correlation of neighbours 0.3 below the true one."""
+    benches = [[channel(3, 10, 0.45, 1.5, seed * 8 + k) for k in range(8)] for seed in range(60)]
+    found = [one.rho for bench in benches for one in sizes_of(bench)]
+    assert np.mean(found) == pytest.approx(0.45, abs=0.04)  # three standard errors of 60 benches
+
+
+def test_a_spread_that_few_scans_hardly_show_is_not_taken_for_none():
+    """Two scans of four channels, off by half their noise: drift and offset would be told from zero by 0 / 0."""
+    benches = [[channel(2, 40, 0.4, 0.5, seed * 8 + k) for k in range(4)] for seed in range(40)]
+    found = np.array([one.scans for bench in benches for one in sizes_of(bench)])
+    assert found.min() > 0.05 and np.median(found) == pytest.approx(0.5, abs=0.15)
+
+
+def test_a_channel_without_repeats_takes_what_the_others_have_in_common():
+    alone = channel(1, 20)
+    others = [channel(3, 60, 0.6, 1.0, seed) for seed in range(4)]
+    *known, found = sizes_of([*others, alone])
+    assert found.scale == 1.0 and found.rho == pytest.approx(np.mean([k.rho for k in known]), abs=0.06)
+
+
+def test_where_nothing_was_repeated_all_is_as_declared():
+    assert sizes_of([channel(1, 20), channel(1, 5)]) == [Size(1.0, 0.0, 0.0)] * 2
