@@ -28,9 +28,7 @@ class EddyScreening(ResponseEffect):
     base_rate = 0.03
     base_rate_source = "engineering judgement: small machines have solid cups or cores, meters work at 1 kHz by default"
     model_error = 0.1  # one share for all of the gap's flux
-    model_error_source = (
-        "engineering judgement: the skin is thinner than the cup; phases differ"
-    )
+    model_error_source = "engineering judgement: the skin is thinner than the cup; phases differ"
 
     share: float = parameter(
         0.0, "1", prior=LogNormal(0.15, 0.7), low=0.0, high=0.9,

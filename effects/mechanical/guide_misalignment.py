@@ -17,7 +17,7 @@ from effects.signature import Odd, Power
 class GuideMisalignment(ForceEffect):
     """Guides that bind away from the middle of the stroke: F = gradient sqrt(x^2 + clearance^2) tanh(v / 1 mm/s).
 
-    Within its clearance a guide is pressed as the rod happens to lie in it, so that some friction is left in mid-stroke.
+    Within its clearance a guide is pressed as the rod happens to lie in it: some friction is left in mid-stroke.
     """
 
     title = "friction that grows away from mid-stroke"
@@ -31,7 +31,7 @@ class GuideMisalignment(ForceEffect):
     )
     model_error = 0.013
     size_error = 0.02
-    model_error_source = "benchmarks/law_errors.py: against another rounding of the reversal, and a clearance of half the size"
+    model_error_source = "benchmarks/law_errors.py: against another rounding of the reversal, half the clearance"
     base_rate = 0.02
     base_rate_source = "engineering judgement: side load on a rod, one rig in fifty"
 
