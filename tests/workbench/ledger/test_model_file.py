@@ -36,11 +36,15 @@ def test_the_fitted_values_stand_in_si(learned):
 
 
 def test_the_covariance_is_that_of_least_squares(learned, bench):
-    """F = k x + c x^3 + o with normal noise and normal priors of k and o; c is free over its broad prior."""
+    """F = k x + c x^3 + o with normal noise, an offset and a slope of the scan as far as two scans leave them open, and
+    normal priors of k and o; c is free over its broad prior."""
     assert learned.names == ("stiffness", "force_offset", "hardening.cubic")
     x = bench.fit.stack.tables[0].conditions["displacement"]
     slopes = np.column_stack([1000.0 * x, np.ones_like(x), x**3])
-    information = slopes.T @ slopes / 0.05**2 + np.diag([0.01**-2, 0.02**-2, 0.0])
+    line, off = np.column_stack([np.ones_like(x), x / np.sqrt(np.mean(x**2))]), bench.noise.channels[0].scans
+    noise = 0.05**2 * (np.eye(len(x)) + off**2 * line @ line.T)
+    information = slopes.T @ np.linalg.solve(noise, slopes) + np.diag([0.01**-2, 0.02**-2, 0.0])
+    assert off < 0.2, "no scan was moved"
     expected, found = np.linalg.inv(information), learned.covariance
     sd = np.sqrt(np.diag(expected))
     assert np.sqrt(np.diag(found)) == pytest.approx(sd, rel=0.35), "the size of the noise is measured"
