@@ -66,11 +66,11 @@ def measured_noise(stack: Stack, predicted: np.ndarray) -> Noise:
     predicted: readings of the model (n,)
     """
     residual = (stack.y - predicted) / stack.u
-    raw = _disagreements(stack, residual)
-    tame = residual - _wild_part(stack, raw)
+    within = _within(stack, residual)
+    tame = residual - _wild_part(within)
     repeated = [_repeated(stack, channel, tame) for channel in stack.channels]
     channels = [_of_channel(*each) for each in zip((c.name for c in stack.channels), repeated, sizes_of(repeated))]
-    return with_wild_readings(channels, stack, predicted)
+    return _with_wild(channels, within)
 
 
 def with_wild_readings(channels: Sequence[ChannelNoise], stack: Stack, predicted: np.ndarray) -> Noise:
@@ -78,8 +78,11 @@ def with_wild_readings(channels: Sequence[ChannelNoise], stack: Stack, predicted
 
     channels: in the order of the stack;  predicted: readings of the model (n,)
     """
-    rows = [d.row for d in _disagreements(stack, (stack.y - predicted) / stack.u).within]
-    ratios = [np.nan_to_num(np.abs(row) / own.scale) for row, own in zip(rows, channels)]
+    return _with_wild(channels, _within(stack, (stack.y - predicted) / stack.u))
+
+
+def _with_wild(channels: Sequence[ChannelNoise], within: Sequence[_Deviation]) -> Noise:
+    ratios = [np.nan_to_num(np.abs(d.row) / own.scale) for d, own in zip(within, channels)]
     counted = tuple(replace(own, wild=int((ratio > REPORTED).sum())) for own, ratio in zip(channels, ratios))
     return Noise(counted, np.maximum(np.concatenate(ratios) / WILD, 1.0) if ratios else np.ones(0))
 
@@ -101,8 +104,8 @@ def _repeated(stack: Stack, channel: Channel, residual: np.ndarray) -> Repeated:
 
 
 def _some(table: Table) -> np.ndarray:
-    """Stations of a table (stations, repeats); of a long one runs of neighbours all over it, of very many scans some.
-    None where nothing was repeated."""
+    """Stations of a table (stations, repeats), no row where nothing was repeated; of a long one runs of neighbours all
+    over it, of very many scans some."""
     stations = matched_rows(table)
     if stations is None:
         return np.zeros((0, 1), dtype=int)
@@ -125,27 +128,15 @@ def _shapes(table: Table, u: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return np.hstack(columns)
 
 
-@dataclass(frozen=True, eq=False)
-class _Disagreements:
-    """Of the repeats of every channel, less what a scan as a whole is off by. sizes: robust standard deviations"""
-
-    within: list[_Deviation]
-    sizes: list[float]
+def _within(stack: Stack, residual: np.ndarray) -> list[_Deviation]:
+    """What repeats of every channel disagree by, less what a scan as a whole is off by. residual: over u (n,)"""
+    return [_within_scans(stack, c, residual, _deviation(stack, c, residual)) for c in stack.channels]
 
 
-def _disagreements(stack: Stack, residual: np.ndarray) -> _Disagreements:
-    whole = [_deviation(stack, channel, residual) for channel in stack.channels]
-    within = [_within_scans(stack, c, residual, d) for c, d in zip(stack.channels, whole)]
-    return _Disagreements(within, [_size(d) for d in within])
-
-
-def _wild_part(stack: Stack, found: _Disagreements) -> np.ndarray:
+def _wild_part(within: Sequence[_Deviation]) -> np.ndarray:
     """By how much every reading is further off its repeats than WILD, of u (n,): left in, it would move their mean and
     make all of them look noisy. The model has no vote here: a wrong one must not look like noise."""
-    parts = [
-        np.nan_to_num(np.sign(d.middle) * np.maximum(np.abs(d.middle) - WILD * size, 0.0))
-        for d, size in zip(found.within, found.sizes)
-    ]
+    parts = [np.nan_to_num(np.sign(d.middle) * np.maximum(np.abs(d.middle) - WILD * _size(d), 0.0)) for d in within]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

@@ -22,6 +22,7 @@ CORRELATIONS = np.linspace(-0.4, 0.95, 28)
 SPREADS = np.concatenate([[0.0], np.geomspace(0.1, 8.0, 14)])  # of offset and slope of a scan, of the size of the noise
 ALIKE = 0.15  # standard deviation of the correlations of channels of one bench about what they have in common
 AS_LARGE = 0.3  # the same of the logarithm of their spreads
+SHARES = np.where(SPREADS > 0, 0.5 / np.count_nonzero(SPREADS), 0.5)  # of benches: with no spread as many as with one
 ODD = 0.05  # share of channels that have a spread where the others have none, or none where they have one
 
 
@@ -179,12 +180,9 @@ def _posteriors(log_p: Sequence[np.ndarray]) -> list[np.ndarray]:
     out = []
     for one, mine in zip(own, seen):
         others = every - mine
-        prior = correlation @ np.exp(others - others.max()) * _SHARE @ spread.T
+        prior = correlation @ np.exp(others - others.max()) * SHARES @ spread.T
         out.append(one * prior / np.sum(one * prior))
     return out
-
-
-_SHARE = np.where(SPREADS > 0, 0.5 / np.count_nonzero(SPREADS), 0.5)  # of benches: with no spread as many as with one
 
 
 def _scatter() -> tuple[np.ndarray, np.ndarray]:

@@ -139,8 +139,10 @@ def test_the_same_seed_gives_the_same_thresholds(tmp_path):
     assert one == again and one != other
 
 
-def test_noise_larger_than_expected_is_no_discovery(simulator):
-    """ln p that unknown functions gain in campaigns that hide nothing, against dense Student densities."""
+def test_noise_larger_than_expected_is_no_discovery(tmp_path):
+    """ln p that unknown functions gain in campaigns that hide nothing, against dense Student densities: with a noise
+    that 26 differences tell."""
+    simulator = simulator_of(tmp_path, n=26)
     bench, count = simulator.bench, 400
     jacobian, random = bench.centre.jacobian, default_rng(5)
     tolerances = jacobian @ random.standard_normal((jacobian.shape[1], count))
@@ -160,4 +162,4 @@ def test_noise_larger_than_expected_is_no_discovery(simulator):
     ours = beside.log_evidences(replace(simulator, random=default_rng(5)).noise(count))
     gaussian = beside.log_evidences(drawn)
     off, was_off = (np.sqrt(np.mean((found - exact) ** 2)) for found in (ours, gaussian))
-    assert off < 0.1 and was_off > 2 * off
+    assert off < 0.15 and was_off > 0.3
