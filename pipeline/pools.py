@@ -6,6 +6,7 @@ its workers keep what they have imported from one stage to the next.
 
 from __future__ import annotations
 
+import asyncio
 import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping
@@ -63,8 +64,14 @@ class DaskCluster(Pool):
         self.size = max(1, 2 * sum(self.client.nthreads().values()))  # one task runs, the next is on its way
 
     def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
-        """See ``Pool.submit``."""
-        return self.client.get_executor(pure=False).submit(function, task)
+        """See ``Pool.submit``.
+
+        The client's own executor looks at a result's status after it has fetched the result: where a worker is lost in
+        between, it takes the result for an exception.
+        """
+        submitted = self.client.submit(function, task, pure=False)
+        found = self.client.gather(submitted, asynchronous=True)
+        return asyncio.run_coroutine_threadsafe(found, self.client.loop.asyncio_loop)
 
     def result(self, future: Future[Result]) -> Result:
         """See ``Pool.result``."""

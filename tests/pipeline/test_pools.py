@@ -112,6 +112,25 @@ def test_a_cluster_without_workers_gets_new_ones(path, monkeypatch):
     pool.end()
 
 
+def test_a_result_that_was_fetched_counts_though_its_worker_is_lost_then(path, monkeypatch):
+    """A worker that dies after a result has been fetched, and before its status is looked at."""
+    import distributed
+    from worker_tasks import square
+
+    gathered = distributed.Client._gather
+
+    async def gather_and_lose(client, futures, **options):
+        found = await gathered(client, futures, **options)
+        for future in distributed.client.futures_of(futures):
+            future._state.lose()
+        return found
+
+    monkeypatch.setattr(distributed.Client, "_gather", gather_and_lose)
+    pool = DaskCluster(1)
+    assert workers(pool, path).map("squares", square, {"a": 3, "b": 4}) == {"a": 9, "b": 16}
+    pool.end()
+
+
 def test_an_error_in_a_task_is_named_with_its_cause_and_the_others_are_kept(pool, path):
     from worker_tasks import square_of_positive
 
