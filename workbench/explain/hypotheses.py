@@ -178,8 +178,7 @@ def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -
 
 
 def _without_laws(problem: Problem, laws: Sequence[LawError]) -> tuple[Problem, float]:
-    white = replace(problem.white, laws=problem.white.laws + tuple(laws))
-    return replace(problem, white=white), sum(law.half_log_det for law in laws)
+    return replace(problem, white=problem.white.with_laws(laws)), sum(law.half_log_det for law in laws)
 
 
 def _law(problem: Problem, number: int, changes: Sequence[np.ndarray]) -> LawError:

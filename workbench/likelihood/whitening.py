@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -82,6 +82,10 @@ class Whitener:
             z[law.rows] = law.apply(z[law.rows])
         return z
 
+    def with_laws(self, laws: Iterable[LawError]) -> Whitener:
+        """The same with further errors of laws, those that are none left out: most fits ask for many."""
+        return replace(self, laws=self.laws + tuple(law for law in laws if len(law.size)))
+
     def of(self, rows: np.ndarray) -> Whitener:
         """That of the rows of some channels alone, each whole (k,)."""
         own = (replace(law, rows=slice(first, first + _length(law.rows))) for law, first in self._among(rows))
@@ -109,19 +113,18 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
         sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
         rho[rows] = np.where(follows(stack.tables[channel.table]), found.rho, 0.0)
     white = Whitener(sigma, rho)
-    laws = [_unknown(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels)]
-    return Whitener(sigma, rho, tuple(law for law in laws if law is not None))
+    laws = (_unknown(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels))
+    return white.with_laws(laws)
 
 
-def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError | None:
-    """What every scan of a channel may be off by as a whole, and what the model leaves open in it; None where there is
-    neither."""
+def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError:
+    """What every scan of a channel may be off by as a whole, and what the model leaves open in it."""
     raw = np.zeros((stack.size, 0))
     for shapes in (_of_scans(stack, channel, found), stack.left_open[channel.rows]):
         columns = np.zeros((stack.size, shapes.shape[1]))
         columns[channel.rows] = shapes
         raw = np.hstack([raw, columns])
-    return law_error(channel.rows, white(raw)[channel.rows]) if np.any(raw) else None
+    return law_error(channel.rows, white(raw)[channel.rows])
 
 
 def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise) -> np.ndarray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 ORDERS = 240  # that are kept
@@ -22,10 +24,17 @@ def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _summed(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """By the orders themselves, every one turned by one angle more than the one before."""
-    turning = np.tile(np.exp(1j * angle), (spectrum.shape[1], 1))
+    """By the orders themselves."""
+    return (spectrum @ _turning(np.asarray(angle, dtype=float).tobytes(), spectrum.shape[1])).real
+
+
+@lru_cache(maxsize=32)
+def _turning(angle: bytes, orders: int) -> np.ndarray:
+    """exp(i m angle) (orders, n), every order turned by one angle more than the one before; of angles given as the
+    bytes of their array: every fit asks for the same few tables."""
+    turning = np.tile(np.exp(1j * np.frombuffer(angle)), (orders, 1))
     turning[0] = 1.0
-    return (spectrum @ np.cumprod(turning, axis=0)).real
+    return np.cumprod(turning, axis=0)
 
 
 def _interpolated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:

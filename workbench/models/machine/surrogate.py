@@ -28,6 +28,8 @@ from workbench.models.machine.terms import Changes, Terms, loaded_terms_of, term
 _REMEMBERED = 16  # designs
 _FARTHEST_ANGLE = 3 * DEGREE  # from a solved state that its expansion is used for
 _FARTHEST_CURRENT = 0.12  # relative
+_POWERS = np.arange(1, len(ANGLE_STEPS) + 1)
+_POLYNOMIALS = np.linalg.inv(np.power.outer(ANGLE_STEPS, _POWERS))  # through changes at ANGLE_STEPS and through zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,23 +196,33 @@ class Surrogate:
 
         Raises WorkbenchError where no solved state is near.
         """
-        angle, currents = np.asarray(angle, dtype=float), np.asarray(currents, dtype=float)
-        states, which = self.states, self._places(angle.tobytes(), currents.tobytes())
+        at = np.asarray(angle, dtype=float).tobytes(), np.asarray(currents, dtype=float).tobytes()
+        sample = self._as_at_origin(*at, design.skew, design.turns)
+        added = self._loaded_added(design)
+        return sample @ self._projection(design.turns).T + added[:, self._places(*at)].T
+
+    @cached_property
+    def _as_at_origin(self) -> Callable[[bytes, bytes, float, tuple[float, ...]], np.ndarray]:
+        """Samples (n, 1 + coils) with the field as at the origin, for angles, currents, a skew and turns: many designs
+        ask for the same in turn."""
+        return lru_cache(maxsize=_REMEMBERED)(self._sampled)
+
+    def _sampled(self, angle_bytes: bytes, current_bytes: bytes, skew: float, turns: tuple[float, ...]) -> np.ndarray:
+        angle, currents = np.frombuffer(angle_bytes), np.frombuffer(current_bytes).reshape(-1, 3)
+        states, which = self.states, self._places(angle_bytes, current_bytes)
         apart = _wrapped(angle - states.states[which, 0])
         centre = states.states[which, 1:]
         power = (centre**2).sum(1)
         scale = np.where(power > 0, (currents * centre).sum(1) / np.where(power > 0, power, 1.0) - 1.0, 0.0)
         sample = states.base[which]
         sample = sample + states.scale[0][which] * scale[:, None] + states.scale[1][which] * scale[:, None] ** 2 / 2
-        turned = turned_by(apart + states.turn, design.skew) - turned_by(np.full(1, states.turn), 0.0)
+        turned = turned_by(apart + states.turn, skew) - turned_by(np.full(1, states.turn), 0.0)
         sample = sample + np.einsum("nk,knq->nq", turned, states.angle[:, which])
-        without = evaluated(averaged(self.no_load, design.skew), angle)
+        without = evaluated(averaged(self.no_load, skew), angle)
         sample = sample + without.T - self._without_current[which]
         solved = self._ampere_turns(self._centre.turns, centre * (1 + scale)[:, None])
-        rest = self._ampere_turns(design.turns, currents) - solved
-        sample = sample + np.einsum("nc,ncq->nq", rest, states.coils[which])
-        added = self._loaded_added(design)
-        return sample @ self._projection(design.turns).T + added[:, which].T
+        rest = self._ampere_turns(turns, currents) - solved
+        return sample + np.einsum("nc,ncq->nq", rest, states.coils[which])
 
     @cached_property
     def _without_current(self) -> np.ndarray:
@@ -308,9 +320,7 @@ def _turned(no_load: np.ndarray, angles: np.ndarray) -> np.ndarray:
 def turned_by(x: np.ndarray, skew: float) -> np.ndarray:
     """Weights (n, 4) of the changes at ``ANGLE_STEPS`` in that at angles x [rad] (n,): of the polynomial through them
     and through zero; over a skew [rad] the mean of its parabola."""
-    powers = np.arange(1, len(ANGLE_STEPS) + 1)
-    coefficients = np.linalg.inv(np.power.outer(ANGLE_STEPS, powers))
-    return np.power.outer(x, powers) @ coefficients + coefficients[1] * skew**2 / 12
+    return np.power.outer(x, _POWERS) @ _POLYNOMIALS + _POLYNOMIALS[1] * skew**2 / 12
 
 
 def _at_angles(angles: np.ndarray, orders: int) -> Callable[[np.ndarray], np.ndarray]:
