@@ -41,3 +41,15 @@ def test_a_law_is_integrated_out(white):
     with_law = Whitener(white.sigma, white.rho, (law_error(rows, plain(wrong)[rows]),))
     half = with_law(back @ back.T + wrong @ wrong.T)
     assert_allclose(with_law(half.T), np.eye(sum(SIZES)), atol=1e-9)
+
+
+def test_errors_of_laws_that_are_none_are_left_out(white):
+    _, middle, last = channels()
+    nothing = law_error(middle, np.zeros((middle.stop - middle.start, 2)))
+    further = law_error(last, np.ones((last.stop - last.start, 1)))
+    found = white.with_laws([nothing, further])
+    assert found.laws == (*white.laws, further)
+    assert nothing.half_log_det == 0.0
+    residual = np.random.default_rng(6).standard_normal(sum(SIZES))
+    everything = Whitener(white.sigma, white.rho, (*white.laws, nothing, further))
+    assert_allclose(found(residual), everything(residual), rtol=1e-12)

@@ -95,6 +95,20 @@ def test_with_current(name):
         assert error < WORST.get(name, share)
 
 
+def test_what_is_kept_of_other_designs_and_places_does_not_show():
+    """One after the other, and each asked of a surrogate that has kept nothing."""
+    state, kept = STATES[0], surrogate()
+    turns = (drawn().turns[0] - 1.0, *drawn().turns[1:])
+    designs = replace(drawn(), turns=turns), replace(drawn(), skew=0.05), EVERY["magnets and steel"]
+    currents = np.array([state.currents])
+    for design in designs:
+        for angle in (np.array([state.angle]), np.array([state.angle + 0.01])):
+            for at in ((angle, currents), (angle, 1.01 * currents)):
+                found = kept.with_current(design, *at)
+                assert np.array_equal(found, replace(kept).with_current(design, *at))
+                assert not np.array_equal(found, kept.with_current(drawn(), *at))
+
+
 def test_steel_that_carries_more_flux_between_stronger_magnets_makes_the_same_field():
     """B_r and the saturation times s: psi times s, torque times s^2, where currents are none."""
     design = replace(drawn().with_magnet(remanence=1.3 * 0.95), saturation_scale=0.95)
