@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from workbench.data.table import Table
 
+NEAR = 0.02  # of the range of the conditions: readings that are no further apart were taken at the same place
 LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
 
 
@@ -22,7 +23,7 @@ def matched_rows(table: Table) -> np.ndarray | None:
     repeats = [np.flatnonzero(table.repeat == r) for r in np.unique(table.repeat)]
     if len(repeats) < 2:
         return None
-    if len({len(rows) for rows in repeats}) == 1 and _alike(table, repeats):
+    if len({len(rows) for rows in repeats}) == 1 and _alike(table, repeats) and not _shifted(table, repeats):
         return np.array(repeats).T
     return _nearest(table, repeats)
 
@@ -47,13 +48,28 @@ def _alike(table: Table, repeats: list[np.ndarray]) -> bool:
     return bool((apart < 0.2 * between).mean() >= 0.5)
 
 
+def _shifted(table: Table, repeats: list[np.ndarray]) -> bool:
+    """True where most of the k-th rows of all repeats stand at the very same place, and some do not: each repeat has
+    lost another row, and those between are out of step."""
+    places = places_of(table)
+    apart = np.max([np.linalg.norm(places[rows] - places[repeats[0]], axis=1) for rows in repeats], axis=0)
+    return bool(np.median(apart) < NEAR < apart.max())
+
+
+def near_rows(table: Table, rows: np.ndarray) -> np.ndarray:
+    """Of every repeat the reading at the place of each of some rows, which stand for themselves (rows, repeats); -1
+    where it has none."""
+    places, number = places_of(table), table.repeat[rows]
+    found = np.empty((len(rows), len(np.unique(table.repeat))), dtype=int)
+    for column, repeat in enumerate(np.unique(table.repeat)):
+        there = np.flatnonzero(table.repeat == repeat)
+        apart, nearest = cKDTree(places[there]).query(places[rows])
+        found[:, column] = np.where(number == repeat, rows, np.where(apart < NEAR, there[nearest], -1))
+    return found
+
+
 def _nearest(table: Table, repeats: list[np.ndarray]) -> np.ndarray | None:
     """Stations by nearest conditions; a row of the first repeat without near partners in all others is left out."""
-    places = places_of(table)
-    first, partners = repeats[0], []
-    for rows in repeats[1:]:
-        apart, partner = cKDTree(places[rows]).query(places[first])
-        partners.append(np.where(apart < 0.02, rows[partner], -1))
-    stations = np.column_stack([first, *partners])
+    stations = near_rows(table, repeats[0])
     stations = stations[(stations >= 0).all(axis=1)]
     return stations if len(stations) >= 2 else None

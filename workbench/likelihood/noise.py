@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from workbench.data.repeats import follows, matched_rows
+from workbench.data.repeats import follows, matched_rows, near_rows
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 from workbench.likelihood.restricted import DECLARED_WEIGHT, Repeated, Size, sizes_of
@@ -148,10 +148,11 @@ def noise_on_rows(noise: Noise, stack: Stack, chosen: Sequence[np.ndarray]) -> N
 
 @dataclass(frozen=True, eq=False)
 class _Deviation:
-    """Of the size of the noise of one reading over u, NaN where a row has no partner (n,).
+    """Of the size of the noise of one reading over u, NaN where a row has no partner in every repeat (n,).
 
     spread: from the mean of the repeats, for the size of the noise;  middle: from their median, which no wild reading
-    moves;  row: from the median of them and the model, which shows which one is wild
+    moves;  row: from the median of them and the model, which shows which one is wild; of a reading that has lost its
+    partners, from that of its neighbours and the model
     growth: factor on the spread, as the mean of few is nearer than the truth
     """
 
@@ -173,7 +174,22 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
     spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
     middle[stations] = values - np.median(values, axis=1, keepdims=True)
     row[stations] = values - np.median(votes, axis=1, keepdims=True)
+    lost = np.setdiff1d(np.arange(channel.size), stations)
+    if 0 < len(lost) < stations.size:
+        row[lost] = _of_lost(stack.tables[channel.table], residual[channel.rows], lost)
     return _Deviation(spread, middle, row, growth)
+
+
+def _of_lost(table: Table, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """By how much readings of which another repeat has none are off the median of those that there are and of the
+    model; where there are none, of their neighbours in the scan and of the model (rows,)."""
+    near, next_to = near_rows(table, rows), np.append(follows(table), False)
+    alone = (near >= 0).sum(axis=1) == 1
+    before = np.where(alone & next_to[rows], rows - 1, -1)
+    after = np.where(alone & next_to[rows + 1], rows + 1, -1)
+    asked = np.column_stack([near, before, after])
+    votes = np.column_stack([np.where(asked >= 0, values[asked], np.nan), np.zeros(len(rows))])
+    return values[rows] - np.nanmedian(votes, axis=1)
 
 
 def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
@@ -185,7 +201,7 @@ def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _
             continue
         shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
         values = np.clip(whole.spread[known], *_fence(whole.spread[known]))
-        off[known] = shapes @ np.linalg.lstsq(shapes, values, rcond=None)[0] / whole.growth
+        off[rows] = scan_shapes(u[rows]) @ np.linalg.lstsq(shapes, values, rcond=None)[0] / whole.growth
         free[known] = np.sqrt(len(known) / (len(known) - 2))
     left = residual.copy()
     left[channel.rows] -= off

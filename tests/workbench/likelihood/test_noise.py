@@ -9,7 +9,7 @@ from tests.workbench.likelihood.tables import table
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
 from workbench.data.repeats import matched_rows
-from workbench.data.stack import part_of, stacked, thinned
+from workbench.data.stack import part_of, rows_of, stacked, thinned
 from workbench.likelihood.bench import bench_of
 from workbench.likelihood.noise import ChannelNoise, Noise, measured_noise
 from workbench.likelihood.whitening import LawError, Whitener, whitener
@@ -228,3 +228,39 @@ def test_what_all_repeats_show_is_not_wild():
     errors = np.random.default_rng(3).standard_normal((3, 60))
     errors[:, 20] += 10.0
     assert noise_of(readings_of(errors)).inflation.reshape(3, 60)[:, 20].max() < 1.5
+
+
+def without(stack, *rows):
+    """The stack without some rows of its one table, which were lost."""
+    return stacked([rows_of(stack.tables[0], np.delete(np.arange(stack.size), rows))])
+
+
+def test_a_reading_that_has_lost_a_partner_is_still_told_to_be_wild():
+    errors = np.random.default_rng(4).standard_normal((3, 10))
+    errors[2, 4] -= 14.0
+    found = noise_of(without(readings_of(errors), 10 + 4)).inflation
+    assert found[23] > 3 and np.delete(found, 23).max() < 1.5
+
+
+def test_of_one_that_has_lost_all_partners_the_neighbours_tell():
+    errors = np.random.default_rng(5).standard_normal((2, 10))
+    errors[1, 4] += 12.0
+    found = noise_of(without(readings_of(errors), 4)).inflation
+    assert found[9 + 4] > 3 and np.delete(found, 9 + 4).max() < 1.5
+
+
+@pytest.mark.parametrize("lost", (0, 4, 9))
+def test_one_without_partners_that_reads_as_its_neighbours_do_is_not_wild(lost):
+    """The model lacks 12 u in all of them."""
+    errors = 12.0 + np.random.default_rng(6).standard_normal((2, 10))
+    assert noise_of(without(readings_of(errors), lost)).inflation.max() < 1.5
+
+
+def test_repeats_that_have_each_lost_another_row_are_not_out_of_step():
+    """What the model lacks grows by 8 u a row: readings of neighbouring rows would look wild, or noisy."""
+    errors = 0.5 * np.random.default_rng(7).standard_normal((2, 10)) + 8.0 * np.arange(10)
+    stack = without(readings_of(errors), 3, 10 + 7)
+    stations = matched_rows(stack.tables[0])
+    place = stack.tables[0].conditions["displacement"]
+    assert len(stations) == 8 and np.array_equal(place[stations[:, 0]], place[stations[:, 1]])
+    assert noise_of(stack).channels[0].scale < 1.0
