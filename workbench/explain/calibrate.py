@@ -22,7 +22,8 @@ from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import SIZES, Beside, Shape, seen
 from workbench.likelihood.unknown_laws import LAWS
 
-EMPTY, HIDDEN = 100, 60  # simulated campaigns that hide nothing, and that hide something
+EMPTY, HIDDEN = 100, 120  # simulated campaigns that hide nothing, and that hide something
+UNKNOWN = 30  # simulated campaigns that hide an unknown function of one size
 POWER_SIZES = (3.0, 10.0)  # of unknown functions [rms over the uncertainty of a reading]
 NORMAL_90 = 1.2816  # one-sided 90 % of a standard normal
 _LEADERS = (1, 3)  # sets that are looked at with one effect more
@@ -175,7 +176,7 @@ def _surest_false_name(p: Posterior, truth: frozenset[str]) -> float:
 
 
 def _noticed(simulator: Simulator, size: float, quiet: float, sure: float) -> float:
-    found = simulator.posteriors(simulator.unknown_of(size, HIDDEN // 2), 2)
+    found = simulator.posteriors(simulator.unknown_of(size, UNKNOWN), 2)
     return float(np.mean([p.nothing < quiet and _surest_false_name(p, frozenset()) < sure for p in found]))
 
 

@@ -4,15 +4,14 @@ weighed by one likelihood; simulated campaigns of the same bench say from which 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-from scipy.stats import chi2
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.believed import DISAGREE, LIKELY
+from workbench.believed import LIKELY
 from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
@@ -21,14 +20,14 @@ from workbench.explain.contradictions import contradiction
 from workbench.explain.conventions import diagnosis_of as of_conventions
 from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior, beside_the_unknown
-from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of, sealed_rows
+from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of
 from workbench.explain.recommend import next_measurements
+from workbench.explain.sealed import opened, refuted, with_sealed
 from workbench.explain.search import searched
 from workbench.explain.tried import Search
-from workbench.explain.verdict import GROUP, NONE_OF_THESE, NOTHING_MISSING, Thresholds, Verdict, verdict
-from workbench.findings import ChannelFit, Diagnosis, Ranked, Sealed, SizePosterior
-from workbench.likelihood.bench import Bench, bench_of, sealed_words
-from workbench.likelihood.fit import linearised
+from workbench.explain.verdict import NOTHING_MISSING, Thresholds, Verdict, verdict
+from workbench.findings import ChannelFit, Diagnosis, Ranked, SizePosterior
+from workbench.likelihood.bench import Bench, bench_of
 from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import nearest
 from workbench.models.model import Model
@@ -71,12 +70,14 @@ def diagnosis_of(
     search: Search, simulator: Simulator, thresholds: Thresholds, power: Mapping[float, float]
 ) -> Diagnosis:
     """The diagnosis of a search. power: size of an unknown discrepancy -> share noticed"""
-    bench, p = search.bench, search.posterior
-    shown = beside_the_unknown(p, search.beliefs, search.stands_out) if p.remains >= LIKELY else p
-    said = verdict(shown, thresholds, plainly_nothing(simulator, p, bench.residual))
-    best = leading(search, said)
+    bench, judged = search.bench, _judged(search, simulator, thresholds)
+    best = leading(search, judged.said)
     sealed = opened(bench, best)
-    said = _with_sealed(said, sealed)
+    worse = refuted(search, judged.said, best, sealed)
+    if worse:
+        judged = _taken_back(search, simulator, thresholds, judged.said, worse)
+        best = leading(search, judged.said, judged.struck)
+    p, shown, said = judged.p, judged.shown, with_sealed(judged.said, sealed)
     ranked = ranking(search, shown)
     return Diagnosis(
         campaign=bench.campaign.id,
@@ -101,8 +102,48 @@ def diagnosis_of(
         posteriors=_posteriors(search, said),
         complaints=bench.complaints + _not_tried(search.failed),
         checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
-        contradictions=_contradictions(search, ranked, said.names),
+        contradictions=_contradictions(search, ranked, said.names) + _refutations(search, worse),
         provenance=dict(bench.campaign.file_hashes),
+    )
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """struck: effects that are not to be believed;  p: probabilities without them;  shown: the same beside something
+    unknown, where that is likely"""
+
+    struck: frozenset[str]
+    p: Posterior
+    shown: Posterior
+    said: Verdict
+
+
+def _judged(
+    search: Search, simulator: Simulator, thresholds: Thresholds, struck: frozenset[str] = frozenset()
+) -> _Judged:
+    p = search.posterior_without(struck)
+    shown = beside_the_unknown(p, search.beliefs, search.stands_out) if p.remains >= LIKELY else p
+    return _Judged(struck, p, shown, verdict(shown, thresholds, plainly_nothing(simulator, p, search.bench.residual)))
+
+
+def _taken_back(
+    search: Search, simulator: Simulator, thresholds: Thresholds, said: Verdict, worse: Collection[str]
+) -> _Judged:
+    """Without the effects that sealed rows refute, and what may stand for them. No name is chosen by rows that test:
+    where others would be said than before, none is."""
+    struck = frozenset(name for first in worse for name in said.groups[first])
+    again = _judged(search, simulator, thresholds, struck)
+    if again.said.all_names <= said.all_names:
+        return again
+    return _judged(search, simulator, replace(thresholds, sure=np.inf), struck)
+
+
+def _refutations(search: Search, worse: Mapping[str, float]) -> tuple[str, ...]:
+    titles = {name: search.signatures.found[name][0].effect.title for name in worse}
+    return tuple(
+        f"{titles[name]} would explain the fitted rows, but rows that no fit has seen lie {times:.1f} times as far "
+        "from what the model says with it as without it: it is not named, and not counted below."
+        for name, times in worse.items()
     )
 
 
@@ -113,41 +154,19 @@ def _contradictions(search: Search, ranked: Sequence[Ranked], names: Collection[
     return tuple(filter(None, found))
 
 
-def leading(search: Search, said: Verdict) -> Hypothesis:
+def leading(search: Search, said: Verdict, struck: frozenset[str] = frozenset()) -> Hypothesis:
     """The fit that the verdict speaks of: of its names and of the first of every group of them, alone where that was
-    fitted, else in the most probable set that holds them; where none does the most probable one."""
+    fitted, else in the most probable set that holds them; where none does the most probable one.
+
+    struck: effects that are not to be believed
+    """
     if said.kind == NOTHING_MISSING:
         return search.fitted[frozenset()]
-    stated = frozenset(said.names[:1] if said.kind == GROUP else said.names) | frozenset(said.alternatives)
+    stated = frozenset(said.groups)
     if stated and stated in search.fitted:
         return search.fitted[stated]
-    return search.fitted[next((names for names in search.ranked if names >= stated), search.ranked[0])]
-
-
-def opened(bench: Bench, final: Hypothesis) -> Sealed | None:
-    """The sealed rows under the final model, its inputs as uncertain as the fit leaves them; None where none are."""
-    part = sealed_rows(bench, final)
-    if part is None:
-        return None
-    there = linearised(part, final.fit.x, final.fit.effects, final.fit.z)
-    residual, slopes = there.residual, there.jacobian
-    covariance = np.eye(len(residual)) + slopes @ final.fit.covariance @ slopes.T
-    square = float(residual @ np.linalg.solve(covariance, residual))
-    dof = float(np.mean([channel.dof for channel in bench.noise.channels]))
-    p_value = float(chi2.sf(square / _heavier(len(residual), dof), len(residual)))
-    return Sealed(len(residual), float(np.mean(residual**2)), p_value, sealed_words(bench), p_value > DISAGREE)
-
-
-def _heavier(rows: int, dof: float) -> float:
-    """Factor on chi2 that the unknown size of the noise is worth: two standard deviations of it."""
-    return 1.0 + 2.0 * float(np.sqrt(2.0 / dof)) if rows else 1.0
-
-
-def _with_sealed(said: Verdict, sealed: Sealed | None) -> Verdict:
-    """Nothing cannot be said to be missing while rows that no fit has seen disagree."""
-    if said.kind == NOTHING_MISSING and sealed is not None and not sealed.holds:
-        return Verdict(NONE_OF_THESE, (), 1.0 - sealed.p_value, {})
-    return said
+    ranked = [names for names in search.ranked if not names & struck]
+    return search.fitted[next((names for names in ranked if names >= stated), ranked[0])]
 
 
 def leading_sets(p: Posterior) -> dict[str, float]:

@@ -110,7 +110,8 @@ def gains_of(search: Search, p: Posterior, options: Sequence[Option]) -> np.ndar
 
 def _weighing(search: Search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
     """What the leading hypotheses are weighed with, and the sums over the rows that were fitted."""
-    hypotheses = [search.fitted[names] for names in search.ranked if names and not names & LAWS.keys()][:LEADERS]
+    known = [names for names in search.ranked if names and not names & LAWS.keys() and names in p.sets]
+    hypotheses = [search.fitted[names] for names in known[:LEADERS]]
     if not hypotheses:
         return None
     bench = search.bench

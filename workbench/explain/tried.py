@@ -274,8 +274,14 @@ class Search:
     @property
     def posterior(self) -> Posterior:
         """Probabilities of everything that was fitted or guessed."""
-        beside = {names: self.log_evidence_beside(names) for names in self.beside}
-        return posterior(self.evidences, self._with_guesses(self.guessed_beside, beside), self.beliefs)
+        return self.posterior_without(frozenset())
+
+    def posterior_without(self, struck: Set) -> Posterior:
+        """The same without all that some effects are part of."""
+        weighed = {names: self.log_evidence_beside(names) for names in self.beside}
+        alone, beside = self.evidences, self._with_guesses(self.guessed_beside, weighed)
+        kept = ({names: v for names, v in part.items() if not names & struck} for part in (alone, beside))
+        return posterior(*kept, self.beliefs)
 
     @property
     def evidences(self) -> dict[Set, float]:

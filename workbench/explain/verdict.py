@@ -24,6 +24,19 @@ class Verdict:
     probability: float
     alternatives: dict[str, tuple[str, ...]]
 
+    @property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """Every effect that is said to be there, with what may stand for it instead."""
+        own = [self.names] if self.kind == GROUP else [(name,) for name in self.names]
+        return {first: (first, *others) for first, *others in own} | {
+            first: (first, *others) for first, others in self.alternatives.items()
+        }
+
+    @property
+    def all_names(self) -> frozenset[str]:
+        """All names that it prints."""
+        return frozenset(name for group in self.groups.values() for name in group)
+
 
 @dataclass(frozen=True)
 class Thresholds:
@@ -59,38 +72,45 @@ def verdict(p: Posterior, thresholds: Thresholds, plainly_nothing: float) -> Ver
 
 
 def printed(p: Posterior, sure: float) -> tuple[frozenset[str], ...]:
-    """For every effect of the leading set the smallest group of names, itself first, one of which is there for sure;
-    effects for which there is no such group are left out. Where all groups together are not sure, the weakest of them
-    takes a name more, and is left out where there is none."""
+    """The groups of names of the most probable set of effects, see ``_groups``; where it has none, as two of its
+    effects stand for one another, those of its most probable part that has some."""
+    parts = sorted((names for names in p.sets if names < p.leading), key=lambda n: (-p.sets[n], sorted(n)))
+    return next(filter(None, (_groups(p, leading, sure) for leading in (p.leading, *parts))), ())
+
+
+def _groups(p: Posterior, leading: frozenset[str], sure: float) -> tuple[frozenset[str], ...]:
+    """For every effect of a set the smallest group of names, itself first, one of which is there for sure; effects for
+    which there is no such group are left out. Where all groups together are not sure, the weakest of them takes a name
+    more, and is left out where there is none."""
     found: dict[str, frozenset[str]] = {}
-    for name in sorted(p.leading, key=lambda n: (-p.of(n), n)):
+    for name in sorted(leading, key=lambda n: (-p.of(n), n)):
         group: frozenset[str] | None = frozenset((name,))
         while group is not None and p.any_of(group) < sure:
-            group = _wider(p, name, group, found)
+            group = _wider(p, leading, name, group, found)
         found |= {} if group is None else {name: group}
     while found and p.all_of(tuple(found.values())) < sure:
         name = min(found, key=lambda n: (p.any_of(found[n]), -len(found[n])))
-        group = _wider(p, name, found.pop(name), found)
+        group = _wider(p, leading, name, found.pop(name), found)
         found |= {} if group is None else {name: group}
     return tuple(found.values())
 
 
 def _wider(
-    p: Posterior, name: str, group: frozenset[str], others: Mapping[str, frozenset[str]]
+    p: Posterior, leading: frozenset[str], name: str, group: frozenset[str], others: Mapping[str, frozenset[str]]
 ) -> frozenset[str] | None:
     """A group with the most probable name more that may stand for its first; None where there is none."""
-    taken = frozenset().union(group, *others.values(), p.leading - {name})
-    left = [other for other in p.names if other not in taken and _stands_for(p, other, name)]
+    taken = frozenset().union(group, *others.values(), leading - {name})
+    left = [other for other in p.names if other not in taken and _stands_for(p, leading, other, name)]
     if len(group) == MOST or not left:
         return None
     return group | {max(left, key=lambda n: p.any_of(group | {n}))}
 
 
-def _stands_for(p: Posterior, other: str, name: str) -> bool:
+def _stands_for(p: Posterior, leading: frozenset[str], other: str, name: str) -> bool:
     """Whether an effect takes the place of this one of the leading set rather than of another of it: of all, it is
     found beside this one least."""
-    beside = lambda leading: p.all_of((frozenset((other,)), frozenset((leading,)))) / p.of(leading)  # noqa: E731
-    return min(sorted(p.leading), key=beside) == name
+    beside = lambda one: p.all_of((frozenset((other,)), frozenset((one,)))) / p.of(one)  # noqa: E731
+    return min(sorted(leading), key=beside) == name
 
 
 def _of_groups(p: Posterior, groups: tuple[frozenset[str], ...]) -> Verdict:

@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from workbench.explain.diagnosis import _with_sealed, leading
+from workbench.explain.diagnosis import leading
 from workbench.explain.explore import Beliefs, Posterior, beside_the_unknown, posterior
+from workbench.explain.sealed import with_sealed
 from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
 from workbench.findings import Sealed
 
@@ -88,6 +89,12 @@ def test_an_effect_stands_for_the_one_that_it_is_never_found_beside():
     assert printed(given, 0.95) == (frozenset("bi"),)
 
 
+def test_two_of_the_leading_set_that_stand_for_one_another_are_said_to_be_one_of_two():
+    """A dry friction of 82 % and iron losses of 55 %, most probably both, and surely one of them."""
+    found = verdict(p({"a+b": 0.4, "a": 0.3, "b": 0.28, "": 0.02}), SURE, 0.0)
+    assert (found.kind, found.names, found.probability) == ("group", ("a", "b"), pytest.approx(0.98))
+
+
 def random_posterior(random):
     names = "abcdef"
     sets = list(dict.fromkeys(frozenset(n for n in names if random.random() < 0.3) for _ in range(12)))
@@ -148,11 +155,11 @@ def test_the_fit_that_is_shown_is_that_of_the_verdict(kind, names, alternatives,
 def test_sealed_rows_that_disagree_make_nothing_missing_impossible():
     nothing = Verdict("nothing_missing", (), 0.97, {})
     agree, disagree = (Sealed(20, 2.0, q, "speeds", q > 1e-3) for q in (0.3, 1e-9))
-    assert _with_sealed(nothing, agree) is nothing and _with_sealed(nothing, None) is nothing
-    found = _with_sealed(nothing, disagree)
+    assert with_sealed(nothing, agree) is nothing and with_sealed(nothing, None) is nothing
+    found = with_sealed(nothing, disagree)
     assert found.kind == "none_of_these" and found.probability == pytest.approx(1.0)
     named = Verdict("effect", ("a",), 0.97, {})
-    assert _with_sealed(named, disagree) is named
+    assert with_sealed(named, disagree) is named
 
 
 def test_probabilities_from_evidences_by_hand():
