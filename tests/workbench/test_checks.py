@@ -81,6 +81,14 @@ def test_repeats_that_disagree_and_clipping():
     assert "clipped?" in said(clipped)
 
 
+def test_a_coarse_converter_is_not_taken_for_a_clipped_reading():
+    v = np.tile(SPEED, 2)
+    coarse = table("damping_velocity", {"velocity": v}, {"force": np.round(20 * v / 3.0) * 3.0}, 1e-12)
+    levels = np.round(coarse.responses["force"].values)
+    coarse.responses["force"] = Response("force", levels, np.full(len(v), 0.2), "N")
+    assert (levels == levels.max()).mean() > 0.05 and "clipped?" not in said(coarse)
+
+
 def test_a_negative_real_part_is_no_passive_device():
     f = np.linspace(1, 20, 20)
     wrong = table("impedance", {"frequency": f}, {"re": 30.0 - 3 * f, "im": f}, 0.5)

@@ -18,7 +18,8 @@ NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device b
 FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance
 UNLIKE = 0.005  # of the range of a condition, by which the same reading may stand at another one
 SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
-CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping
+CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping,
+NEXT_LEVEL = 3.0  # where so many times as many stand there as on the next level: a coarse converter has few of them all
 
 
 def checks_of(campaign: Campaign) -> tuple[str, ...]:
@@ -54,11 +55,13 @@ def _scatter(r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
 def _clipping(table: Table) -> list[str]:
     found = []
     for r in table.responses.values():
-        for edge in (r.values.max(), r.values.min()):
-            share = float(np.mean(r.values == edge))
-            if table.rows > 20 and share > CLIPPED and np.ptp(r.values) > 0:
+        levels, counts = np.unique(r.values, return_counts=True)
+        for edge, following in ((-1, -2), (0, 1)) if len(levels) > 1 and table.rows > 20 else ():
+            share = float(counts[edge] / table.rows)
+            if share > CLIPPED and counts[edge] >= NEXT_LEVEL * counts[following]:
                 found.append(
-                    f"{table.file}: {percent(share)} of {r.name} stand at exactly {edge / r.scale:g} {r.unit}: clipped?"
+                    f"{table.file}: {percent(share)} of {r.name} stand at exactly {levels[edge] / r.scale:g} {r.unit}: "
+                    "clipped?"
                 )
     return found
 
