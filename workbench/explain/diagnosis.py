@@ -141,8 +141,9 @@ def _taken_back(
 def _refutations(search: Search, worse: Mapping[str, float]) -> tuple[str, ...]:
     titles = {name: search.signatures.found[name][0].effect.title for name in worse}
     return tuple(
-        f"{titles[name]} would explain the fitted rows, but rows that no fit has seen lie {times:.1f} times as far "
-        "from what the model says with it as without it: it is not named, and not counted below."
+        f"{titles[name][0].upper()}{titles[name][1:]} would explain the fitted rows, but rows that no fit has seen lie "
+        f"{times:.1f} times as far from what the model says with it as without it: it is not named, and not counted "
+        "below."
         for name, times in worse.items()
     )
 
