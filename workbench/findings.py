@@ -338,7 +338,8 @@ class Diagnosis:
     fix: of a convention, the text for campaign.toml;  conventions: what the columns look like, a sentence each
     checks: of the data alone, before any model
     before, after: the failing channel without and with the leading effect, the same rows
-    contradictions: declared tolerances that speak against what is named, a sentence each
+    contradictions: declared tolerances that speak against what is named, and sealed rows that took a name back, a
+        sentence each
     """
 
     campaign: str

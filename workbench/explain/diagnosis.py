@@ -22,7 +22,7 @@ from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior, beside_the_unknown
 from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of
 from workbench.explain.recommend import next_measurements
-from workbench.explain.sealed import opened, refuted, with_sealed
+from workbench.explain.sealed import opened, refutations, refuted, with_sealed
 from workbench.explain.search import searched
 from workbench.explain.tried import Search
 from workbench.explain.verdict import NOTHING_MISSING, Thresholds, Verdict, verdict
@@ -102,7 +102,7 @@ def diagnosis_of(
         posteriors=_posteriors(search, said),
         complaints=bench.complaints + _not_tried(search.failed),
         checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
-        contradictions=_contradictions(search, ranked, said.names) + _refutations(search, worse),
+        contradictions=_contradictions(search, ranked, said.names) + refutations(search, worse),
         provenance=dict(bench.campaign.file_hashes),
     )
 
@@ -136,16 +136,6 @@ def _taken_back(
     if again.said.all_names <= said.all_names:
         return again
     return _judged(search, simulator, replace(thresholds, sure=np.inf), struck)
-
-
-def _refutations(search: Search, worse: Mapping[str, float]) -> tuple[str, ...]:
-    titles = {name: search.signatures.found[name][0].effect.title for name in worse}
-    return tuple(
-        f"{titles[name][0].upper()}{titles[name][1:]} would explain the fitted rows, but rows that no fit has seen lie "
-        f"{times:.1f} times as far from what the model says with it as without it: it is not named, and not counted "
-        "below."
-        for name, times in worse.items()
-    )
 
 
 def _contradictions(search: Search, ranked: Sequence[Ranked], names: Collection[str]) -> tuple[str, ...]:

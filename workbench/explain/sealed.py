@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -46,6 +47,16 @@ def refuted(search: Search, said: Verdict, best: Hypothesis, sealed: Sealed | No
     squares = {name: opened(search.bench, part).chi2_per_n for name, part in parts.items() if part is not None}
     worse = {name: sealed.chi2_per_n / max(square, 1.0) for name, square in squares.items()}
     return {name: float(np.sqrt(times)) for name, times in worse.items() if times >= WORSE}
+
+
+def refutations(search: Search, worse: Mapping[str, float]) -> tuple[str, ...]:
+    """A sentence for each effect that is refuted. worse: how many times as far the sealed rows are with it, by name"""
+    titles = {name: search.signatures.found[name][0].effect.title for name in worse}
+    return tuple(
+        f"Rows that no fit has seen lie {times:.1f} times as far from what the model says with {titles[name]} as "
+        "without it, though it would explain the fitted rows: it is not named, and not counted below."
+        for name, times in worse.items()
+    )
 
 
 def with_sealed(said: Verdict, sealed: Sealed | None) -> Verdict:

@@ -28,9 +28,8 @@ class Verdict:
     def groups(self) -> dict[str, tuple[str, ...]]:
         """Every effect that is said to be there, with what may stand for it instead."""
         own = [self.names] if self.kind == GROUP else [(name,) for name in self.names]
-        return {first: (first, *others) for first, *others in own} | {
-            first: (first, *others) for first, others in self.alternatives.items()
-        }
+        apart = [(first, *others) for first, others in self.alternatives.items()]
+        return {group[0]: group for group in own + apart}
 
     @property
     def all_names(self) -> frozenset[str]:

@@ -199,9 +199,10 @@ def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _
         known = rows[np.isfinite(whole.spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
-        shapes = scan_shapes(u[rows])[np.searchsorted(rows, known)]
+        shapes = scan_shapes(u[rows])
         values = np.clip(whole.spread[known], *_fence(whole.spread[known]))
-        off[rows] = scan_shapes(u[rows]) @ np.linalg.lstsq(shapes, values, rcond=None)[0] / whole.growth
+        weights = np.linalg.lstsq(shapes[np.searchsorted(rows, known)], values, rcond=None)[0]
+        off[rows] = shapes @ weights / whole.growth
         free[known] = np.sqrt(len(known) / (len(known) - 2))
     left = residual.copy()
     left[channel.rows] -= off

@@ -477,7 +477,7 @@ def sealed_sentence(d: Diagnosis) -> str:
         return "There are none: all rows were fitted, so that prediction was not tested on rows that no fit has seen."
     holds = "The model holds there" if d.sealed.holds else "The model does not hold there"
     return (
-        f"{d.sealed.n} rows were sealed and opened once, after all was decided. Where they lie: {d.sealed.tests}. "
+        f"{d.sealed.n} rows were sealed and opened once, after every fit and choice. Where they lie: {d.sealed.tests}. "
         f"{holds}: chi²/n = {chi2_text(d.sealed.chi2_per_n)}; noise and what the fit leaves uncertain give as much or "
         f"more with {p_text(d.sealed.p_value)}."
     )

@@ -31,7 +31,7 @@ def test_one_that_makes_sealed_rows_worse_is_not_and_no_other_takes_its_place(tm
     found = diagnosis_with(tmp_path, lambda x: np.where(np.abs(x) < WITHIN, even_part(x), 0.0))
     assert found.verdict in ("none_of_these", "cannot_tell") and found.names == () and not found.alternatives
     assert not found.sealed.holds and found.p_nothing_missing < 1e-6
-    assert len(found.contradictions) == 1 and "Even part would explain the fitted rows" in found.contradictions[0]
+    assert len(found.contradictions) == 1 and "with even part as without it, though it would" in found.contradictions[0]
     assert not any("bump" in words for words in found.p_sets) and found.probability > 0.97
 
 
