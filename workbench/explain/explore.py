@@ -235,7 +235,7 @@ class Posterior:
         """P(at least one effect of every group is there)."""
         return _share(p for have, p in self.sets.items() if all(have & group for group in groups))
 
-    @property
+    @cached_property
     def leading(self) -> frozenset[str]:
         """The most probable set of effects."""
         return max(self.sets, key=lambda names: (self.sets[names], -len(names), sorted(names)), default=frozenset())
