@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
+from scipy.signal import butter
 from scipy.special import j1
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -27,6 +28,7 @@ from effects.instrument.force_drift import ForceDrift  # noqa: E402
 from effects.instrument.force_hysteresis import ForceHysteresis  # noqa: E402
 from effects.instrument.force_offset import ForceOffset  # noqa: E402
 from effects.instrument.phase_voltage_gain import PhaseVoltageGain  # noqa: E402
+from effects.instrument.sensor_lag import SensorLag  # noqa: E402
 from effects.instrument.voltage_offset import VoltageOffset  # noqa: E402
 from effects.library import package_effects  # noqa: E402
 from effects.mechanical.detent_force import DetentForce  # noqa: E402
@@ -69,7 +71,7 @@ def test_half_to_one_effect_is_expected_in_a_campaign(case):
     assert 0.5 <= sum(cls.base_rate for cls in acting) <= 1.0
 
 
-QUICK = ("coulomb_friction", "diode_drop", "eddy_drag", "quadratic_drag", "stribeck_friction", "sensor_lag")
+QUICK = ("coulomb_friction", "diode_drop", "eddy_drag", "quadratic_drag", "stribeck_friction")
 
 
 def test_declared_errors_of_laws_are_those_measured(monkeypatch):
@@ -84,6 +86,17 @@ def test_declared_errors_of_laws_are_those_measured(monkeypatch):
 
 
 # ---- damper ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("poles", [form.poles for form in SensorLag.variants(DAMPER.design)])
+def test_a_sensor_lags_as_the_filter_of_a_text_book_does(poles):
+    """Butterworth's of so many poles, whose delay at low frequencies is the lag."""
+    frequency, lag = np.array([1.0, 20.0, 500.0]), 1e-3
+    above, below = butter(poles, 1.0, analog=True)
+    s = 2j * pi * frequency * lag * below[-1] / below[-2]
+    expected = np.polyval(above, s) / np.polyval(below, s)
+    assert_allclose(SensorLag(lag, poles).passed(frequency), expected, rtol=1e-9)
+    assert np.angle(expected[0]) == pytest.approx(-2 * pi * frequency[0] * lag, rel=1e-4)
 
 
 def test_detent_force_is_the_bessel_function():
