@@ -24,8 +24,8 @@ class BearingFriction(DesignEffect):
     remedy = ("drag with a rotor without magnets",)
     designs = (BuiltMachine,)
     signature = (*SPEED, *CREEP, Odd("drag.torque", ("speed",)), Power("drag.torque", "speed", 0.0))
-    base_rate = 0.5
-    base_rate_source = "judgement: every rotor turns in bearings, and few campaigns declare their friction"
+    base_rate = 0.9
+    base_rate_source = "judgement: every rotor turns in bearings, and one bench in ten declares their friction"
 
     level: float = parameter(
         0.0, "Nm", prior=LogNormal(0.01, 1.0), low=0.0, high=1.0, source="small ball bearings with seals, 1 to 50 mNm"

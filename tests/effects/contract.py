@@ -18,6 +18,7 @@ from effects.parameter import parameters_of
 from effects.signature import NOTHING, names
 from geometry.machine import Machine
 from materials.magnet import Magnet
+from workbench.believed import NAMED
 from workbench.data.table import Response, Table
 from workbench.models.damper.model import DamperModel
 from workbench.models.dq.model import DqModel
@@ -194,7 +195,7 @@ def check_declared(cls: type[Effect]) -> None:
     assert not cls.__doc__.startswith(f"{cls.__name__}("), "the docstring states the law"
     parameters = parameters_of(cls)
     assert parameters, "an effect without a parameter has no null"
-    assert 0.0 < cls.base_rate <= 0.5 and cls.base_rate_source, "a base rate and its source are needed"
+    assert 0.0 < cls.base_rate < NAMED and cls.base_rate_source, "a base rate that names nothing, and its source"
     for name, p in parameters.items():
         assert p.unit and p.source, f"{name} lacks its unit or source"
         assert p.low <= p.null <= p.high, f"the null of {name} is outside its bounds"
