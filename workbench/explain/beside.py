@@ -48,7 +48,8 @@ def _effects_beside(search: Search, beside: Beside, heap: list[Promise]) -> None
         return
     added = additions(search, hypothesis, np.hstack([hypothesis.fit.jacobian, beside.columns()]))
     promised: dict[Set, tuple[Explanation, float]] = {}
-    for found in explored(added.names, added.readings, search.beliefs, have, len(have) + 1).values():
+    (looked_at,) = explored(added.names, [added.readings], search.beliefs, have, len(have) + 1)
+    for found in looked_at.values():
         every = have | found.names
         if found.names and every not in search.beside:
             gain = beside.log_evidence + search.forms.get(have, 0.0) + added.gain(found)

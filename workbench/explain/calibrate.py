@@ -136,14 +136,12 @@ class Simulator:
 
     def posteriors(self, campaigns: Sequence[Simulated], most: int) -> list[Posterior]:
         """Of campaigns: sets of up to so many effects, and unknown functions beside nothing."""
-        first = self.names.catalogue.first_gains([c.readings for c in campaigns])
+        every = explored(self.names, [c.readings for c in campaigns], self.beliefs, most=most, beam=_LEADERS)
         unknown = self._beside_nothing.log_evidences(np.column_stack([c.residual for c in campaigns]))
-        found = []
-        for k, campaign in enumerate(campaigns):
-            sets = explored(self.names, campaign.readings, self.beliefs, frozenset(), most, first[:, k], _LEADERS)
-            alone = {names: e.gain for names, e in sets.items()}
-            found.append(posterior(alone, {frozenset(): float(unknown[k])}, self.beliefs))
-        return found
+        return [
+            posterior({names: e.gain for names, e in sets.items()}, {frozenset(): float(one)}, self.beliefs)
+            for sets, one in zip(every, unknown)
+        ]
 
 
 def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]:
@@ -187,9 +185,9 @@ def plainly_nothing(simulator: Simulator, p: Posterior, residual: np.ndarray) ->
     residual: of the null, carried back to zero (n,)
     """
     names = simulator.names
-    scores = names.catalogue.given((), names.catalogue.readings(residual[:, None])[0]).gains() + names.priors
+    scores = names.catalogue.gains((), names.catalogue.readings(residual[:, None]))[:, 0] + names.priors
     plain = {name: 0.0 for name in names.order}
-    for name, start, end in zip(names.order, names.starts, [*names.starts[1:], len(scores)]):
+    for name, (start, end) in zip(names.order, names.ranges):
         weights = np.exp(scores[start:end] - scores[start:end].max())
         plain[name] = float(weights @ (simulator.energies[start:end] >= 2 * PLAIN) / weights.sum())
     small = sum(share * (1 - plain[next(iter(names))]) for names, share in p.alone.items() if len(names) == 1)
@@ -213,7 +211,7 @@ def detection_limits(simulator: Simulator, thresholds: Thresholds) -> tuple[Dete
     out."""
     found: dict[str, DetectionLimit] = {}
     energies = simulator.energies
-    for name, start, end in zip(simulator.names.order, simulator.names.starts, _ends(simulator.names)):
+    for name, (start, end) in zip(simulator.names.order, simulator.names.ranges):
         if name in LAWS:
             continue
         needed = _needed(simulator.beliefs.log_odds[name], thresholds)
@@ -221,10 +219,6 @@ def detection_limits(simulator: Simulator, thresholds: Thresholds) -> tuple[Dete
         if limit is not None:
             found[name] = limit
     return tuple(found.values())
-
-
-def _ends(names: Names) -> list[int]:
-    return [*(int(s) for s in names.starts[1:]), len(names.catalogue.terms)]
 
 
 def _needed(log_odds: float, thresholds: Thresholds) -> float:

@@ -3,9 +3,9 @@ beside each of the sets that lead, up to four at once beside what every other be
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import combinations
 from math import exp, fsum, log, log1p
 
@@ -104,40 +104,30 @@ class Names:
         return tuple(dict.fromkeys(term.name for term in self.catalogue.terms))
 
     @cached_property
-    def starts(self) -> np.ndarray:
-        names = [term.name for term in self.catalogue.terms]
-        return np.array([names.index(name) for name in self.order], dtype=int)
+    def ranges(self) -> list[tuple[int, int]]:
+        """First and one past the last term of every effect."""
+        starts = _starts([term.name for term in self.catalogue.terms]).tolist()
+        return list(zip(starts, [*starts[1:], len(self.catalogue.terms)]))
 
     @cached_property
     def priors(self) -> np.ndarray:
         return np.array([term.log_prior for term in self.catalogue.terms])
 
-    def extensions(self, gains: np.ndarray) -> list[Extension]:
-        """Every effect beside an explanation. gains: of all terms (terms,) [nats]"""
+    def extensions(self, gains: np.ndarray) -> Iterator[Iterator[Extension]]:
+        """Every effect beside each of many explanations. gains: of all terms (explanations, terms) [nats]"""
         if not self.order:
-            return []
+            return iter([iter(())] * len(gains))
         scores = gains + self.priors
-        sums = np.logaddexp.reduceat(scores, self.starts)
-        ends = [*self.starts[1:], len(scores)]
-        best = [start + int(np.argmax(scores[start:end])) for start, end in zip(self.starts, ends)]
-        forms = [float(s) - self._of_form(scores, b) for s, b in zip(sums, best)]
-        return [Extension(name, float(s), b, f) for name, s, b, f in zip(self.order, sums, best, forms)]
+        sums = _sums(scores, [start for start, _ in self.ranges])
+        best = np.stack([start + scores[:, start:end].argmax(axis=1) for start, end in self.ranges], axis=1)
+        forms = sums - np.take_along_axis(self._of_forms(scores), self.forms[best], axis=1)
+        rows = zip(sums.tolist(), best.tolist(), forms.tolist())
+        return (map(Extension, self.order, *row) for row in rows)
 
-    def _of_form(self, scores: np.ndarray, best: int) -> float:
-        """ln p of the form of a term if it were the only one."""
-        first, last = self.ranges[self.forms[best]]
-        return float(np.logaddexp.reduce(scores[first:last])) - self.of_forms[self.forms[best]]
-
-    @cached_property
-    def ranges(self) -> list[tuple[int, int]]:
-        """First and one past the last term of every form."""
-        edges = np.flatnonzero(np.diff(self.forms, prepend=-1, append=-1))
-        return [(int(a), int(b)) for a, b in zip(edges, edges[1:])]
-
-    @cached_property
-    def of_forms(self) -> list[float]:
-        """ln prior share of every form."""
-        return [float(np.logaddexp.reduce(self.priors[a:b])) for a, b in self.ranges]
+    def _of_forms(self, scores: np.ndarray) -> np.ndarray:
+        """ln p of every form if it were the only one (explanations, forms)."""
+        starts = _starts(self.forms)
+        return _sums(scores, starts) - _sums(self.priors[None], starts)
 
     @cached_property
     def forms(self) -> np.ndarray:
@@ -147,39 +137,67 @@ class Names:
         return np.array([numbers[key] for key in keys])
 
 
+def _starts(labels: Sequence[object] | np.ndarray) -> np.ndarray:
+    """Where labels, equal ones side by side, change."""
+    return np.flatnonzero([k == 0 or labels[k] != labels[k - 1] for k in range(len(labels))])
+
+
+def _sums(scores: np.ndarray, starts: Sequence[int] | np.ndarray) -> np.ndarray:
+    """ln of the sums of what has these logarithms, from each start to the next (explanations, starts)."""
+    return np.logaddexp.reduceat(scores, starts, axis=1)
+
+
 def explored(
     names: Names,
-    readings: Readings,
+    readings: Sequence[Readings],
     beliefs: Beliefs,
     already: frozenset[str] = frozenset(),
     most: int = MOST,
-    first: np.ndarray | None = None,
     beam: tuple[int, ...] = LEADERS,
-) -> dict[frozenset[str], Explanation]:
-    """Sets of effects that were looked at, those without any first.
+) -> list[dict[frozenset[str], Explanation]]:
+    """Of each readings the sets of effects that were looked at, those without any first.
 
     already: effects that the background has;  most: effects at once, those included
-    first: gains of all terms beside nothing, where they are known (terms,) [nats]
     beam: sets of none, one, two ... effects that are looked at with one effect more
     """
-    found = {frozenset[str](): Explanation(frozenset(), (), 0.0)}
-    edge = [found[frozenset()]]
-    for depth in range(most - len(already)):
-        leaders = sorted(edge, key=lambda e: -(e.gain + beliefs.log_prior(e.names)))[: beam[depth]]
-        edge = []
-        for leader in leaders:
-            known = first is not None and not leader.terms
-            gains = first if known else names.catalogue.given(leader.terms, readings).gains()
-            for extension in names.extensions(gains):
-                if not beliefs.may_join(extension.name, leader.names | already):
-                    continue
-                one_more = leader.names | {extension.name}
-                gain = leader.gain + extension.gain
-                if one_more not in found or found[one_more].gain < gain:
-                    forms = leader.forms + extension.forms
-                    found[one_more] = Explanation(one_more, leader.terms + (extension.term,), gain, forms)
-                    edge.append(found[one_more])
+    nothing = Explanation(frozenset(), (), 0.0)
+    may_join = cache(lambda name, others: beliefs.may_join(name, others | already))
+    found = [{nothing.names: nothing} for _ in readings]
+    edges = [[nothing] for _ in readings]
+    for width in beam[: max(most - len(already), 0)]:
+        rank = lambda e: -(e.gain + beliefs.log_prior(e.names))  # noqa: E731
+        leaders = [(k, leader) for k, edge in enumerate(edges) for leader in sorted(edge, key=rank)[:width]]
+        edges = [[] for _ in readings]
+        for (k, leader), extensions in zip(leaders, _extensions(names, readings, leaders)):
+            for extension in extensions:
+                if may_join(extension.name, leader.names):
+                    edges[k] += _kept(found[k], leader, extension)
     return found
+
+
+def _extensions(
+    names: Names, readings: Sequence[Readings], leaders: Sequence[tuple[int, Explanation]]
+) -> Iterator[Iterator[Extension]]:
+    """Every effect beside each of explanations (number of its readings, explanation). Those of the same terms, of which
+    many readings have some, are looked at together."""
+    alike: dict[tuple[int, ...], list[int]] = {}
+    for place, (_, leader) in enumerate(leaders):
+        alike.setdefault(leader.terms, []).append(place)
+    gains = np.empty((len(leaders), len(names.catalogue.terms)))
+    for terms, places in alike.items():
+        gains[places] = names.catalogue.gains(terms, [readings[leaders[place][0]] for place in places]).T
+    return names.extensions(gains)
+
+
+def _kept(
+    found: dict[frozenset[str], Explanation], leader: Explanation, extension: Extension
+) -> tuple[Explanation, ...]:
+    """A set with one effect more, where it was not found yet or was found to gain less."""
+    names, gain = leader.names | {extension.name}, leader.gain + extension.gain
+    if names in found and found[names].gain >= gain:
+        return ()
+    found[names] = Explanation(names, leader.terms + (extension.term,), gain, leader.forms + extension.forms)
+    return (found[names],)
 
 
 @dataclass(frozen=True)
@@ -261,14 +279,14 @@ def posterior(
     total = logsumexp(logs + more)
     found = Posterior({}, {})
     for names, v in zip(alone, logs):
-        _add(found.beside if names & LAWS.keys() else found.alone, names, float(np.exp(v - total)))
+        _add(found.alone if LAWS.keys().isdisjoint(names) else found.beside, names, exp(v - total))
     for names, v in zip(beside, more):
-        _add(found.beside, names, float(np.exp(v - total)))
+        _add(found.beside, names, exp(v - total))
     return found
 
 
 def _add(shares: dict[frozenset[str], float], names: frozenset[str], share: float) -> None:
-    effects = without_laws(names)
+    effects = names if LAWS.keys().isdisjoint(names) else without_laws(names)
     shares[effects] = shares.get(effects, 0.0) + share
 
 

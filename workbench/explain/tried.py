@@ -391,8 +391,9 @@ def expand(search: Search, hypothesis: Hypothesis, heap: list[Promise]) -> None:
 def _guesses_beside(search: Search, have: Set, added: Additions) -> dict[Set, tuple[Explanation, float]]:
     """Sets beside a fit that were not fitted, with their ln evidence as it is guessed: less by as much as that of a
     fitted set that they hold would have been guessed too high beside the same fit."""
-    explored_ones = explored(added.names, added.readings, search.beliefs, have, len(have) + 2).values()
-    found = {have | e.names: (e, search.by_expansion(have) + added.gain(e)) for e in explored_ones if e.names}
+    (looked_at,) = explored(added.names, [added.readings], search.beliefs, have, len(have) + 2)
+    every = (e for e in looked_at.values() if e.names)
+    found = {have | e.names: (e, search.by_expansion(have) + added.gain(e)) for e in every}
     short = {n: max(found[n][1] - search.by_expansion(n), 0.0) for n in found if n in search.fitted}
     less = {n: max((short[part] for part in short if part < n), default=0.0) for n in found}
     return {n: (e, guess - less[n]) for n, (e, guess) in found.items() if n not in search.fitted}

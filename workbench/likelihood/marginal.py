@@ -42,7 +42,10 @@ class Term:
 
 @dataclass(frozen=True, eq=False)
 class Readings:
-    """What the likelihood needs of residuals. on: products with all columns of a catalogue (Q,);  square: |r|^2"""
+    """What the likelihood needs of residuals, less what a background takes of it.
+
+    on: products with all columns of the terms of a catalogue (Q,);  square: |r|^2
+    """
 
     on: np.ndarray
     square: float
@@ -135,37 +138,34 @@ class Catalogue:
 
     @cached_property
     def first(self) -> np.ndarray:
-        """Place of the shift of every term among the columns, and one past the last (terms + 1,)."""
-        sizes = [1 + term.columns.shape[1] for term in self.terms]
-        return self.background.shape[1] + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        """Place of the shift of every term among their columns, and one past the last (terms + 1,)."""
+        return np.concatenate([[0], np.cumsum([1 + term.columns.shape[1] for term in self.terms])]).astype(int)
 
     @cached_property
-    def size(self) -> int:
-        """Number of all columns: the background's, then of every term its shift and its columns."""
-        return self.background.shape[1] + len(self._kept)
+    def _root(self) -> np.ndarray:
+        """Of what is left of the background's weights (m, m)."""
+        return np.linalg.cholesky(np.eye(self.background.shape[1]) + self.background.T @ self.background)
+
+    @property
+    def half_log_det(self) -> float:
+        """What the background costs every explanation alike [nats]."""
+        return float(np.log(np.diagonal(self._root)).sum())
 
     @cached_property
-    def _across(self) -> np.ndarray:
-        """Products of the background with all columns (m, Q)."""
-        return self._on(self.background).T
+    def _behind(self) -> np.ndarray:
+        """What the background takes of the products of the terms' columns, as the products of these (m, Q)."""
+        return np.linalg.solve(self._root, self._on(self.background).T)
 
     @cached_property
     def _taken(self) -> np.ndarray:
-        """What the laws take of the products of the terms' columns, as the products of these (q, Q - m)."""
-        every = [law.taken(self.whole.columns[law.rows]) for law in self.laws]
-        return np.vstack([np.empty((0, len(self.whole.names))), *every]).take(self._kept, axis=1)
+        """What the laws take, and the background (q, Q)."""
+        laws = [law.taken(self.whole.columns[law.rows]).take(self._kept, axis=1) for law in self.laws]
+        return np.vstack([*laws, self._behind])
 
     def products(self, places: np.ndarray) -> np.ndarray:
-        """Of the columns at these places with all columns (k, Q)."""
-        m = self.background.shape[1]
-        out = np.empty((len(places), self.size))
-        behind = places < m
-        out[behind] = self._across[places[behind]]
-        of_terms = places[~behind] - m
-        own = self.whole.products(self._kept[of_terms]).take(self._kept, axis=1)
-        out[~behind, m:] = own - self._taken[:, of_terms].T @ self._taken
-        out[~behind, :m] = self._across[:, places[~behind]].T
-        return out
+        """Of the terms' columns at these places with all of them, laws and background integrated out (k, Q)."""
+        own = self.whole.products(self._kept[places]).take(self._kept, axis=1)
+        return own - self._taken[:, places].T @ self._taken
 
     @cached_property
     def blocks(self) -> dict[int, np.ndarray]:
@@ -173,39 +173,40 @@ class Catalogue:
         return {size: self._blocks(which, size) for size, which in self.by_size.items()}
 
     def _blocks(self, which: np.ndarray, size: int) -> np.ndarray:
-        places = self.first[which][:, None] + np.arange(1 + size) - self.background.shape[1]
+        places = self.first[which][:, None] + np.arange(1 + size)
         taken = self._taken[:, places].transpose(1, 2, 0)
         own = np.stack([self.whole.own[self._numbers[t]] for t in which])
         return own - taken @ taken.transpose(0, 2, 1)
 
     def _on(self, whitened: np.ndarray) -> np.ndarray:
-        """Products of all columns with whitened ones (n, R) that feel the laws (Q, R)."""
+        """Products of the terms' columns with whitened ones (n, R) that feel the laws (Q, R)."""
         felt = whitened.copy()
         for law in self.laws:
             felt[law.rows] = law.apply(felt[law.rows])
-        return np.vstack([self.background.T @ whitened, (self.whole.columns.T @ felt)[self._kept]])
+        return (self.whole.columns.T @ felt)[self._kept]
 
     def readings(self, residuals: np.ndarray) -> list[Readings]:
-        """Of whitened residuals (n, R)."""
-        products = self._on(residuals)
-        squares = np.sum(residuals**2, axis=0)
+        """Of whitened residuals (n, R), the background integrated out."""
+        own = np.linalg.solve(self._root, self.background.T @ residuals)
+        products = self._on(residuals) - self._behind.T @ own
+        squares = np.sum(residuals**2, axis=0) - np.sum(own**2, axis=0)
         return [Readings(products[:, k], float(squares[k])) for k in range(residuals.shape[1])]
 
-    def first_gains(self, readings: Sequence[Readings]) -> np.ndarray:
-        """ln p that each term gains where nothing else is in the explanation, for many readings (terms, R) [nats]."""
-        bare = self.given((), readings[0])
-        on = np.column_stack([r.on for r in readings])
-        taken, own = bare.taken_of(on)
+    def gains(self, chosen: Sequence[int], readings: Sequence[Readings]) -> np.ndarray:
+        """ln p that each term would gain beside the terms of these numbers, for many readings (terms, R) [nats]."""
+        given = self.given(chosen, readings[0])
+        on = np.column_stack([r.on for r in readings]) - given.of_shifts[:, None]
+        taken, own = given.taken_of(on)
         out = np.empty((len(self.terms), len(readings)))
         for size, which in self.by_size.items():
-            out[which] = bare.gains_of(which, size, taken, on, own)
+            out[which] = given.gains_of(which, size, taken, on, own)
         return out
 
     def given(self, chosen: Sequence[int], readings: Readings) -> Given:
         """The likelihood with the terms of these numbers in the explanation."""
-        inside = [np.arange(self.background.shape[1])]
-        inside += [np.arange(self.first[t] + 1, self.first[t + 1]) for t in chosen]
-        return Given(self, np.concatenate(inside), self.first[list(chosen)].astype(int), readings)
+        columns = [np.arange(self.first[t] + 1, self.first[t + 1]) for t in chosen]
+        inside = np.concatenate([np.empty(0, dtype=int), *columns])
+        return Given(self, inside, self.first[list(chosen)].astype(int), readings)
 
     def felt(self, number: int) -> np.ndarray:
         """Whitened shift of the term of a number and its columns, the errors of laws integrated out (n, 1 + k)."""
@@ -250,19 +251,9 @@ class Given:
         return np.linalg.cholesky(np.eye(len(self.inside)) + self._own[:, self.inside])
 
     @cached_property
-    def _of_shifts(self) -> np.ndarray:
+    def of_shifts(self) -> np.ndarray:
         """Products of the sum of the shifts with all columns (Q,)."""
         return self.catalogue.products(self.shifts).sum(axis=0)
-
-    @cached_property
-    def _left(self) -> np.ndarray:
-        """Products of all columns with the residual less the shifts (Q,)."""
-        return self.readings.on - self._of_shifts
-
-    @cached_property
-    def _taken(self) -> tuple[np.ndarray, np.ndarray]:
-        taken, own = self.taken_of(self._left[:, None])
-        return taken, own[:, 0]
 
     def taken_of(self, on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What the columns inside take of every column (q, Q), and of residuals (q, R).
@@ -275,17 +266,10 @@ class Given:
     @property
     def log_marginal(self) -> float:
         """ln p of the readings, up to what all explanations share [nats]."""
-        shifts, taken = self.shifts, self._taken[1]
-        square = self.readings.square - 2 * self.readings.on[shifts].sum() + self._of_shifts[shifts].sum()
-        return float(-0.5 * (square - taken @ taken) - np.log(np.diagonal(self._root)).sum())
-
-    def gains(self) -> np.ndarray:
-        """ln p that each term of the catalogue would gain if it were added [nats] (terms,)."""
-        out = np.empty(len(self.catalogue.terms))
-        taken, own = self._taken
-        for size, which in self.catalogue.by_size.items():
-            out[which] = self.gains_of(which, size, taken, self._left[:, None], own[:, None])[:, 0]
-        return out
+        shifts, taken = self.shifts, self.taken_of((self.readings.on - self.of_shifts)[:, None])[1][:, 0]
+        square = self.readings.square - 2 * self.readings.on[shifts].sum() + self.of_shifts[shifts].sum()
+        spread = np.log(np.diagonal(self._root)).sum() + self.catalogue.half_log_det
+        return float(-0.5 * (square - taken @ taken) - spread)
 
     def gains_of(self, which: np.ndarray, size: int, taken: np.ndarray, on: np.ndarray, own: np.ndarray) -> np.ndarray:
         """Of terms with the same number of columns, for residuals as ``taken_of`` has them (t, R) [nats]."""

@@ -11,9 +11,9 @@ from workbench.explain.explore import explored
 
 
 def explained(names, residual, **more):
-    readings = names.catalogue.readings(residual[:, None])[0]
     believed = more.pop("beliefs", beliefs(names))
-    return explored(names, readings, believed, **more), believed
+    (found,) = explored(names, names.catalogue.readings(residual[:, None]), believed, **more)
+    return found, believed
 
 
 def leader(found, believed):
@@ -78,14 +78,15 @@ def test_effects_of_the_background_count_among_the_most_and_exclude_too():
     assert max(map(len, found)) == 1 and frozenset(("e2",)) not in found and len(found) == 5
 
 
-def test_gains_that_are_known_are_not_worked_out_again():
+def test_many_readings_together_are_explained_as_each_alone():
     random = np.random.default_rng(4)
-    names, residual = names_of(random.standard_normal((30, 4))), random.standard_normal(30)
-    readings = names.catalogue.readings(residual[:, None])
-    first = names.catalogue.first_gains(readings)[:, 0]
-    plain, _ = explained(names, residual, most=2)
-    known, _ = explained(names, residual, most=2, first=first)
-    assert {n: e.gain for n, e in known.items()} == pytest.approx({n: e.gain for n, e in plain.items()})
+    names = names_of(random.standard_normal((30, 4)))
+    residuals = random.standard_normal((30, 6)) + names.catalogue.terms[3].shift[:, None]
+    together = explored(names, names.catalogue.readings(residuals), beliefs(names), most=3, beam=(1, 3, 2))
+    for found, residual in zip(together, residuals.T):
+        alone, _ = explained(names, residual, most=3, beam=(1, 3, 2))
+        assert {n: e.terms for n, e in found.items()} == {n: e.terms for n, e in alone.items()}
+        assert {n: e.gain for n, e in found.items()} == pytest.approx({n: e.gain for n, e in alone.items()})
 
 
 def test_what_every_other_bench_shows_is_not_counted():

@@ -137,7 +137,7 @@ def test_evidence_of_an_effect_is_the_integral_over_its_prior(bench, cls):
     whole = np.log(np.trapezoid(np.exp(logs - logs.max()), places)) + logs.max()
     assert alone(bench, cls).log_evidence == pytest.approx(whole, abs=0.1)
     catalogue = signatures_of(bench, (cls(),)).catalogue(bench.null.jacobian, bench.fit.white)
-    gains = catalogue.given((), catalogue.readings(bench.residual[:, None])[0]).gains()
+    gains = catalogue.gains((), catalogue.readings(bench.residual[:, None]))[:, 0]
     grid_sum = float(logsumexp(gains + np.array([term.log_prior for term in catalogue.terms])))
     assert bench.null.log_evidence + grid_sum == pytest.approx(whole, abs=0.3)  # the grid is coarser
 
@@ -411,7 +411,7 @@ def test_a_size_that_cannot_be_negative_is_not_promised_a_negative_one():
     friction = signature(Bump(), lambda effect: np.full(40, np.exp(2 * effect.size)))
     white = Whitener(np.ones(40), np.zeros(40))
     catalogue = Catalogue(np.zeros((40, 0)), Terms(tuple(friction.terms(white, 0, 0.0)), 40))
-    gains = catalogue.given((), catalogue.readings(-3.0 * np.ones((40, 1)))[0]).gains()
+    gains = catalogue.gains((), catalogue.readings(-3.0 * np.ones((40, 1))))
     assert gains.max() < 0
 
 
