@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from itertools import combinations
+from itertools import combinations, product
 from math import exp, fsum, log, log1p
 
 import numpy as np
@@ -235,14 +235,19 @@ class Posterior:
 
     def of(self, name: str) -> float:
         """P(the effect is there)."""
-        return min(self._each.get(name, 0.0), 1.0)
+        return self.of_both(name, name)
+
+    def of_both(self, one: str, other: str) -> float:
+        """P(two effects are there)."""
+        return min(self._together.get((one, other), 0.0), 1.0)
 
     @cached_property
-    def _each(self) -> dict[str, float]:
-        found: dict[str, float] = {}
+    def _together(self) -> dict[tuple[str, str], float]:
+        """Of every two effects that are in one set, and of each with itself."""
+        found: dict[tuple[str, str], float] = {}
         for names, p in self.sets.items():
-            for name in names:
-                found[name] = found.get(name, 0.0) + p
+            for pair in product(names, names):
+                found[pair] = found.get(pair, 0.0) + p
         return found
 
     def any_of(self, names: frozenset[str]) -> float:
@@ -261,7 +266,7 @@ class Posterior:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """All effects, most probable first."""
-        return tuple(sorted(sorted(self._each), key=lambda name: -self.of(name)))
+        return tuple(sorted({one for one, _ in self._together}, key=lambda name: (-self.of(name), name)))
 
 
 def _share(shares: Iterable[float]) -> float:

@@ -108,8 +108,7 @@ def _wider(
 def _stands_for(p: Posterior, leading: frozenset[str], other: str, name: str) -> bool:
     """Whether an effect takes the place of this one of the leading set rather than of another of it: of all, it is
     found beside this one least."""
-    beside = lambda one: p.all_of((frozenset((other,)), frozenset((one,)))) / p.of(one)  # noqa: E731
-    return min(sorted(leading), key=beside) == name
+    return min(sorted(leading), key=lambda one: p.of_both(other, one) / p.of(one)) == name
 
 
 def _of_groups(p: Posterior, groups: tuple[frozenset[str], ...]) -> Verdict:
