@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 
 from processes import use_one_thread
 from study.errors import exit_on_wrong_study
+
+EXIT_NOT_READ = 141  # as a shell says it of programs that the broken pipe ends
 
 
 @dataclass(frozen=True)
@@ -61,13 +66,25 @@ COMMANDS = {
 def main(arguments: list[str] | None = None) -> None:
     """Entry of the console script.
 
-    Exit codes: 0 done, 1 a stage could not go on or the field did not converge, 2 wrong input, 130 Ctrl-C.
+    Exit codes: 0 done, 1 a stage could not go on or the field did not converge, 2 wrong input, 130 Ctrl-C, 141 whoever
+    read the output stopped before its end.
     """
     use_one_thread()
     given = sys.argv[1:] if arguments is None else arguments
     options = _parser(given).parse_args(given)
-    with exit_on_wrong_study():
+    with exit_on_wrong_study(), _read_to_the_end():
         options.run(options)
+
+
+@contextmanager
+def _read_to_the_end() -> Iterator[None]:
+    """Whoever reads the output may stop before its end, as ``head`` does; that is no error of the command."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the interpreter writes the rest at its exit
+        raise SystemExit(EXIT_NOT_READ) from None
 
 
 def _parser(given: list[str]) -> argparse.ArgumentParser:

@@ -127,15 +127,24 @@ def _diagnose_parser(parser: argparse.ArgumentParser, run: Run) -> None:
 def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path]:
     """Campaign, library, model with its effects, and the folder of the results."""
     campaign, effects = read_campaign(options.campaign), own_library(options)
-    out = Path(options.out) if options.out else Path("results") / campaign.id
+    out = _results_of(options, campaign)
     model, saved = nominal_model(campaign), Path(options.model) if options.model else out / NAME
     if options.model or saved.exists():
         learned = read_model(saved, effects)
         model = with_effects(learned, model, saved)
         if learned.source is not None and learned.source.campaign != campaign.id:
             print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)
-    out.mkdir(parents=True, exist_ok=True)
     return campaign, effects, model, out
+
+
+def _results_of(options: argparse.Namespace, campaign: Campaign) -> Path:
+    """The folder of the results."""
+    out = Path(options.out) if options.out else Path("results") / campaign.id
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise WorkbenchError(f"{out}: cannot be a folder of results ({error.strerror}); name another, --out.") from None
+    return out
 
 
 def _from_elsewhere(source: str, here: str) -> str:
@@ -207,10 +216,9 @@ def _validate(options: argparse.Namespace) -> None:
         learned, campaign = read_model(options.model, effects), read_campaign(options.data)
         with _progress() as progress:
             validation = validate(learned, campaign, effects, progress)
-        out = Path(options.out) if options.out else Path("results") / campaign.id
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "validation.json").write_text(validation_json(validation), encoding="utf-8")
-        write_validation_report(out / "validation.html", validation)
+        out = _results_of(options, campaign)
+        _write_text(out / "validation.json", validation_json(validation))
+        write_atomically(out / "validation.html", lambda part: write_validation_report(part, validation))
         _print_validation(validation, out)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from workbench.data.column_units import difference, factor, split_unit, to_inside
 from workbench.data.columns import BOOKKEEPING, Column, columns_of
 from workbench.data.conventions import with_conventions
+from workbench.data.dimensions import check_input, check_reading
 from workbench.data.expression import evaluate
 from workbench.data.kinds import kind_of
 from workbench.data.predictions import read_predictions
@@ -67,7 +68,7 @@ def read_campaign(folder: str | Path) -> Campaign:
     campaign = Campaign(
         id=_id(content.campaign.id, folder),
         folder=str(folder),
-        device=content.device,
+        device=_checked_inputs(content.device),
         tables=tables,
         tolerances=tuple(_tolerance(name, entry) for name, entry in content.tolerance.items()),
         systematics=tuple(_systematic(name, entry) for name, entry in content.systematic.items()),
@@ -363,20 +364,29 @@ def _id(written: str | None, folder: Path) -> str:
         ) from None
 
 
+def _checked_inputs(device: Mapping[str, object]) -> Mapping[str, object]:
+    for key in device:
+        check_input(*split_unit(key), f"{FILE}, [device] {key}")
+    return device
+
+
 def _tolerance(name: str, entry: ToleranceEntry) -> Tolerance:
     quantity, unit = split_unit(name)
+    where = f"{FILE}, [tolerance] {name}"
+    check_input(quantity, entry.unit or unit, where)
     source = "" if entry.source is None else str(entry.source)
     if entry.sigma_rel is not None:
         return Tolerance(quantity, entry.sigma_rel, True, source)
-    return Tolerance(
-        quantity, entry.sigma * factor(entry.unit or unit or "1", f"{FILE}, [tolerance] {name}"), False, source
-    )
+    return Tolerance(quantity, entry.sigma * factor(entry.unit or unit or "1", where), False, source)
 
 
 def _systematic(name: str, entry: SystematicEntry) -> Systematic:
     quantity, unit = split_unit(name)
     where = f"{FILE}, [systematic] {name}"
-    scale = 1.0 if entry.kind == "gain" else factor(entry.unit or unit or "1", where)
+    if entry.kind == "gain":
+        return Systematic(quantity, entry.kind, entry.sigma)
+    check_reading(quantity, entry.unit or unit, where)
+    scale = factor(entry.unit or unit or "1", where)
     return Systematic(quantity, entry.kind, entry.sigma * scale)
 
 

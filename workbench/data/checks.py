@@ -18,6 +18,7 @@ NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device b
 FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance
 UNLIKE = 0.005  # of the range of a condition, by which the same reading may stand at another one
 SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
+QUIET, ENOUGH = 0.2, 6  # of the declared uncertainty, below which repeats are quieter than any instrument; stations
 CLIPPED = 0.05  # share of readings at exactly the largest value that looks like clipping,
 NEXT_LEVEL = 3.0  # where so many times as many stand there as on the next level: a coarse converter has few of them all
 
@@ -43,6 +44,11 @@ def _repeats_agree(table: Table) -> list[str]:
             found.append(f"{table.file}: repeats of {r.name} disagree by {size:.1f} times the declared uncertainty")
         elif np.abs(shift).max() > 3 * LOUD * max(size, 1):
             found.append(f"{table.file}: one repeat of {r.name} is shifted as a whole against the others")
+        elif size < QUIET and len(stations) >= ENOUGH:
+            found.append(
+                f"{table.file}: repeats of {r.name} differ by {size:.2g} of the declared uncertainty; lower u_random, "
+                "or they are copies"
+            )
     return found
 
 

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any, Final
 
 from workbench.data.column_units import split_unit
+from workbench.data.dimensions import check_reading
 from workbench.data.headings import known_unit
 from workbench.data.kinds import Kind
 from workbench.data.raw_table import Heading, RawTable
@@ -47,6 +48,8 @@ def columns_of(raw: RawTable, entry: TableEntry, kind: Kind) -> tuple[tuple[Colu
         found, remarks = _by_names(raw, headings, entry.u_random or {}, kind)
     for column in found:
         _check_name(column, raw.where)
+        if kind.responses and column.role in ("condition", "response"):
+            check_reading(column.name, column.unit, f"{raw.where}: column {column.heading!r}")
     _refuse_doubles(found, raw.where)
     return tuple(_with_bandwidth(column, entry.bandwidth_Hz) for column in found), remarks
 

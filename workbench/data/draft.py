@@ -95,6 +95,8 @@ def _is_open(line: str) -> bool:
 
 
 def _sheet(path: Path) -> _Sheet:
+    if path.is_dir():
+        raise WorkbenchError(f"{path}: is a folder; name the files in it, {path}/*.csv.")
     if not path.is_file():
         raise WorkbenchError(f"{path}: cannot be read as CSV: there is no such file.")
     raw = read_raw(path)

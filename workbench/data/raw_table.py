@@ -114,6 +114,7 @@ _MARKS = (
     (b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\x00\x00", "utf-32"), (b"\x00\x00\xfe\xff", "utf-32"),
     (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"),
 )  # fmt: skip
+_ARCHIVE = b"PK\x03\x04"  # how the files of spreadsheets begin
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 
 
@@ -123,6 +124,8 @@ def decoded(data: bytes, where: str, encoding: str | None = None) -> str:
     Raises:
         WorkbenchError: the bytes are no text.
     """
+    if data.startswith(_ARCHIVE):
+        raise WorkbenchError(f"{where}: is no text but an archive, as spreadsheets are; save it as CSV from there.")
     for name in [encoding] if encoding else _likely_encodings(data):
         try:
             text = data.decode(name)
@@ -190,9 +193,10 @@ def _head(lines: Sequence[str], content: Sequence[str], delimiter: str, where: s
     if not rows:
         raise _no_rows(where)
     start = _first_data(rows)
-    _refuse_open_quotes(rows[start : start + 1], where)
     if start == len(rows):
+        _refuse_open_quotes(rows, where)
         raise _no_rows(where)
+    _refuse_open_quotes(rows[start : start + 1], where)
     first = rows[start][0]
     names, units = _heading_rows(rows[:start], lines[: first - 1], delimiter, where)
     return first, names, (units + [""] * len(names))[: len(names)]

@@ -11,6 +11,7 @@ _FEWEST_ROWS = 12  # whose third differences show a noise
 _FEWEST_REPEATS = 6  # differences between repeated rows that do
 _FEWEST_TO_GROW = 20  # of them that show whether it grows with the reading
 _ROUNDS = 20
+_SAME_PLACE = 1e-6  # of the range, by which places are told apart that are logged alike
 _SAME_SETTING = 0.005  # relative: what is logged of one setting lies no further apart
 
 
@@ -19,7 +20,8 @@ def noise_of(
 ) -> tuple[str, str] | None:
     """Standard uncertainty of one reading, as a campaign file spells it, and what shows it; None for few rows.
 
-    Differences between rows under the same conditions, or third differences along the first condition.
+    Differences between rows under the same conditions, or what neighbours along a condition are off a parabola through
+    them: along the one and in the order, of scans or of all rows, in which that is least.
 
     books: what only tells repeats and scans from one another
     """
@@ -31,9 +33,26 @@ def noise_of(
     again = _of_repeats(values, places)
     if again is not None or len(values) < _FEWEST_ROWS:
         return again
-    order = np.lexsort((*places.T, *(book[good] for book in books)))
-    size = max(_robust(np.diff(values[order], 3)) / np.sqrt(20.0), _of_digits(values))
+    kept = [book[good] for book in books]
+    turned = [np.roll(places, -k, axis=1) for k in np.flatnonzero(np.isfinite(places).all(axis=0))]
+    off = [_off_parabolas(p, values, by) for p in turned for by in (kept, [])]
+    size = max(min(map(_robust, off)), _of_digits(values))
     return (f"{size:.2g}", "neighbours") if size else None
+
+
+def _off_parabolas(places: np.ndarray, values: np.ndarray, books: Sequence[np.ndarray]) -> np.ndarray:
+    """Third divided differences of neighbours along the first of the places, of the size of the noise of one value; of
+    two that were taken at nearly the same place little but their own difference. Neighbours that other conditions tell
+    apart are left out, where enough are left."""
+    order = np.lexsort((*places.T, *books))
+    x, values, others = places[order, 0], values[order], places[order, 1:]
+    x = x + _SAME_PLACE * (np.ptp(x) or 1.0) * np.linspace(0.0, 1.0, len(x))
+    four = np.lib.stride_tricks.sliding_window_view(np.column_stack([x, values, others]), 4, axis=0)
+    apart = four[:, 0, :, None] - four[:, 0, None, :] + np.eye(4)
+    weights = 1.0 / apart.prod(axis=2)
+    off = (weights * (four[:, 1] - four[:, 1, :1])).sum(axis=1) / np.linalg.norm(weights, axis=1)
+    alike = (four[:, 2:] == four[:, 2:, :1]).all(axis=(1, 2))
+    return off[alike] if alike.sum() >= _FEWEST_REPEATS else off
 
 
 def _settings(values: np.ndarray, name: str) -> np.ndarray:

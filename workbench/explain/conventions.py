@@ -540,6 +540,7 @@ ALLOWED_BEYOND = 0.1  # of an end, by which the model must go beyond it somewher
 
 # ---- what is said ----------------------------------------------------------------------------------------------------
 
+SAID = 3  # other readings at most that are said
 SETTLED = 0.75  # probability that a convention is wrong, below which effects are looked for all the same
 
 
@@ -557,7 +558,7 @@ def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken)
     names = _names_of(everything, [o for o in others if _as_simple(o, best[0])])
     sentences = _sentences(everything, others)
     return Conventions(
-        found, repaired, probability, names, sentences, section_text(section), checks,
+        found, repaired, probability, names, sentences, _text(section, others), checks,
         tuple(other.fixes for other in others),
     )  # fmt: skip
 
@@ -615,12 +616,23 @@ def _names_of(fixes: Iterable[Fix], others: Iterable[_Whole]) -> tuple[str, ...]
 def _sentences(fixes: tuple[Fix, ...], others: list[_Whole]) -> tuple[str, ...]:
     said = [f"{_files(fixes, words)}: {words}." for words in dict.fromkeys(fix.words for fix in fixes)]
     if others:
-        same = "; ".join(" and ".join(dict.fromkeys(fix.words for fix in other.fixes)) for other in others[:3])
+        same = "; ".join(map(_words, others[:SAID]))
         said.append(f"These data cannot tell that from: {same}.")
     said.append("Say so in campaign.toml and no effect is looked for before: the text is below.")
     if any(isinstance(fix, Scaled) for fix in fixes):
         said.append("Where the readings are right as they are, a factor of 1 says so, and it is not doubted again.")
     return tuple(said)
+
+
+def _words(other: _Whole) -> str:
+    return " and ".join(dict.fromkeys(fix.words for fix in other.fixes))
+
+
+def _text(section: Mapping[str, Mapping[str, object]], others: Iterable[_Whole]) -> str:
+    """The section for campaign.toml; below it, as comments, what to write instead where another reading is right."""
+    instead = [f"or, {_words(other)}:\n{section_text(section_of(other.fixes))}" for other in list(others)[:SAID]]
+    comments = [f"# {line}" for text in instead for line in text.splitlines() if line != "[conventions]"]
+    return "\n".join([section_text(section).rstrip("\n"), *comments]) + "\n"
 
 
 def _files(fixes: Iterable[Fix], words: str) -> str:

@@ -338,14 +338,17 @@ def estimates(
 
 
 def _estimate(hypothesis: Hypothesis, weights: Mapping[Hypothesis, float], effect: Effect, name: str) -> Estimate:
-    """The value is that of the hypothesis; what the law of the effect may be wrong by widens the interval."""
+    """The value is that of the hypothesis, or the middle of what all others with the effect say where it lies beyond
+    their interval; what the law of the effect may be wrong by widens that."""
     parameter = parameters_of(effect)[name]
     value = _value(effect, name, hypothesis.fit.z[_place(hypothesis, effect.name(), name)])
     parts = [(_samples(h, effect.name(), name), w) for h, w in weights.items() if effect.name() in h.names]
     samples = np.concatenate([s for s, _ in parts])
     shares = np.concatenate([np.full(len(s), w) for s, w in parts])
     order = np.argsort(samples)
-    low, high = np.interp([0.05, 0.95], (np.cumsum(shares[order]) - shares[order] / 2) / shares.sum(), samples[order])
+    below = (np.cumsum(shares[order]) - shares[order] / 2) / shares.sum()
+    low, middle, high = np.interp([0.05, 0.5, 0.95], below, samples[order]).tolist()
+    value = value if low <= value <= high else middle
     law = NORMAL_95 * effect.size_error * abs(value) if name == next(iter(parameters_of(effect))) else 0.0
     low90 = max(value - np.hypot(value - low, law) if low < value else low, parameter.low)
     high90 = min(value + np.hypot(high - value, law) if high > value else high, parameter.high)

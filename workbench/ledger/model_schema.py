@@ -94,7 +94,9 @@ def content_of(path: Path) -> FileSchema:
     """
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise WorkbenchError(f"{path}: cannot be read as a model file ({error.strerror}).") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise WorkbenchError(f"{path}: cannot be read as a model file: {error}.") from None
     try:
         return FileSchema.model_validate(content)

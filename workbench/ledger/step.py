@@ -11,6 +11,7 @@ import csv
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from math import log, log1p, prod
 from pathlib import Path
 
@@ -266,10 +267,9 @@ def _step(row: Mapping[str, str]) -> LedgerStep:
 
 def _known(name: str, model: Model, library: Mapping[str, type[Effect]]) -> type[Effect]:
     if name not in library:
-        close = [n for n in library if name.split("_")[0] in n] or list(library)
-        raise WorkbenchError(
-            f"there is no effect {name!r}; did you mean {', '.join(close[:6])}? `airgap effects` lists all."
-        )
+        close = [n for n in library if name.split("_")[0] in n] or get_close_matches(name, library, n=3)
+        hint = f"; did you mean {', '.join(close[:6])}?" if close else ";"
+        raise WorkbenchError(f"there is no effect {name!r}{hint} `airgap effects` lists all.")
     if not library[name].can_act_on(model.design):
         raise WorkbenchError(f"{name} cannot act on a {type(model.design).__name__}.")
     return library[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
 
 from workbench.data.column_units import factor, split_unit
@@ -31,9 +32,13 @@ def numbers(table: Mapping[str, object], required: tuple[str, ...], optional: tu
     keys = names(table)
     _refuse_doubles(table, keys)
     missing = [name for name in required if name not in keys]
-    if missing:
-        raise WorkbenchError(f"[device] lacks {', '.join(missing)}; give them in campaign.toml, unit at the end")
     known = required + optional
+    if missing:
+        slips = [
+            f"{key} is no input of it" for name, key in keys.items() if get_close_matches(name, missing, cutoff=0.8)
+        ]
+        more = "".join(f"; {words}" for words in slips)
+        raise WorkbenchError(f"[device] lacks {', '.join(missing)}; give them in campaign.toml, unit at the end{more}")
     unknown = [key for name, key in keys.items() if name not in known and not isinstance(table[key], str)]
     if unknown:
         raise WorkbenchError(

@@ -136,6 +136,17 @@ def test_without_repeats_neighbours_show_the_noise_and_few_rows_none():
     assert noise_of(np.arange(5.0), {"velocity": np.arange(5.0)}) is None and noise_of(np.ones(20), {}) is None
 
 
+def test_settings_that_are_met_by_and_by_only_show_the_noise_and_not_the_slope():
+    """A force of 900 N s/m at three shunts, run three times, the velocity within 0.1 mm/s of what was meant."""
+    random = np.random.default_rng(6)
+    meant = np.tile(np.outer([10.0, 25.0, 50.0, 100.0, 150.0, 300.0], [1.0, -1.0]).ravel(), 9)
+    velocity = meant + 0.1 * random.standard_normal(len(meant))
+    shunt, run = np.tile(np.repeat([0.5, 5.0, np.inf], 12), 3), np.repeat([1.0, 2.0, 3.0], 36)
+    force = 0.9 * velocity + 2.0 * np.sign(velocity) + 0.15 * random.standard_normal(len(meant))
+    said, shown_by = noise_of(force, {"velocity": velocity, "shunt": shunt}, [run])
+    assert shown_by == "neighbours" and float(said) == pytest.approx(0.15, rel=0.35)
+
+
 def test_what_is_logged_about_a_setting_is_one_condition():
     """Two scans at 30 A, whose current and speed are logged with a scatter."""
     random, angle = np.random.default_rng(5), np.tile(np.arange(0.0, 360.0, 6.0), 2)

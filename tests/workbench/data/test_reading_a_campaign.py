@@ -118,6 +118,15 @@ def test_a_complex_response_shares_the_size_of_both_parts(tmp_path):
         ("sigma = 0.02", "sigma = -1", "must be a positive number"),
         ('kind = "gain"', 'kind = "scale"', 'kind = "gain" or "offset"'),
         ("repeats = 2", "repeats = ", "is not valid TOML"),
+        ("stiffness_N_per_m", "internal_resistance_mH", "internal_resistance is measured in ohm, found 'mH'"),
+        ("stiffness_N_per_m", "force_constant_mm", "[device] force_constant_mm: force_constant is measured in N_per_A"),
+        ('"gap" = { sigma = 0.02, unit = "mm"', '"airgap" = { sigma = 0.02, unit = "N"', "airgap is measured in mm"),
+        (
+            'cell = { sigma = 0.01, kind = "gain"',
+            'force_offset = { sigma = 1, kind = "offset", unit = "V"',
+            "measured in N",
+        ),
+        ('angle = { unit = "deg"', 'angle = { unit = "kg"', "column 'angle': angle is measured in deg, found 'kg'"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_sentence(tmp_path, old, new, says):
