@@ -486,7 +486,8 @@ class Validation:
 
     campaign: of the new data;  learned_from: campaign of the model file
     corrected, base: with what the file knows, and the device as drawn
-    calibrations: of the new instruments, found with the corrected model;  range_left: one sentence for each condition
+    calibrations, base_calibrations: of the new instruments, found with the one and with the other
+    range_left: one sentence for each condition
     complaints: what limits the conclusions
     """
 
@@ -498,6 +499,7 @@ class Validation:
     base: tuple[ValidatedChannel, ...]
     predictions: tuple[PredictedChannel, ...]
     calibrations: tuple[Pull, ...]
+    base_calibrations: tuple[Pull, ...]
     range_left: tuple[str, ...]
     complaints: tuple[str, ...]
     provenance: Mapping[str, str]

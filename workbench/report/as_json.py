@@ -68,6 +68,7 @@ def validation_json(validation: Validation) -> str:
             for name, channels in parts.items()
         },
         "calibrations": whole["calibrations"],
+        "base_calibrations": whole["base_calibrations"],
         "range_left": whole["range_left"],
         "sentence": validation_sentence(validation),
         "warnings": warnings(validation),

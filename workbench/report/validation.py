@@ -64,7 +64,8 @@ def validation_sentence(v: Validation) -> str:
     """Error and band of the corrected model against those of the device as drawn."""
     return (
         f"Without anything of the device being fitted to these {rows(v.corrected)} readings, chi²/n is "
-        f"{chi2_text(chi2(v.corrected))} where the device as drawn gives {chi2_text(chi2(v.base))}; "
+        f"{chi2_text(chi2(v.corrected))} where the device as drawn gives {chi2_text(chi2(v.base))}"
+        f"{', with instruments further off than they are declared' if _far(v.base_calibrations) else ''}; "
         f"{percent(share(v.corrected))} of the readings lie in the predicted 90 % band "
         f"(as drawn {percent(share(v.base))})."
     )
@@ -82,6 +83,9 @@ def _too_sure(v: Validation) -> list[str]:
 
 
 def _worse(v: Validation) -> list[str]:
+    """Nothing where the device as drawn is right only with instruments that are wrong."""
+    if _far(v.base_calibrations) and not _far(v.calibrations):
+        return []
     worse = [c.channel for c, drawn in zip(v.corrected, v.base) if c.rms_error > drawn.rms_error]
     return [f"What was learned makes {listed(worse)} worse than the device as drawn."] if worse else []
 
@@ -97,9 +101,15 @@ def _unanswered(v: Validation) -> list[str]:
 
 
 def _pulled(v: Validation) -> list[str]:
-    far = [p for p in v.calibrations if abs(p.pull) > ALARMING_PULL]
-    said = listed(f"{plain(p.name)} by {signed(p.pull, 2)} sigma" for p in far)
-    return [f"The calibration moves further than its declaration allows: {said}."] if far else []
+    said = []
+    for words, pulls in (("", v.calibrations), (" of the device as drawn", v.base_calibrations)):
+        moved = listed(f"{plain(p.name)} by {signed(p.pull, 2)} sigma" for p in _far(pulls))
+        said += [f"The calibration{words} moves further than its declaration allows: {moved}."] if moved else []
+    return said
+
+
+def _far(pulls: Sequence[Pull]) -> list[Pull]:
+    return [p for p in pulls if abs(p.pull) > ALARMING_PULL]
 
 
 def rows(channels: Sequence[ValidatedChannel]) -> int:

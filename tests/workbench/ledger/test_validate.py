@@ -16,6 +16,7 @@ from workbench.ledger.validate import HALF_90, validate
 from workbench.likelihood.bench import bench_of
 from workbench.likelihood.nuisance import DeclaredError
 from workbench.models.model import Model
+from workbench.report.validation import validation_sentence, warnings
 
 NOMINAL = Model(SpringModel(), Spring(1000.0))
 TRUE = {"extra": lambda x: 3e5 * x**3, "stiffness": 1012.0}
@@ -50,6 +51,19 @@ def test_only_the_calibration_of_the_new_instruments_moves(learned, tmp_path):
     assert pull.pull * pull.sigma == pytest.approx(0.07, abs=0.015) and abs(shifted.corrected[0].bias) < 0.01
     softer = validate(learned, other(tmp_path / "b", stiffness=950.0), LIBRARY, nominal=NOMINAL)
     assert softer.corrected[0].chi2_per_n > 10 and softer.corrected[0].share_in_90 < 0.5
+
+
+def test_a_device_that_is_right_only_with_wrong_instruments_is_said_to_be(learned, tmp_path):
+    """A force offset of half a newton, declared as 20 mN, would make the drawing right."""
+    found = validate(learned, other(tmp_path / "n"), LIBRARY, nominal=NOMINAL)
+    assert [pull.name for pull in found.base_calibrations] == ["force_offset"]
+    far = replace(found, base_calibrations=(replace(found.base_calibrations[0], pull=25.0),), corrected=found.base)
+    worse = replace(far, corrected=tuple(replace(c, rms_error=2 * c.rms_error) for c in found.base))
+    assert "further off than they are declared" in validation_sentence(far)
+    said = "calibration of the device as drawn moves further than its declaration allows: force offset by +25 sigma."
+    assert warnings(far)[-1] == f"The {said}"
+    assert not any("worse than the device as drawn" in words for words in warnings(worse))
+    assert any("worse than the device as drawn" in words for words in warnings(replace(worse, base_calibrations=())))
 
 
 def test_rows_that_are_held_out_are_predicted_too(learned, tmp_path):
