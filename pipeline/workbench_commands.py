@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -236,9 +237,10 @@ def _effects(options: argparse.Namespace) -> None:
 
 
 def _equation(cls: type[Effect]) -> str:
-    """The first line of the docstring that holds an equation, else its first line."""
-    lines = [line.strip() for line in (cls.__doc__ or "").splitlines() if line.strip()]
-    return next((line for line in lines if " = " in line or " -> " in line), lines[0] if lines else "")
+    """The first sentence of the docstring that holds an equation, else its first one."""
+    blocks = [" ".join(block.split()) for block in re.split(r"(?<!:)\n\n", cleandoc(cls.__doc__ or ""))]
+    said = [sentence for block in blocks for sentence in re.split(r"(?<!eq\.)(?<=[.;])\s+(?=[A-Z])", block)]
+    return next((sentence for sentence in said if " = " in sentence or " -> " in sentence), said[0])
 
 
 def _print_effect(cls: type[Effect]) -> None:
@@ -371,7 +373,7 @@ def _print_validation(v: Validation, out: Path) -> None:
                 f"{words:10} {c.channel:28} {c.unit:>9} {c.n:6d} {c.rms_error:10.4g} {c.bias:10.3g} "
                 f"{c.chi2_per_n:8.2f} {c.share_in_90:8.0%} {c.outside_range:8.0%} {there:>11}"
             )
-    for words in v.range_left + v.complaints:
+    for words in v.complaints + v.range_left:
         print(f"! {words}")
     print(validation_sentence(v), *warnings(v), f"results in {out}", sep="\n")
 

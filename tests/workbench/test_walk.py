@@ -282,6 +282,13 @@ def test_of_a_group_the_most_probable_name_is_tried_first(diagnosed):
     assert by_evidence(replace(group, verdict=PAIR)) == (first.name, second.name)
 
 
+def test_what_a_name_was_not_told_from_stands_beside_it_in_the_ledger(hidden, diagnosed, tmp_path):
+    group = replace(diagnosed, verdict=GROUP, names=("bump", "hardening"))
+    step = add_effect(*hidden, LIBRARY, "hardening", tmp_path, before=group).step
+    assert step.reason.endswith("; these data cannot tell it from bump") and step.decision == "accepted"
+    assert "cannot tell" not in add_effect(*hidden, LIBRARY, "hardening", tmp_path, before=diagnosed).step.reason
+
+
 def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):
     one, other = diagnosed.ranking[0].name, diagnosed.ranking[1].name
     unsure = replace(diagnosed, names=(one,), alternatives={other: ("twin",)})

@@ -223,9 +223,9 @@ def _words(table: Table, name: str, beyond: np.ndarray, ranges: Sequence[Learned
 
 def _limits(learned: Learned, source: Source, campaign: Campaign, used: Sequence[Table]) -> tuple[str, ...]:
     return (
-        *campaign.complaints,
-        *_seen_before(source, campaign),
         *_other_device(learned, campaign),
+        *_seen_before(source, campaign),
+        *campaign.complaints,
         *_other_tolerances(learned, campaign),
         *_old_instruments(learned),
         *_thinned(campaign.tables, used),

@@ -106,7 +106,7 @@ def _decided(
     if diagnosis is None or trial.step.decision == ACCEPTED:
         diagnosis = diagnose(trial.model, campaign, library, SEED if seed is None else seed, progress)
     said = ": ".join([diagnosis.verdict, *([", ".join(diagnosis.names)] if diagnosis.names else [])])
-    step = replace(trial.step, verdict=said)
+    step = replace(trial.step, verdict=said, reason=trial.step.reason + _not_told_from(before, trial.step.effect))
     append(path, step, campaign, trial.model)
     bench = trial.after if step.decision == ACCEPTED else trial.before
     learned = learned_from(bench)
@@ -115,6 +115,15 @@ def _decided(
     comparison = comparison_of(bench, library, progress)
     whole = told(read_ledger(path, campaign.id, model.base.name), learned)
     return Added(trial.model, step, whole, comparison, diagnosis)
+
+
+def _not_told_from(before: Diagnosis | None, name: str) -> str:
+    """What may stand for an effect instead, as the diagnosis says before which it was added."""
+    if before is None:
+        return ""
+    group = before.names if before.verdict == GROUP and name in before.names else before.alternatives.get(name, ())
+    others = [other for other in group if other != name]
+    return f"; these data cannot tell it from {' or '.join(others)}" if others else ""
 
 
 def told(ledger: Ledger, learned: Learned) -> Ledger:

@@ -329,7 +329,11 @@ def _signatures(c: Comparison):
     best = max(c.signatures, key=lambda s: abs(s.cosine))
     failing = bool(_failing(c) or _pulled(c))
     if abs(best.cosine) < ALARMING_COSINE or not failing:
-        rest = "there is nothing it could explain" if not failing else "no single known effect looks like the residual"
+        rest = (
+            "no channel fails; whether a tolerance hides it, diagnose says"
+            if not failing
+            else "no single known effect looks like the residual"
+        )
         return f"The nearest effect is {plain(best.name)} with a cosine of {best.cosine:.2f}; {rest}.", False
     return (
         f"The residual looks most like {plain(best.name)} (cosine {best.cosine:.2f}); diagnose says whether that is "
