@@ -431,7 +431,18 @@ def _where(d: Diagnosis) -> str:
 def _cannot_tell(d: Diagnosis) -> str:
     if _of_nothing(d):
         return "These data cannot tell whether something is missing."
-    return "Something is missing, but these data cannot tell what."
+    return f"Something is missing, but these data cannot tell what{_likeliest(d)}."
+
+
+def _likeliest(d: Diagnosis) -> str:
+    """The effect that is likelier there than not, and what it lacks for its name to be said."""
+    leader = leading(d)
+    if leader is None or not LIKELY <= leader.probability < d.sure:
+        return ""
+    return (
+        f": likeliest is {plain(leader.name)} with {probability_text(leader.probability)}, and a name is said from "
+        f"{probability_text(d.sure)} on"
+    )
 
 
 def _of_nothing(d: Diagnosis) -> bool:

@@ -231,6 +231,15 @@ def test_cannot_tell_is_of_what_its_probability_is_of(diagnosis):
     assert verdict_sentence(loud).startswith("Something is missing") and "that something is missing" in meaning(loud)
 
 
+def test_what_is_likely_and_not_sure_enough_for_its_name_is_told_beside_cannot_tell(diagnosis):
+    first = replace(diagnosis.ranking[0], probability=0.888)
+    found = replace(of(diagnosis, "cannot_tell"), names=(), ranking=(first,), sure=0.97, probability=0.99)
+    said = f"cannot tell what: likeliest is {first.name.replace('_', ' ')} with 89 %, and a name is said from 97 % on."
+    assert said.lower() in verdict_sentence(found).lower()
+    for other in (0.3, 0.98):
+        assert "likeliest" not in verdict_sentence(replace(found, ranking=(replace(first, probability=other),)))
+
+
 def test_what_remains_beside_names_is_said_as_what_it_is(diagnosis):
     both = replace(diagnosis, verdict="partial", names=("coulomb_friction", "stribeck"), p_something_remains=0.8)
     assert verdict_sentence(both).startswith("Coulomb friction and stribeck together explain a part, but something")
