@@ -2,11 +2,14 @@
 
 import json
 import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 from pipeline.cli import main
+from pipeline.modules import PROJECT
 from workbench.data.campaign import read_campaign
 from workbench.models.bases import nominal_model
 
@@ -137,14 +140,26 @@ def test_import_writes_a_campaign_file_beside_a_plain_csv(bench, tmp_path, capsy
         (["compare", "BENCH", "--model", "nowhere.toml"], "cannot be read as a model file"),
         (["new-effect", "Not-A-Name.txt"], "ends in .py"),
         (["import", "nowhere.csv"], "cannot be read as CSV"),
+        (["import", "."], "is a folder"),
+        (["import", "sheet.xlsx"], "save it as CSV"),
+        (["compare", "BENCH", "--out", "sheet.xlsx"], "cannot be a folder of results"),
+        (["validate", "nowhere.toml", "BENCH"], "cannot be read as a model file (No such file or directory)"),
     ],
 )
 def test_wrong_input_is_one_sentence_and_exit_code_2(bench, tmp_path, capsys, monkeypatch, arguments, says):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "sheet.xlsx").write_bytes(b"PK\x03\x04 and so on")
     with pytest.raises(SystemExit) as caught:
         main([str(bench) if a == "BENCH" else a for a in arguments])
     error = capsys.readouterr().err
     assert caught.value.code == 2 and says in error and len(error.strip().splitlines()) == 1
+
+
+def test_whoever_reads_the_output_may_stop_before_its_end():
+    command = [sys.executable, "-m", "pipeline.cli", "effects"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=PROJECT) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b"" and process.wait() == 141
 
 
 def test_a_device_that_no_model_knows(bench, tmp_path, capsys, monkeypatch):

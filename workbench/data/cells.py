@@ -37,7 +37,7 @@ def _sure(sign: str, other: str) -> re.Pattern[str]:
 
 
 _SURE = {",": _sure(",", "."), ".": _sure(".", ",")}
-_EITHER = re.compile(rf"{_EDGE}[1-9]\d{{0,2}},\d{{3}}{_END}")
+_EITHER = {s: re.compile(rf"{_EDGE}[1-9]\d{{0,2}}{re.escape(s)}\d{{3}}{_END}") for s in (",", ".")}
 
 
 def decimal_sign(text: str, where: str) -> str:
@@ -53,12 +53,18 @@ def decimal_sign(text: str, where: str) -> str:
             f"{where}: {comma.group().strip()} has a decimal comma and {point.group().strip()} a decimal point; "
             "write one of them everywhere."
         )
-    if not comma and not point and "," in text and (either := _EITHER.search(text)):
+    if not comma and not point and "," in text and (either := _EITHER[","].search(text)):
         raise WorkbenchError(
             f'{where}: {either.group()} may be a decimal number or thousands; say decimal = "," or decimal = "." in '
             "its [[table]]."
         )
     return "," if comma else "."
+
+
+def may_be_thousands(text: str) -> str:
+    """A number whose point nothing in a text shows to be no sign of thousands; empty where there is none."""
+    either = None if _SURE["."].search(text) else _EITHER["."].search(text)
+    return either.group().strip() if either else ""
 
 
 def values_of(cells: Sequence[str], decimal: str, where: str, lines: Sequence[int]) -> np.ndarray:

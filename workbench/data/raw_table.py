@@ -14,7 +14,15 @@ from pathlib import Path
 import numpy as np
 
 from labelled import pd
-from workbench.data.cells import GAPS, decimal_sign, is_time, looks_like_data, readings, values_of
+from workbench.data.cells import (
+    GAPS,
+    decimal_sign,
+    is_time,
+    looks_like_data,
+    may_be_thousands,
+    readings,
+    values_of,
+)
 from workbench.data.headings import heading_parts, known_unit
 from workbench.errors import WorkbenchError
 
@@ -164,12 +172,21 @@ def table_of_text(text: str, where: str, layout: Layout = Layout()) -> RawTable:
     first, names, units = _head(lines, content, delimiter, where)
     headings, body = tuple(map(_heading, names, units)), content[first - 1 :]
     decimal = layout.decimal or _decimal(body, delimiter, where)
+    doubts = _doubts(body, where) if delimiter == ";" and decimal == "." and not layout.decimal else []
     plain = _all_numbers(body, delimiter, decimal, len(names))
     if plain is not None:
-        return RawTable(where, headings, tuple(plain.T), range(first, first + len(body)), decimal, delimiter)
+        lines_of = range(first, first + len(body))
+        return RawTable(where, headings, tuple(plain.T), lines_of, decimal, delimiter, tuple(doubts))
     rows, remarks = _same_width(len(names), _rows(content, first, delimiter, where), delimiter, where)
     columns = tuple(zip(*(cells for _, cells in rows)))
-    return RawTable(where, headings, columns, [line for line, _ in rows], decimal, delimiter, tuple(remarks))
+    return RawTable(where, headings, columns, [line for line, _ in rows], decimal, delimiter, tuple(doubts + remarks))
+
+
+def _doubts(body: Sequence[str], where: str) -> list[str]:
+    """Between semicolons a point may be the sign of thousands, as where the comma is that of decimals."""
+    said = may_be_thousands("\n".join(body))
+    words = f'{where}: {said} is read as a decimal number; where it is thousands, say decimal = "," in its [[table]]'
+    return [words] if said else []
 
 
 def _without_comments(lines: Sequence[str]) -> list[str]:

@@ -94,6 +94,7 @@ def test_times_become_seconds_since_the_first_row(cells, expected):
         ("a;b\n1,234;2,345\n", "may be a decimal number or thousands"),
         ("a;b\n1,5;2.5\n", "has a decimal comma and"),
         ('a,b\n1,2\n"3,4\n5,6\n', "a quote is opened and not closed"),
+        ('"a","b\n1,2\n3,4\n', "a quote is opened and not closed"),
         ("t;x\n01/02/2026 12:00;1\n03/04/2026 12:00;2\n", "may have the day or the month first"),
         ("a,b\n", "has no rows"),
         ("", "has no rows"),
@@ -120,6 +121,14 @@ def test_what_cannot_be_found_out_can_be_said():
     assert np.array_equal(found, [[1234], [2345]])
     _, found = columns("a:b\n1:2\n", Layout(delimiter=":"))
     assert np.array_equal(found, [[1], [2]])
+
+
+@pytest.mark.parametrize("gap", ["", "---;3\n"])
+def test_a_point_that_may_be_of_thousands_is_asked_about(gap):
+    raw, found = columns("n;v\n1.000;38\n1.500;58\n" + gap)
+    assert found[0][1] == 1.5 and "1.000 is read as a decimal number" in raw.remarks[0]
+    for text, layout in (("n;v\n1.000;38.5\n", Layout()), ("n;v\n1.000;38\n", Layout(decimal="."))):
+        assert columns(text, layout)[0].remarks == ()
 
 
 def test_the_quick_way_and_the_careful_way_read_the_same():
