@@ -13,9 +13,12 @@ import numpy as np
 
 Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
+GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
+POUND, INCH = 0.45359237, 0.0254  # kg, m: the international yard and pound of 1959
+
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
-    {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "um": 1e-6, "micron": 1e-6, "inch": 0.0254},
+    {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "um": 1e-6, "micron": 1e-6, "inch": INCH},
     {"mm2": 1e-6, "m2": 1.0, "cm2": 1e-4},
     {"deg": pi / 180, "rad": 1.0, "mrad": 1e-3},
     {"rad2": 1.0, "deg2": (pi / 180) ** 2},
@@ -28,8 +31,9 @@ QUANTITIES: tuple[dict[str, float | None], ...] = (
     {"Wb_per_m": 1.0},
     {"A_per_m": 1.0, "kA_per_m": 1e3},
     {"A_per_mm2": 1e6, "A_per_m2": 1.0, "A_per_cm2": 1e4},
-    {"N": 1.0, "kN": 1e3, "mN": 1e-3},
-    {"Nm": 1.0, "mNm": 1e-3},
+    {"N": 1.0, "kN": 1e3, "mN": 1e-3, "kgf": GRAVITY, "lbf": POUND * GRAVITY},
+    {"Nm": 1.0, "mNm": 1e-3, "Ncm": 1e-2, "Nmm": 1e-3, "kNm": 1e3}
+    | {"lbf_in": POUND * GRAVITY * INCH, "lbf_ft": POUND * GRAVITY * 12 * INCH},
     {"Nm_per_m": 1.0, "Nm_per_mm": 1e3},
     {"Nm_per_A": 1.0, "mNm_per_A": 1e-3},
     {"kN_per_m": 1e3, "N_per_m": 1.0, "N_per_mm": 1e3},
@@ -71,7 +75,6 @@ MILLIOHM = FACTORS["mOhm"]  # ohm
 MICROHENRY = FACTORS["uH"]  # H
 
 MU_0 = 4e-7 * pi  # H/m, vacuum permeability (the 2019 SI value differs by 1e-10)
-GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
 
 # How the parts of a unit are written that are not their own names.
 _WRITTEN = {"deg": "°", "degC": "°C", "degF": "°F", "mm2": "mm²", "m2": "m²", "cm2": "cm²", "m3": "m³", "cm3": "cm³",

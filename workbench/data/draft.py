@@ -16,6 +16,7 @@ from disk import write_atomically
 from workbench.data.column_units import FACTORS
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
 from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, likely_kind, likely_model
+from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw
 from workbench.data.scatter import noise_of
@@ -203,11 +204,16 @@ def _table(name: str, sheet: _Sheet) -> str:
     return "\n".join(lines + [_line(guess, sheet) for guess in sheet.columns if guess.heading.written]) + "\n"
 
 
+def _unknown(unit: str) -> str:
+    known = not unit or known_unit(unit) is not None
+    return "" if known else f": the unit {unit} is not known; those that are stand in docs/campaign.md"
+
+
 def _line(guess: Guess, sheet: _Sheet) -> str:
     heading, quantity = _text(guess.heading.written), guess.quantity
     named, asked = _name(guess)
     if not quantity or quantity == "time":
-        return f"# {heading} = {{ ... }}  # not read"
+        return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit)}"
     if quantity in _BOOKKEEPING:
         return f'{heading} = {{ role = "{quantity}" }}'
     if quantity == "direction":

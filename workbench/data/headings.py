@@ -17,6 +17,7 @@ _OTHERWISE: Final[dict[str, str]] = {
     "°mech": "deg", "°mech.": "deg", "deg mech": "deg",
     "1/K": "per_K", "sec": "s", "Sek": "s", "Volt": "V", "Ampere": "A",
     "Aeff": "A", "Arms": "A", "A_rms": "A", "Veff": "V", "Vrms": "V", "V_rms": "V",
+    "kp": "kgf", "lbs": "lbf", "lb-ft": "lbf_ft", "ft-lb": "lbf_ft", "lb-in": "lbf_in", "in-lb": "lbf_in",
     "Newton": "N", "Ohms": "ohm", "OHM": "ohm", "HZ": "Hz", "hz": "Hz", "KN": "kN", "NM": "Nm",
 }  # fmt: skip
 _PARTS: Final = (
