@@ -46,7 +46,8 @@ def _off_parabolas(places: np.ndarray, values: np.ndarray, books: Sequence[np.nd
     apart are left out, where enough are left."""
     order = np.lexsort((*places.T, *books))
     x, values, others = places[order, 0], values[order], places[order, 1:]
-    x = x + _SAME_PLACE * (np.ptp(x) or 1.0) * np.linspace(0.0, 1.0, len(x))
+    x = x / (np.abs(x).max() or 1.0)
+    x = x / (np.ptp(x) or 1.0) + np.linspace(0.0, _SAME_PLACE, len(x))
     four = np.lib.stride_tricks.sliding_window_view(np.column_stack([x, values, others]), 4, axis=0)
     apart = four[:, 0, :, None] - four[:, 0, None, :] + np.eye(4)
     weights = 1.0 / apart.prod(axis=2)
