@@ -1,5 +1,7 @@
 """Each check that needs no model speaks on data made for it, and is silent on data without the fault."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -53,9 +55,29 @@ def voltage(k=60.0):
 DAMPER = {"internal_resistance_ohm": 1.2}
 
 
+def metered(worked_out):
+    """A map of a motor whose power meter shows an efficiency: of its own, or of the same readings."""
+    speed, torque = np.repeat([100.0, 200.0, 300.0], 8), np.tile(np.linspace(0.5, 4.0, 8), 3)
+    power = (torque * speed + 20.0 + 5.0 * torque**2) * (1 + 0.01 * RANDOM.standard_normal(24))
+    shown = torque * speed / power * (1 if worked_out else 1 + 0.01 * RANDOM.standard_normal(24))
+    return table(
+        "dyno_map", {"speed": speed, "torque": torque}, {"power": power, "efficiency": np.round(shown, 4)}, 1e-9
+    )
+
+
+def quiet(size):
+    """Three repeats that scatter by a share of what is declared."""
+    values = np.tile(np.linspace(1.0, 2.0, 8), 3)
+    exact = table("generic", {"speed": values}, {"torque": values}, 1e-9, np.repeat([0, 1, 2], 8))
+    readings = values + 0.01 * size * RANDOM.standard_normal(24)
+    return replace(exact, responses={"torque": Response("torque", readings, np.full(24, 0.01), "")})
+
+
 @pytest.mark.parametrize(
     "wrong, right, words, device",
     [
+        ([metered(True)], [metered(False)], "worked out from torque, speed and power", {}),
+        ([quiet(0.05)], [quiet(1.0)], "of the declared uncertainty; lower u_random", {}),
         ([cogging(friction=0.01)], [cogging()], "half-difference", {}),
         ([cogging(zero=0.01)], [cogging()], "zero of the torque cell", {}),
         ([emf(gain=1.03)], [emf()], "differ by", {}),

@@ -16,6 +16,7 @@ COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
 FREQUENCIES = 8  # of a sweep that says something about causality
 NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
 FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance
+WORKED_OUT = 0.003  # relative, of numbers that are worked out of others and rounded
 UNLIKE = 0.005  # of the range of a condition, by which the same reading may stand at another one
 SAME_RESISTANCE = 0.2  # relative, of readings between lines that are taken for those of a phase
 QUIET, ENOUGH = 0.2, 6  # of the declared uncertainty, below which repeats are quieter than any instrument; stations
@@ -326,7 +327,23 @@ def _known_exactly(campaign: Campaign) -> list[str]:
     ]
 
 
+def _efficiency(table: Table) -> list[str]:
+    """Shaft over electrical power of a motor, the other way round of a generator."""
+    columns = {name: r.values for name, r in table.responses.items()} | dict(table.conditions)
+    if not {"efficiency", "power", "torque", "speed"} <= set(columns):
+        return []
+    shaft, electrical = columns["torque"] * columns["speed"], columns["power"]
+    one, other = np.where(shaft > 0, shaft, electrical), np.where(shaft > 0, electrical, shaft)
+    off = np.abs(columns["efficiency"] * other - one)
+    if (off <= WORKED_OUT * np.abs(one)).mean() < SHARED:
+        return []
+    return [
+        f"{table.file}: efficiency was worked out from torque, speed and power of the same rows and counts as if it "
+        "had been measured once more; leave it out, or the power"
+    ]
+
+
 _OF_A_CAMPAIGN = (_known_exactly, _constants, _between_lines, _positions, _same_readings)
 _OF_A_TABLE = (
-    _repeats_agree, _clipping, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
+    _repeats_agree, _clipping, _efficiency, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
 )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -106,8 +107,10 @@ def _sheet(path: Path) -> _Sheet:
 
 
 def _repeats(sheet: _Sheet) -> int:
+    """As many as have half the rows of the longest, at least: a broken row is none."""
     place = next((guess.place for guess in sheet.columns if guess.quantity == "repeat"), None)
-    return 1 if place is None else len({str(cell) for cell in sheet.raw.columns[place]})
+    rows = Counter([] if place is None else map(str, sheet.raw.columns[place]))
+    return max(sum(2 * count >= max(rows.values()) > 1 for count in rows.values()), 1)
 
 
 # ---- the device ----------------------------------------------------------------------------------------------------

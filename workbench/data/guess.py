@@ -25,10 +25,12 @@ _LINE_PAIRS: Final = {
 _EITHER_WAY: Final = _LINE_PAIRS | {pair[::-1]: name for pair, name in _LINE_PAIRS.items()}
 UNTOLD_INDUCTANCE: Final = "l_?"  # of a phase or of two lines, which differ by a factor of two and in their angle
 _BOOKS: Final = {
-    "repeat": ("repeat", "repetition", "rep", "run", "trial", "wiederholung", "wdh", "wdhlg", "lauf", "durchgang"),
+    "repeat": ("repeat", "repetition", "rep", "run", "trial", "wiederholung", "wdh", "wdhlg", "lauf", "durchgang",
+               "messung", "messreihe"),
     "scan": ("scan", "sweep"),
     "direction": ("direction", "richtung", "drehrichtung"), "holdout": ("holdout",),
 }  # fmt: skip
+_OF_DQ: Final = ("dq", "dyno_map", "no_load")  # how the names of kinds begin that a dq model answers first
 # Words of a heading -> quantity, for headings without a unit that is known.
 _WORDS: Final = {
     "force": "force", "kraft": "force", "torque": "torque", "moment": "torque", "drehmoment": "torque",
@@ -188,6 +190,6 @@ def likely_model(kinds: Sequence[str], quantities: Sequence[str]) -> str:
     """The model whose device was probably measured."""
     if {"force", "velocity", "shunt", "damping", "re"} & set(quantities):
         return "damper"
-    if {"v_d", "v_q", "v_ll"} & set(quantities) or any(kind.startswith("dq") for kind in kinds):
+    if {"v_d", "v_q", "v_ll"} & set(quantities) or any(kind.startswith(_OF_DQ) for kind in kinds):
         return "dq"
     return "machine" if set(quantities) & {"v_a", "angle_mech", "i_a", "r_a"} else "?"

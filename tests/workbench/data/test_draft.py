@@ -11,7 +11,7 @@ from tests.workbench.toy_bench import written
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
 from workbench.data.checks import checks_of
-from workbench.data.draft import write_draft
+from workbench.data.draft import draft_of, write_draft
 from workbench.data.guess import guesses, likely_kind
 from workbench.data.raw_table import table_of_text
 from workbench.data.scatter import noise_of
@@ -83,6 +83,7 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
             "dyno_map",
         ),
         ("Wdh [-],v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
+        ("Messung,v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
         ("x [°mech.],T [Nm],iU_mes [A],iV_mes [A],ia [A]", ["angle_mech", "torque", "i_a", "i_b", ""], "locked_rotor"),
         ("U_mes [V],Drehzahl", ["voltage", "speed"], "back_emf"),
         ("phi [°],L_uv [mH],Lvw [mH],L_wu [mH]", ["angle_mech", "l_ab", "l_?", "l_ca"], "inductance"),
@@ -134,6 +135,12 @@ def test_without_repeats_neighbours_show_the_noise_and_few_rows_none():
     said, shown_by = noise_of(np.sin(places) + 0.01 * random.standard_normal(400), {"velocity": places})
     assert shown_by == "neighbours" and float(said) == pytest.approx(0.01, rel=0.2)
     assert noise_of(np.arange(5.0), {"velocity": np.arange(5.0)}) is None and noise_of(np.ones(20), {}) is None
+
+
+def test_a_broken_row_is_no_repeat(tmp_path):
+    rows = [f"{run},{v},{60 * v}" for run in (1, 2, 3) for v in (0.1, 0.2, 0.3)]
+    (tmp_path / "a.csv").write_text("\n".join(["run,v [m/s],F [N]", *rows, "aborted,,"]) + "\n")
+    assert "repeats = 3 " in draft_of([tmp_path / "a.csv"])
 
 
 def test_settings_that_are_met_by_and_by_only_show_the_noise_and_not_the_slope():

@@ -9,6 +9,7 @@ from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
+import workbench.explain.hypotheses as hypotheses_module
 import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
 from effects.base import ResponseEffect
@@ -25,6 +26,7 @@ from workbench.explain.hypotheses import (
     Hypothesis,
     at_zero,
     beside_unknown,
+    estimates,
     exact,
     fitted_from,
     from_elsewhere,
@@ -151,6 +153,17 @@ def test_student_likelihood_is_the_gauss_with_its_size_integrated_out():
     ratio = quad(integrand, 0, np.inf, args=(30.0,))[0] / quad(integrand, 0, np.inf, args=(2.0,))[0]
     values = [misfit(np.array([q]), np.array([dof]), np.array([n])) for q in (2.0, 30.0)]
     assert values[0] - values[1] == pytest.approx(np.log(ratio), rel=1e-6)
+
+
+def test_a_size_lies_in_the_interval_that_is_printed_beside_it(bench, monkeypatch):
+    """Where most of the belief is in fits that find another size than the one that is shown."""
+    shown = alone(bench, Hardening)
+    other, own = replace(shown), hypotheses_module._samples
+    apart = 100 * estimates(shown)["hardening"]["cubic"].std
+    monkeypatch.setattr(hypotheses_module, "_samples", lambda h, *of: own(h, *of) + apart * (h is other))
+    for weights in ({shown: 1.0}, {shown: 0.02, other: 0.98}):
+        found = estimates(shown, weights)["hardening"]["cubic"]
+        assert found.low90 < found.value < found.high90
 
 
 def test_two_starts_find_the_same_maximum(bench):
