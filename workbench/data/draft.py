@@ -102,6 +102,9 @@ def _sheet(path: Path) -> _Sheet:
     if not path.is_file():
         raise WorkbenchError(f"{path}: cannot be read as CSV: there is no such file.")
     raw = read_raw(path)
+    for heading, count in Counter(heading.written for heading in raw.headings if heading.written).items():
+        if count > 1:
+            raise WorkbenchError(f"{path.name}: {count} columns are called {heading!r}; rename all but one of them.")
     columns = tuple(guesses(raw))
     return _Sheet(raw, columns, likely_kind([guess.quantity for guess in columns]))
 
@@ -217,6 +220,8 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     named, asked = _name(guess)
     if not quantity or quantity == "time":
         return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit)}"
+    if quantity not in (*_BOOKKEEPING, "direction") and np.isnan(sheet.raw.values(guess.place)).all():
+        return f"# {heading} = {{ ... }}  # not read: it holds no number"
     if quantity in _BOOKKEEPING:
         return f'{heading} = {{ role = "{quantity}" }}'
     if quantity == "direction":

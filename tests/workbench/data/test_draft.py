@@ -137,6 +137,14 @@ def test_without_repeats_neighbours_show_the_noise_and_few_rows_none():
     assert noise_of(np.arange(5.0), {"velocity": np.arange(5.0)}) is None and noise_of(np.ones(20), {}) is None
 
 
+def test_a_column_without_numbers_is_not_read_and_headings_are_not_used_twice(tmp_path):
+    (tmp_path / "a.csv").write_text("speed [rpm],torque [Nm],power [W]\n" + "".join(f"{k},1,nan\n" for k in range(9)))
+    assert '# "power [W]" = { ... }  # not read: it holds no number' in draft_of([tmp_path / "a.csv"])
+    (tmp_path / "b.csv").write_text("speed [rpm],torque [Nm],torque [Nm]\n1,2,3\n")
+    with pytest.raises(WorkbenchError, match="2 columns are called 'torque \\[Nm\\]'; rename all but one"):
+        draft_of([tmp_path / "b.csv"])
+
+
 def test_a_broken_row_is_no_repeat(tmp_path):
     rows = [f"{run},{v},{60 * v}" for run in (1, 2, 3) for v in (0.1, 0.2, 0.3)]
     (tmp_path / "a.csv").write_text("\n".join(["run,v [m/s],F [N]", *rows, "aborted,,"]) + "\n")
