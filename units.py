@@ -14,7 +14,7 @@ import numpy as np
 Values = float | np.ndarray  # of one quantity: at one place, or an array of any shape
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall
-POUND, INCH = 0.45359237, 0.0254  # kg, m: the international yard and pound of 1959
+LBF, INCH = 0.45359237 * GRAVITY, 0.0254  # N, m: by the international yard and pound of 1959
 
 # One row a quantity: unit as the end of a name -> factor to the unit used inside. None: not a pure factor.
 QUANTITIES: tuple[dict[str, float | None], ...] = (
@@ -31,9 +31,8 @@ QUANTITIES: tuple[dict[str, float | None], ...] = (
     {"Wb_per_m": 1.0},
     {"A_per_m": 1.0, "kA_per_m": 1e3},
     {"A_per_mm2": 1e6, "A_per_m2": 1.0, "A_per_cm2": 1e4},
-    {"N": 1.0, "kN": 1e3, "mN": 1e-3, "kgf": GRAVITY, "lbf": POUND * GRAVITY},
-    {"Nm": 1.0, "mNm": 1e-3, "Ncm": 1e-2, "Nmm": 1e-3, "kNm": 1e3}
-    | {"lbf_in": POUND * GRAVITY * INCH, "lbf_ft": POUND * GRAVITY * 12 * INCH},
+    {"N": 1.0, "kN": 1e3, "mN": 1e-3, "kgf": GRAVITY, "lbf": LBF},
+    {"Nm": 1.0, "mNm": 1e-3, "Ncm": 1e-2, "Nmm": 1e-3, "kNm": 1e3, "lbf_in": LBF * INCH, "lbf_ft": 12 * LBF * INCH},
     {"Nm_per_m": 1.0, "Nm_per_mm": 1e3},
     {"Nm_per_A": 1.0, "mNm_per_A": 1e-3},
     {"kN_per_m": 1e3, "N_per_m": 1.0, "N_per_mm": 1e3},

@@ -68,13 +68,13 @@ def test_what_a_tool_misses_is_said_when_it_asks(tmp_path):
 
 
 def test_a_column_without_a_known_unit_is_not_taken_for_si(tmp_path):
-    columns = {"time_s": TIME, "force": TIME, "load [lbf]": TIME, "who": ["A"] * 40}
+    columns = {"time_s": TIME, "force": TIME, "load [ozf]": TIME, "who": ["A"] * 40}
     with pytest.raises(
-        RecordError, match=r"with a known unit beside time, such as force_N, found force, load \[lbf\], who"
+        RecordError, match=r"with a known unit beside time, such as force_N, found force, load \[ozf\], who"
     ):
         read_record(written(tmp_path, columns), {}, {})
     record = read_record(written(tmp_path, {**columns, "stroke_mm": TIME}), {}, {})
-    with pytest.raises(RecordError, match=r"found stroke and, without a known unit, force, load \[lbf\], who; rename"):
+    with pytest.raises(RecordError, match=r"found stroke and, without a known unit, force, load \[ozf\], who; rename"):
         record.channel("force")
 
 
