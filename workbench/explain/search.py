@@ -136,8 +136,7 @@ def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress
         for promise in sorted(p for p in heap if name not in p.every)[:RIVALS]:
             if promise.every not in search.fitted and promise.label not in search.failed:
                 progress("fitting " + promise.label)
-                fit_set(search, promise)
-                if _leads_on(search, promise.every):
+                if fit_set(search, promise) and _leads_on(search, promise.every):
                     expand(search, search.fitted[promise.every], heap)
 
 
