@@ -11,7 +11,7 @@ from workbench.data.column_units import split_unit
 from workbench.data.dimensions import check_reading
 from workbench.data.headings import known_unit
 from workbench.data.kinds import Kind
-from workbench.data.raw_table import Heading, RawTable
+from workbench.data.raw_table import Heading, RawTable, used_twice
 from workbench.data.schema import FILE, ColumnEntry, TableEntry
 from workbench.errors import WorkbenchError
 
@@ -79,7 +79,7 @@ def _place(raw: RawTable, headings: Sequence[Heading], key: str, by: str) -> int
             f"{raw.where}: the column {key!r} of {FILE} ({by}) is not there; found {', '.join(known)}{hint}."
         )
     if len(places) > 1:
-        raise WorkbenchError(f"{raw.where}: {len(places)} columns are called {key!r}; rename all but one of them.")
+        raise used_twice(raw.where, len(places), key)
     return places[0]
 
 
@@ -156,7 +156,7 @@ def _unreadable(raw: RawTable, place: int, heading: Heading) -> str:
         return f"{raw.where}: column {place + 1} {held} and is not read"
     if heading.unit or heading.name in (*BOOKKEEPING, "direction"):
         return ""
-    if raw.is_empty(place) or (raw.values(place) != raw.values(place)).all():
+    if not raw.holds_numbers(place):
         return f"{raw.where}: {heading.written!r} holds no number and is not read"
     return ""
 

@@ -19,7 +19,7 @@ from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZE
 from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, likely_kind, likely_model
 from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
-from workbench.data.raw_table import RawTable, read_raw
+from workbench.data.raw_table import RawTable, read_raw, used_twice
 from workbench.data.scatter import noise_of
 from workbench.data.schema import FILE, campaign_file
 from workbench.errors import WorkbenchError
@@ -104,7 +104,7 @@ def _sheet(path: Path) -> _Sheet:
     raw = read_raw(path)
     for heading, count in Counter(heading.written for heading in raw.headings if heading.written).items():
         if count > 1:
-            raise WorkbenchError(f"{path.name}: {count} columns are called {heading!r}; rename all but one of them.")
+            raise used_twice(path.name, count, heading)
     columns = tuple(guesses(raw))
     return _Sheet(raw, columns, likely_kind([guess.quantity for guess in columns]))
 
@@ -220,7 +220,7 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     named, asked = _name(guess)
     if not quantity or quantity == "time":
         return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit)}"
-    if quantity not in (*_BOOKKEEPING, "direction") and np.isnan(sheet.raw.values(guess.place)).all():
+    if quantity not in (*_BOOKKEEPING, "direction") and not sheet.raw.holds_numbers(guess.place):
         return f"# {heading} = {{ ... }}  # not read: it holds no number"
     if quantity in _BOOKKEEPING:
         return f'{heading} = {{ role = "{quantity}" }}'

@@ -94,11 +94,19 @@ class RawTable:
     def holds_times(self, column: int) -> bool:
         return not isinstance(self.columns[column], np.ndarray) and is_time(self.columns[column])
 
+    def holds_numbers(self, column: int) -> bool:
+        return not np.isnan(self.values(column)).all()
+
     def is_empty(self, column: int) -> bool:
         cells = self.columns[column]
         if isinstance(cells, np.ndarray):
             return bool(np.isnan(cells).all())
         return all(cell.strip().lower() in GAPS for cell in cells)
+
+
+def used_twice(where: str, count: int, heading: str) -> WorkbenchError:
+    """Of a heading that several columns have."""
+    return WorkbenchError(f"{where}: {count} columns are called {heading!r}; rename all but one of them.")
 
 
 def read_raw(path: Path, layout: Layout = Layout()) -> RawTable:

@@ -126,8 +126,11 @@ class Names:
 
     def _of_forms(self, scores: np.ndarray) -> np.ndarray:
         """ln p of every form if it were the only one (explanations, forms)."""
-        starts = _starts(self.forms)
-        return _sums(scores, starts) - _sums(self.priors[None], starts)
+        return _sums(scores, self._form_starts) - _sums(self.priors[None], self._form_starts)
+
+    @cached_property
+    def _form_starts(self) -> np.ndarray:
+        return _starts(self.forms)
 
     @cached_property
     def forms(self) -> np.ndarray:
@@ -291,7 +294,7 @@ def posterior(
 
 
 def _add(shares: dict[frozenset[str], float], names: frozenset[str], share: float) -> None:
-    effects = names if LAWS.keys().isdisjoint(names) else without_laws(names)
+    effects = without_laws(names)
     shares[effects] = shares.get(effects, 0.0) + share
 
 

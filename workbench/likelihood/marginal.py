@@ -194,7 +194,7 @@ class Catalogue:
 
     def gains(self, chosen: Sequence[int], readings: Sequence[Readings]) -> np.ndarray:
         """ln p that each term would gain beside the terms of these numbers, for many readings (terms, R) [nats]."""
-        given = self.given(chosen, readings[0])
+        given = self.given(chosen)
         on = np.column_stack([r.on for r in readings]) - given.of_shifts[:, None]
         taken, own = given.taken_of(on)
         out = np.empty((len(self.terms), len(readings)))
@@ -202,11 +202,11 @@ class Catalogue:
             out[which] = given.gains_of(which, size, taken, on, own)
         return out
 
-    def given(self, chosen: Sequence[int], readings: Readings) -> Given:
+    def given(self, chosen: Sequence[int]) -> Given:
         """The likelihood with the terms of these numbers in the explanation."""
         columns = [np.arange(self.first[t] + 1, self.first[t + 1]) for t in chosen]
         inside = np.concatenate([np.empty(0, dtype=int), *columns])
-        return Given(self, inside, self.first[list(chosen)].astype(int), readings)
+        return Given(self, inside, self.first[list(chosen)].astype(int))
 
     def felt(self, number: int) -> np.ndarray:
         """Whitened shift of the term of a number and its columns, the errors of laws integrated out (n, 1 + k)."""
@@ -234,12 +234,11 @@ class Catalogue:
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """An explanation beside some readings. inside: places of its columns;  shifts: places of its shifts"""
+    """An explanation. inside: places of its columns;  shifts: places of its shifts"""
 
     catalogue: Catalogue
     inside: np.ndarray
     shifts: np.ndarray
-    readings: Readings
 
     @cached_property
     def _own(self) -> np.ndarray:
@@ -263,11 +262,10 @@ class Given:
         turned = np.linalg.inv(self._root)
         return turned @ self._own, turned @ on[self.inside]
 
-    @property
-    def log_marginal(self) -> float:
-        """ln p of the readings, up to what all explanations share [nats]."""
-        shifts, taken = self.shifts, self.taken_of((self.readings.on - self.of_shifts)[:, None])[1][:, 0]
-        square = self.readings.square - 2 * self.readings.on[shifts].sum() + self.of_shifts[shifts].sum()
+    def log_marginal(self, readings: Readings) -> float:
+        """ln p of readings, up to what all explanations share [nats]."""
+        shifts, taken = self.shifts, self.taken_of((readings.on - self.of_shifts)[:, None])[1][:, 0]
+        square = readings.square - 2 * readings.on[shifts].sum() + self.of_shifts[shifts].sum()
         spread = np.log(np.diagonal(self._root)).sum() + self.catalogue.half_log_det
         return float(-0.5 * (square - taken @ taken) - spread)
 

@@ -461,4 +461,4 @@ LAWS: Mapping[str, type[UnknownLaw]] = {
 
 def without_laws(names: frozenset[str]) -> frozenset[str]:
     """The effects of the library among names."""
-    return names.difference(LAWS)
+    return names if LAWS.keys().isdisjoint(names) else names.difference(LAWS)

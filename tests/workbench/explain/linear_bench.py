@@ -30,12 +30,12 @@ def beliefs(names, excluded=()):
 def by_force(names, residual, most):
     """Every set of effects and ln p over nothing, all sizes tried: the answer a search cannot beat."""
     catalogue, readings = names.catalogue, names.catalogue.readings(residual[:, None])[0]
-    null = catalogue.given((), readings).log_marginal
+    null = catalogue.given(()).log_marginal(readings)
     found = {frozenset(): 0.0}
     for count in range(1, most + 1):
         for chosen in combinations(names.order, count):
             choices = [[t for t, term in enumerate(catalogue.terms) if term.name == name] for name in chosen]
             grids = np.array(np.meshgrid(*choices)).reshape(count, -1).T
-            logs = [catalogue.given(tuple(g), readings).log_marginal + names.priors[g].sum() for g in grids]
+            logs = [catalogue.given(tuple(g)).log_marginal(readings) + names.priors[g].sum() for g in grids]
             found[frozenset(chosen)] = float(np.logaddexp.reduce(logs)) - null
     return found
