@@ -7,7 +7,7 @@ import hashlib
 import json
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from pathlib import Path
 
 import numpy as np
@@ -181,6 +181,15 @@ def _effects_of(content: FileSchema, library: Mapping[str, type[Effect]], path: 
     return effects
 
 
+def _require_a_form(cls: type[Effect], values: Mapping[str, object], path: Path) -> None:
+    """What is no parameter is of the type that the effect has it with: the number of a magnet, the name of a phase."""
+    for f in (f for f in fields(cls) if f.name in values and f.name not in parameters_of(cls)):
+        if f.default is not MISSING and type(values[f.name]) is not type(f.default):
+            raise WorkbenchError(
+                f"{path}: {cls.name()}.{f.name} must be of the kind of {f.default!r}, found {values[f.name]!r}."
+            )
+
+
 def _effect(entry: Mapping[str, object], library: Mapping[str, type[Effect]], path: Path) -> Effect:
     name = entry.get("name")
     if name not in library:
@@ -190,6 +199,7 @@ def _effect(entry: Mapping[str, object], library: Mapping[str, type[Effect]], pa
     if unknown:
         known = ", ".join(f.name for f in fields(cls))
         raise WorkbenchError(f"{path}: {name} has no parameter {sorted(unknown)[0]!r}; it has {known}.")
+    _require_a_form(cls, values, path)
     effect = cls(**values)
     for key, p in parameters_of(cls).items():
         value = getattr(effect, key)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from effects.library import package_effects
 from tests.workbench.toy_bench import LIBRARY, Bump, Hardening, Spring, SpringModel, written
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
@@ -132,3 +133,13 @@ def test_a_setting_read_a_little_differently_is_not_outside():
     learned = span("speed", np.array([100.0, 500.0]))
     assert outside("speed", np.array([99.0, 501.0, 520.0, -100.0]), learned).tolist() == [False, False, True, True]
     assert outside("magnet_T", np.array([27.0, 60.0]), (25.0, 25.0)).tolist() == [False, True]
+
+
+def test_the_form_of_an_effect_is_of_its_kind(tmp_path):
+    text = '[model]\nbase = "damper"\n[[effect]]\nname = "sensor_lag"\nlag = 1e-4\npoles = 4\n'
+    (tmp_path / "m.toml").write_text(text)
+    (lag,) = read_model(tmp_path / "m.toml", package_effects()).effects
+    assert (lag.lag, lag.poles) == (1e-4, 4)
+    (tmp_path / "m.toml").write_text(text.replace("poles = 4", 'poles = "four"'))
+    with pytest.raises(WorkbenchError, match="sensor_lag.poles must be of the kind of 1, found 'four'"):
+        read_model(tmp_path / "m.toml", package_effects())
