@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,20 @@ class Stack:
     @property
     def size(self) -> int:
         return len(self.y)
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Rows of every channel (channels,)."""
+        return np.array([c.size for c in self.channels], dtype=int)
+
+    def by_channel(self, values: np.ndarray) -> np.ndarray:
+        """Sums over the rows (n,) of every channel (channels,)."""
+        return np.bincount(self._channel, values, len(self.channels))
+
+    @cached_property
+    def _channel(self) -> np.ndarray:
+        """Number of the channel of every row (n,)."""
+        return np.repeat(np.arange(len(self.channels)), self.sizes)
 
 
 def stacked(tables: Sequence[Table]) -> Stack:

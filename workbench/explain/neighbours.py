@@ -3,8 +3,9 @@ with an unknown law in the place of all."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from workbench.errors import WorkbenchError
 from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.tried import NEGLIGIBLE, Progress, Promise, Search, Set, fit_set, label_of, start_from
 from workbench.likelihood.fit import with_parameters
-from workbench.likelihood.predictor import STEP
+from workbench.likelihood.predictor import STEP, Predictor
 from workbench.likelihood.signatures import Signature
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener, law_error
@@ -28,14 +29,14 @@ ALMOST = 0.7  # of the change by an effect, that another may leave to be tried i
 def exchange(search: Search, leader: Set, progress: Progress) -> None:
     """What leads is weighed against the few that do most nearly the same as one of its effects, or as a tolerance that
     it pulls far, from where it ended: a promise beside such a pull is too modest by many nats."""
-    whole = search.fitted[leader]
+    leading = _Leading(search.fitted[leader])
     parts = [leader - {name} for name in sorted(leader)]
-    starts = [promise for part in parts for promise in _instead_of_effects(search, whole, part)]
+    starts = [promise for part in parts for promise in _instead_of_effects(search, leading, part)]
     if len(leader) > 1:
-        starts += _instead_of_effects(search, whole, frozenset())
+        starts += _instead_of_effects(search, leading, frozenset())
     if search.beliefs.leaves_room(leader):
-        pulled = np.flatnonzero(np.abs(whole.fit.x) > PULLED)
-        starts += [promise for k in pulled for promise in _instead_of_pull(search, whole, int(k))]
+        pulled = np.flatnonzero(np.abs(leading.whole.fit.x) > PULLED)
+        starts += [promise for k in pulled for promise in _instead_of_pull(search, leading, int(k))]
     for promise in starts:
         if not _is_weighed(search, promise.every) and promise.label not in search.failed:
             progress("fitting " + promise.label)
@@ -48,17 +49,46 @@ def _is_weighed(search: Search, names: Set) -> bool:
     return names in search.fitted and search.log_posterior(names) > search.log_posterior(search.ranked[0]) - NEGLIGIBLE
 
 
-def _instead_of_effects(search: Search, whole: Hypothesis, kept: Set) -> list[Promise]:
+@dataclass(frozen=True, eq=False)
+class _Leading:
+    """A fit, and what others do as it weighs it: worked out once for all that they may take the place of."""
+
+    whole: Hypothesis
+
+    @property
+    def held(self) -> Whitener:
+        """With the tolerances where they are."""
+        return self.whole.problem.white
+
+    @cached_property
+    def free(self) -> Whitener:
+        """With the tolerances integrated out."""
+        tolerances = self.whole.fit.jacobian[:, : len(self.whole.fit.x)]
+        return replace(self.held, laws=(*self.held.laws, law_error(slice(None), tolerances)))
+
+    @cached_property
+    def shifts(self) -> Callable[[Signature], tuple[np.ndarray, np.ndarray]]:
+        """What an effect does on its grid, whitened with the tolerances free and held (n, K) each."""
+
+        @cache
+        def found(signature: Signature) -> tuple[np.ndarray, np.ndarray]:
+            held = self.held(signature.change)
+            return self.free.laws[-1].apply(held), held
+
+        return found
+
+
+def _instead_of_effects(search: Search, leading: _Leading, kept: Set) -> list[Promise]:
     """Starts of a fit of which some effects are kept, with another one in the place of the others."""
-    rest, z = _part_of(whole, kept)
-    return _twins(search, whole, rest, z, whole.fit.x)
+    rest, z = _part_of(leading.whole, kept)
+    return _twins(search, leading, rest, z, leading.whole.fit.x)
 
 
-def _instead_of_pull(search: Search, whole: Hypothesis, number: int) -> list[Promise]:
+def _instead_of_pull(search: Search, leading: _Leading, number: int) -> list[Promise]:
     """Starts of a fit with others in the place of a tolerance that it pulls far."""
-    x = whole.fit.x.copy()
+    x = leading.whole.fit.x.copy()
     x[number] = 0.0
-    return _twins(search, whole, whole.fit.effects, whole.fit.z, x)
+    return _twins(search, leading, leading.whole.fit.effects, leading.whole.fit.z, x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,33 +98,39 @@ class _Gap:
     rest: effects that stay, at their parameters;  x: nuisances beside them (m,)
     """
 
-    whole: Hypothesis
+    leading: _Leading
     rest: tuple[Effect, ...]
     x: np.ndarray
+
+    @property
+    def _predictor(self) -> Predictor:
+        return self.leading.whole.problem.predictor
 
     @cached_property
     def left(self) -> np.ndarray:
         """Readings with what stays, SI (n,)."""
-        return self.whole.problem.predictor.predict(self.x, self.rest)
+        return self._predictor.predict(self.x, self.rest)
 
     @cached_property
     def change(self) -> np.ndarray:
         """Of the readings, SI (n,)."""
-        return self.whole.problem.predictor.predict(self.whole.fit.x, self.whole.effects) - self.left
+        whole = self.leading.whole
+        return self._predictor.predict(whole.fit.x, whole.effects) - self.left
 
     @cached_property
-    def free(self) -> Whitener:
-        """With the tolerances integrated out."""
-        white, tolerances = self.whole.problem.white, self.whole.fit.jacobian[:, : len(self.x)]
-        return replace(white, laws=(*white.laws, law_error(slice(None), tolerances)))
+    def free(self) -> np.ndarray:
+        """The change, whitened with the tolerances integrated out (n,)."""
+        return self.leading.free(self.change)
 
     @cached_property
+    def held(self) -> np.ndarray:
+        """The change, whitened with the tolerances where they are (n,)."""
+        return self.leading.held(self.change)
+
+    @property
     def size(self) -> float:
         """Of the change, free of tolerances."""
-        return self._length(self.change)
-
-    def _length(self, change: np.ndarray) -> float:
-        return float(np.linalg.norm(self.free(change)))
+        return float(np.linalg.norm(self.free))
 
     def nearest(self, signature: Signature) -> tuple[float, Effect, np.ndarray]:
         """What another effect leaves of the change, free of tolerances; the effect, and its z there.
@@ -102,11 +138,11 @@ class _Gap:
         Where a tolerance makes good nearly all, no more is left than that by which sizes differ from a line, and the
         grid says nothing of it: there the size that is alike with the tolerances held is asked of the model.
         """
-        left, effect, z = signature.nearest(self.change, self.free)
-        found = [(self._length(left), effect, z)]
-        held = self.whole.problem.white
-        left, effect, z = signature.nearest(self.change, held)
-        if np.linalg.norm(held(left)) < ALMOST * np.linalg.norm(held(self.change)):
+        free, held = self.leading.shifts(signature)
+        left, effect, z = signature.nearest(self.free, free, self.leading.free)
+        found = [(float(np.linalg.norm(left)), effect, z)]
+        left, effect, z = signature.nearest(self.held, held, self.leading.held)
+        if np.linalg.norm(left) < ALMOST * np.linalg.norm(self.held):
             found.append(self._by_model(effect, z))
         return min(found, key=lambda one: one[0])
 
@@ -115,30 +151,31 @@ class _Gap:
         try:
             for _ in range(STEPS):
                 z = z + self._step(effect, z)
-            return self._length(self.change - self._made(effect, z)), effect, z
+            left = self.leading.free(self.change - self._made(effect, z))
+            return float(np.linalg.norm(left)), effect, z
         except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError):
             return np.inf, effect, z
 
     def _step(self, effect: Effect, z: np.ndarray) -> np.ndarray:
         """Of z, by no more than one standard deviation along each axis."""
-        held, moves = self.whole.problem.white, STEP * np.eye(len(z))
+        held, moves = self.leading.held, STEP * np.eye(len(z))
         slopes = np.column_stack([self._made(effect, z + m) - self._made(effect, z - m) for m in moves]) / (2 * STEP)
         left = self.change - self._made(effect, z)
         return np.clip(np.linalg.lstsq(held(slopes), held(left), rcond=None)[0], -1.0, 1.0)
 
     def _made(self, effect: Effect, z: np.ndarray) -> np.ndarray:
-        return self.whole.problem.predictor.predict(self.x, (*self.rest, effect.at(z))) - self.left
+        return self._predictor.predict(self.x, (*self.rest, effect.at(z))) - self.left
 
 
 def _twins(
-    search: Search, whole: Hypothesis, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray
+    search: Search, leading: _Leading, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray
 ) -> list[Promise]:
     """Starts with another effect that does most nearly what a fit does beyond what stays of it, nearest first; with
     unknown laws likewise, as two effects may take the place of a law that nobody knows.
 
     rest, z_rest, x: what stays of the fit
     """
-    gap = _Gap(whole, with_parameters(rest, z_rest), x)
+    whole, gap = leading.whole, _Gap(leading, with_parameters(rest, z_rest), x)
     kept = frozenset(effect.name() for effect in rest)
     starts = []
     for other in search.signatures.names:

@@ -83,17 +83,17 @@ class Additions:
 
     def _promise(self, every: Set, found: Explanation, promised: float) -> Promise:
         fit, m = self.parent.fit, len(self.parent.fit.x)
-        weights = self.gains.end(found.terms).weights
-        effects, z = list(fit.effects), [fit.z + weights[m : m + len(fit.z)]]
-        place = self.names.catalogue.background.shape[1]
+        end, place = self.gains.end(found.terms), 0
+        background = self.gains.of_background(end, end.weights)
+        effects, z = list(fit.effects), [fit.z + background[m : m + len(fit.z)]]
         for term in (self.names.catalogue.terms[t] for t in found.terms):
             signature = self.search.signatures.found[term.name][term.variant]
             count = len(parameters_of(signature.effect))
             effects.append(signature.effect)
-            z.append(signature.at(term.place, np.clip(weights[place : place + count], -2.0, 2.0)))
+            z.append(signature.at(term.place, np.clip(end.weights[place : place + count], -2.0, 2.0)))
             place += count
         forms = self.search.forms.get(self.parent.names, 0.0) + found.forms
-        x = np.clip(weights[:m], -FAR, FAR)
+        x = np.clip(background[:m], -FAR, FAR)
         return Promise(-promised, label_of(every), every, tuple(effects), x, np.concatenate(z), forms, fit.slopes)
 
 

@@ -68,23 +68,19 @@ class Problem:
 
     def squares(self, residual: np.ndarray) -> np.ndarray:
         """q of every channel (channels,)."""
-        return np.array([np.sum(residual[c.rows] ** 2) for c in self.stack.channels])
-
-    @property
-    def sizes(self) -> np.ndarray:
-        return np.array([c.size for c in self.stack.channels])
+        return self.stack.by_channel(residual**2)
 
     def misfit(self, residual: np.ndarray) -> float:
         """Minus ln likelihood, up to what all hypotheses share."""
-        return misfit(self.squares(residual), self.dof, self.sizes)
+        return misfit(self.squares(residual), self.dof, self.stack.sizes)
 
     def channel_weights(self, residual: np.ndarray) -> np.ndarray:
         """Slope of the misfit to q/2 of every channel (channels,)."""
-        return (self.dof + self.sizes) / (self.dof + self.squares(residual))
+        return (self.dof + self.stack.sizes) / (self.dof + self.squares(residual))
 
     def weights(self, residual: np.ndarray) -> np.ndarray:
         """The same of the channel of every row (n,)."""
-        return np.repeat(self.channel_weights(residual), self.sizes)
+        return np.repeat(self.channel_weights(residual), self.stack.sizes)
 
 
 def misfit(squares: np.ndarray, dof: np.ndarray, sizes: np.ndarray) -> float:

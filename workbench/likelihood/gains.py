@@ -7,7 +7,7 @@ the background there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -22,12 +22,15 @@ class End:
     """Where linear algebra ends with some terms.
 
     shift, columns: what these add, whitened, and how it changes with their weights (n,), (n, k)
-    weights: of the background, then of the columns (m + k,);  least: half the squares of residual and weights [nats]
+    pull, behind: what the background's weights feel of what is left by the shift, and of the columns (m,), (m, k)
+    weights: of the columns (k,);  least: half the squares of residual and weights [nats]
     spread: half ln det of the curvature
     """
 
     shift: np.ndarray
     columns: np.ndarray
+    pull: np.ndarray
+    behind: np.ndarray
     weights: np.ndarray
     least: float
     spread: float
@@ -58,19 +61,41 @@ class Gains:
     def end(self, terms: Sequence[int]) -> End:
         """Where linear algebra ends with some terms beside the background, by their columns alone: products with all
         that a catalogue holds, as a search among them needs, would take five times as long."""
-        parts = [self._felt(number) for number in terms]
-        shift = np.sum([part[:, 0] for part in parts], axis=0) if parts else np.zeros_like(self.residual)
-        columns = np.hstack([np.empty((len(shift), 0)), *(part[:, 1:] for part in parts)])
-        every, left = np.hstack([self.catalogue.background, columns]), self.residual - shift
-        root = np.linalg.cholesky(np.eye(every.shape[1]) + every.T @ every)
-        pull = np.linalg.solve(root, every.T @ left)
-        least, spread = 0.5 * (left @ left - pull @ pull), np.log(np.diagonal(root)).sum()
-        return End(shift, columns, np.linalg.solve(root.T, pull), float(least), float(spread))
+        felt = [self._felt(number) for number in terms]
+        shift, columns = _added([by_rows for by_rows, _ in felt], len(self.residual))
+        behind_shift, behind = _added([by_background for _, by_background in felt], len(self._pull))
+        left, pull = self.residual - shift, self._pull - behind_shift
+        root = np.linalg.cholesky(np.eye(columns.shape[1]) + columns.T @ columns - behind.T @ behind)
+        moved = np.linalg.solve(root, columns.T @ left - behind.T @ pull)
+        least = 0.5 * (left @ left - pull @ pull - moved @ moved)
+        spread = self.catalogue.half_log_det + np.log(np.diagonal(root)).sum()
+        return End(shift, columns, pull, behind, np.linalg.solve(root.T, moved), float(least), float(spread))
+
+    def of_background(self, end: End, weights: np.ndarray) -> np.ndarray:
+        """Most probable weights of the background beside weights of the columns (m,)."""
+        return self._turn.T @ (end.pull - end.behind @ weights)
 
     @cached_property
-    def _felt(self):
-        """What a term adds (n, 1 + k), by its number: few terms are in many sets."""
-        return cache(self.catalogue.felt)
+    def _turn(self) -> np.ndarray:
+        """From products with the background to what weights feel that are independent of each other (m, m)."""
+        return np.linalg.inv(self.catalogue.root)
+
+    @cached_property
+    def _pull(self) -> np.ndarray:
+        """What these feel of the residual (m,)."""
+        return self._turn @ (self.catalogue.background.T @ self.residual)
+
+    @cached_property
+    def _felt(self) -> Callable[[int], tuple[np.ndarray, np.ndarray]]:
+        """What a term adds to the rows (n, 1 + k), and what the background feels of it (m, 1 + k), by its number: few
+        terms are in many sets."""
+
+        @cache
+        def felt(number: int) -> tuple[np.ndarray, np.ndarray]:
+            by_rows = self.catalogue.felt(number)
+            return by_rows, self._turn @ (self.catalogue.background.T @ by_rows)
+
+        return felt
 
     @cached_property
     def _bare(self) -> End:
@@ -84,17 +109,10 @@ class Gains:
 
     def _ends(self, end: End, terms: Sequence[int]) -> float:
         """The same where linear algebra ends with some terms, these within their reach [nats]."""
-        background = self.catalogue.background
-        held = np.clip(end.weights[background.shape[1] :], *self.catalogue.reach(terms))
-        left = self.residual - end.shift - end.columns @ held
-        pulled = self._pulls @ left
-        return self._student(left - background @ pulled) + 0.5 * float(held @ held + pulled @ pulled)
-
-    @cached_property
-    def _pulls(self) -> np.ndarray:
-        """From a residual to the most probable weights of the background (m, n)."""
-        background = self.catalogue.background
-        return np.linalg.solve(np.eye(background.shape[1]) + background.T @ background, background.T)
+        held = np.clip(end.weights, *self.catalogue.reach(terms))
+        pulled = self.of_background(end, held)
+        left = self.residual - end.shift - end.columns @ held - self.catalogue.background @ pulled
+        return self._student(left) + 0.5 * float(held @ held + pulled @ pulled)
 
     def _student(self, residual: np.ndarray) -> float:
         """Minus ln p of a residual, with the spread that it leaves the background [nats]."""
@@ -107,3 +125,9 @@ class Gains:
         """Products of the background's columns with one another in every channel (channels, m, m)."""
         parts = [self.catalogue.background[channel.rows] for channel in self.problem.stack.channels]
         return np.array([part.T @ part for part in parts])
+
+
+def _added(parts: Sequence[np.ndarray], rows: int) -> tuple[np.ndarray, np.ndarray]:
+    """The sum of the first columns of all parts (rows,), and their other columns (rows, k)."""
+    shift = np.sum([part[:, 0] for part in parts], axis=0) if parts else np.zeros(rows)
+    return shift, np.hstack([np.empty((rows, 0)), *(part[:, 1:] for part in parts)])

@@ -142,19 +142,19 @@ class Catalogue:
         return np.concatenate([[0], np.cumsum([1 + term.columns.shape[1] for term in self.terms])]).astype(int)
 
     @cached_property
-    def _root(self) -> np.ndarray:
+    def root(self) -> np.ndarray:
         """Of what is left of the background's weights (m, m)."""
         return np.linalg.cholesky(np.eye(self.background.shape[1]) + self.background.T @ self.background)
 
     @property
     def half_log_det(self) -> float:
         """What the background costs every explanation alike [nats]."""
-        return float(np.log(np.diagonal(self._root)).sum())
+        return float(np.log(np.diagonal(self.root)).sum())
 
     @cached_property
     def _behind(self) -> np.ndarray:
         """What the background takes of the products of the terms' columns, as the products of these (m, Q)."""
-        return np.linalg.solve(self._root, self._on(self.background).T)
+        return np.linalg.solve(self.root, self._on(self.background).T)
 
     @cached_property
     def _taken(self) -> np.ndarray:
@@ -187,7 +187,7 @@ class Catalogue:
 
     def readings(self, residuals: np.ndarray) -> list[Readings]:
         """Of whitened residuals (n, R), the background integrated out."""
-        own = np.linalg.solve(self._root, self.background.T @ residuals)
+        own = np.linalg.solve(self.root, self.background.T @ residuals)
         products = self._on(residuals) - self._behind.T @ own
         squares = np.sum(residuals**2, axis=0) - np.sum(own**2, axis=0)
         return [Readings(products[:, k], float(squares[k])) for k in range(residuals.shape[1])]

@@ -9,13 +9,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from effects.base import Effect
+from effects.base import Effect, InstrumentEffect
 from effects.parameter import parameters_of
 from geometry.errors import GeometryError
 from materials.errors import MaterialError
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
-from workbench.likelihood.nuisance import EffectParameters, Nuisance, TolerancedInput
+from workbench.likelihood.nuisance import EffectParameters, InstrumentError, Nuisance, TolerancedInput
 from workbench.likelihood.own_errors import numerical
 from workbench.models.model import Model
 
@@ -102,8 +102,13 @@ class DirectPredictor:
             place += effect.size
         moved = list(zip(self.nuisances, np.asarray(x).tolist()))
         design = self._design(tuple(z for nuisance, z in moved if isinstance(nuisance, TolerancedInput)))
-        errors = (nuisance.at(z) for nuisance, z in moved if not isinstance(nuisance, TolerancedInput))
+        errors = (self._error(nuisance, z) for nuisance, z in moved if not isinstance(nuisance, TolerancedInput))
         return replace(self.model, design=design, effects=(*own, *effects, *errors))
+
+    @cached_property
+    def _error(self) -> Callable[[InstrumentError, float], InstrumentEffect]:
+        """Of an instrument at so many standard deviations: slopes by others leave it as it is."""
+        return lru_cache(maxsize=_REMEMBERED)(lambda nuisance, z: nuisance.at(z))
 
     @cached_property
     def _design(self) -> Callable[[tuple[float, ...]], Any]:

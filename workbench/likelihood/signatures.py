@@ -93,16 +93,19 @@ class Signature:
         weights = np.moveaxis(apart, -1, 1 + axis).reshape(2, -1) / np.where(lengths > 0, lengths, 1e-300)
         return np.minimum(weights, MOST_WEIGHT) * np.array([[-1.0], [1.0]])
 
-    def nearest(self, change: np.ndarray, white: Whitener) -> tuple[np.ndarray, Effect, np.ndarray]:
-        """What is left of a change of the readings (n,), SI, by the most like one that the effect makes, as a whitener
-        weighs them; the effect, and its z there."""
-        target, shifts = white(change), white(self.change)
+    def nearest(
+        self, target: np.ndarray, shifts: np.ndarray, white: Whitener
+    ) -> tuple[np.ndarray, Effect, np.ndarray]:
+        """What is left of a change of the readings by the most like one that the effect makes, whitened (n,); the
+        effect, and its z there.
+
+        target: the change, whitened (n,);  shifts: those of the effect, whitened (n, K);  white: that did it
+        """
         away = np.linalg.norm(target[:, None] - shifts, axis=0)
         place = int(np.argmin(np.where(np.isfinite(self.log_prior), away, np.inf)))
-        tangents = self.tangents[:, :, place].T
-        step = np.linalg.lstsq(white(tangents), target - shifts[:, place], rcond=None)[0]
-        step = np.clip(step, -self.width / 2, self.width / 2)
-        return change - self.change[:, place] - tangents @ step, self.effect, self.z[place] + step
+        left, slopes = target - shifts[:, place], white(self.tangents[:, :, place].T)
+        step = np.clip(np.linalg.lstsq(slopes, left, rcond=None)[0], -self.width / 2, self.width / 2)
+        return left - slopes @ step, self.effect, self.z[place] + step
 
     def at(self, place: int, weights: np.ndarray) -> np.ndarray:
         """z (k,) of a place of the grid moved by the weights of its columns."""

@@ -1,7 +1,6 @@
 """What a fit by Gauss and Newton asks of the model, and where it ends."""
 
 from dataclasses import dataclass, field
-from types import SimpleNamespace
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -9,6 +8,7 @@ from numpy.testing import assert_allclose
 from effects.base import DesignEffect
 from effects.parameter import parameter
 from effects.prior import Normal
+from workbench.data.stack import Channel, Stack
 from workbench.likelihood.fit import Problem, fitted
 from workbench.likelihood.whitening import Whitener
 
@@ -37,9 +37,8 @@ class Readings:
 
 def problem(formula, true):
     predictor = Readings(formula)
-    channels = (SimpleNamespace(rows=slice(0, ROWS), size=ROWS),)
-    stack = SimpleNamespace(y=formula(*true), size=ROWS, channels=channels)
-    predictor.stack = stack
+    channels = (Channel("table.reading", 0, "reading", slice(0, ROWS), "1", 1.0),)
+    stack = predictor.stack = Stack((), channels, formula(*true), np.full(ROWS, 1e-2), np.zeros((ROWS, 0)))
     return Problem(predictor, stack, Whitener(np.full(ROWS, 1e-2), np.zeros(ROWS)), np.array([20.0]), np.zeros(1))
 
 

@@ -69,8 +69,9 @@ def test_linear_algebra_ends_at_the_weights_of_ridge_regression():
     left = residuals[:, 0] - felt(terms[0].shift) - felt(terms[1].shift)
     augmented, target = np.vstack([x, np.eye(x.shape[1])]), np.r_[left, np.zeros(x.shape[1])]
     ridge = np.linalg.lstsq(augmented, target, rcond=None)[0]
-    found = Gains(None, None, residuals[:, 0], catalogue).end(chosen)
-    assert np.allclose(found.weights, ridge, atol=1e-10)
+    gains = Gains(None, None, residuals[:, 0], catalogue)
+    found = gains.end(chosen)
+    assert np.allclose(np.r_[gains.of_background(found, found.weights), found.weights], ridge, atol=1e-10)
     assert found.least == pytest.approx(0.5 * np.sum((target - augmented @ ridge) ** 2), abs=1e-9)
     marginal = catalogue.given(chosen).log_marginal(catalogue.readings(residuals)[0])
     assert -found.least - found.spread == pytest.approx(marginal, abs=1e-9)

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -112,9 +112,14 @@ class MachineBench(BaseModel):
         again."""
 
         def answer(design: MachineAsBuilt, summand: Summand, asked: _Asked) -> Mapping[str, np.ndarray]:
-            return _answered(summand, self.surrogate, design, asked.columns)
+            return _answered(summand, self._answers, design, asked.columns)
 
         return lru_cache(maxsize=_REMEMBERED)(answer)
+
+    @cached_property
+    def _answers(self) -> Callable[[MachineAsBuilt], Answers]:
+        """Tables ask for one design in turn."""
+        return lru_cache(maxsize=_REMEMBERED)(partial(Answers, self.surrogate))
 
     def exact(self, design: MachineAsBuilt, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns from field solutions of the design itself; seconds, kept for the next table."""
@@ -160,12 +165,14 @@ class MachineBench(BaseModel):
 
 
 def _drawn_answers(surrogate: Surrogate, table: Table) -> Mapping[str, np.ndarray]:
-    drawn, at = surrogate.nominal, table.conditions
-    return added_up([_answered(summand, surrogate, drawn, at) for summand in KINDS[table.kind]])
+    answers, drawn, at = partial(Answers, surrogate), surrogate.nominal, table.conditions
+    return added_up([_answered(summand, answers, drawn, at) for summand in KINDS[table.kind]])
 
 
-def _answered(summand: Summand, surrogate: Surrogate, design: MachineAsBuilt, at: Columns) -> Mapping[str, np.ndarray]:
-    return at_magnet_temperatures(lambda warm: summand.answer(Answers(surrogate, warm), at), design, at)
+def _answered(
+    summand: Summand, answers: Callable[[MachineAsBuilt], Answers], design: MachineAsBuilt, at: Columns
+) -> Mapping[str, np.ndarray]:
+    return at_magnet_temperatures(lambda warm: summand.answer(answers(warm), at), design, at)
 
 
 class _Asked:

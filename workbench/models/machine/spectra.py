@@ -42,11 +42,18 @@ def _interpolated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
     full = spectrum * (_TABLE / 2)
     full[:, 0] *= 2
     table = np.fft.irfft(full, _TABLE, axis=1)
-    place = np.mod(angle, 2 * np.pi) * _TABLE / (2 * np.pi)
+    places, weights = _between(np.asarray(angle, dtype=float).tobytes())
+    return np.einsum("kn,rkn->rn", weights, table.take(places, axis=1))
+
+
+@lru_cache(maxsize=32)
+def _between(angle: bytes) -> tuple[np.ndarray, np.ndarray]:
+    """Places in the table and weights of the values there (4, n) each, of angles given as the bytes of their array."""
+    place = np.mod(np.frombuffer(angle), 2 * np.pi) * _TABLE / (2 * np.pi)
     first = np.floor(place).astype(int)
     t = place - first
     weights = (-t * (t - 1) * (t - 2) / 6, (t * t - 1) * (t - 2) / 2, -t * (t + 1) * (t - 2) / 2, t * (t * t - 1) / 6)
-    return sum(w * table[:, (first + k) % _TABLE] for k, w in zip((-1, 0, 1, 2), weights))
+    return (first + np.arange(-1, 3)[:, None]) % _TABLE, np.array(weights)
 
 
 def half_rate(angle: np.ndarray) -> float:

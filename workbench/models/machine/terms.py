@@ -14,6 +14,7 @@ drawing, exactly for the saturation without current, and only the rest is a curv
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -24,6 +25,8 @@ import numpy as np
 from effects.machine_design import MachineAsBuilt
 from workbench.models.machine.coordinates import BOTH, REMANENCE, ROTOR, SHIFTS, STEEL, Coordinate, all_coordinates
 from workbench.models.machine.expansion import LEAST_DIRECTIONS, Node, shift_of, toleranced
+
+_REMEMBERED = 1024  # cubics at a place of their coordinate
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +81,8 @@ class Curve(Part):
         return self.c.name
 
     @cached_property
-    def nodes(self) -> np.ndarray:
-        return np.array(sorted((0.0, *self.c.sizes)))
+    def nodes(self) -> tuple[float, ...]:
+        return tuple(sorted((0.0, *self.c.sizes)))
 
     def weights(self, p: np.ndarray) -> np.ndarray | None:
         """Of the values and slopes at the nodes, then for every partner of the change of its slope there."""
@@ -99,8 +102,8 @@ class Curve(Part):
             return None
         values = [node.get("change", 0.0) for node in found]
         slopes = [node.get("own", changes.slopes.get(self.c.name)) for node in found]
-        if slopes[list(self.nodes).index(0.0)] is None:
-            slopes = list(np.tensordot(_lagrange_slopes(self.nodes), np.array(_alike(values)), 1))
+        if slopes[self.nodes.index(0.0)] is None:
+            slopes = list(np.tensordot(_lagrange_slopes(np.array(self.nodes)), np.array(_alike(values)), 1))
         crossed = [_crossed(node, changes, partner) for partner, _ in self.partners for node in found]
         return np.array(_alike([*values, *slopes, *crossed]))
 
@@ -120,8 +123,8 @@ class Shift(Part):
         return self.x.name
 
     @cached_property
-    def radii(self) -> np.ndarray:
-        return np.array([0.0, *self.x.sizes])
+    def radii(self) -> tuple[float, ...]:
+        return (0.0, *self.x.sizes)
 
     @cached_property
     def directions(self) -> np.ndarray:
@@ -195,7 +198,7 @@ class Twice(Part):
         nodes, partner = self.first.nodes, self.second.c
         found = [changes.at(self.first.c, size) if size else {} for size in nodes]
         crossed = np.array(_alike([_crossed(node, changes, partner) for node in found]))
-        return np.tensordot(parabola_slopes(nodes)[list(nodes).index(0.0)], crossed, 1)[None]
+        return np.tensordot(parabola_slopes(nodes)[nodes.index(0.0)], crossed, 1)[None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -366,13 +369,15 @@ def _alike(rows: Sequence[np.ndarray | float]) -> list[np.ndarray]:
 # ---- interpolation ---------------------------------------------------------------------------------------------------
 
 
-def hermite(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the values and of the slopes at the nodes (k,) of the piecewise cubic at x; one node: its tangent."""
+@lru_cache(maxsize=_REMEMBERED)
+def hermite(nodes: tuple[float, ...], x: float) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the values and of the slopes at the nodes (k,) of the piecewise cubic at x; one node: its tangent.
+    Kept: most coordinates stay from one design to the next."""
     values, slopes = np.zeros(len(nodes)), np.zeros(len(nodes))
     if len(nodes) == 1:
         values[0], slopes[0] = 1.0, x - nodes[0]
         return values, slopes
-    i = min(max(int(np.searchsorted(nodes, x)) - 1, 0), len(nodes) - 2)
+    i = min(max(bisect_left(nodes, x) - 1, 0), len(nodes) - 2)
     h = nodes[i + 1] - nodes[i]
     t = (x - nodes[i]) / h
     values[i], values[i + 1] = 1 - t * t * (3 - 2 * t), t * t * (3 - 2 * t)
@@ -380,7 +385,8 @@ def hermite(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
     return values, slopes
 
 
-def through(nodes: np.ndarray, x: float) -> np.ndarray:
+@lru_cache(maxsize=_REMEMBERED)
+def through(nodes: tuple[float, ...], x: float) -> np.ndarray:
     """Weights of the values at the nodes (k,) of a piecewise cubic at x, its slopes those of the parabola through each
     node and its neighbours."""
     values, slopes = hermite(nodes, x)
@@ -388,18 +394,14 @@ def through(nodes: np.ndarray, x: float) -> np.ndarray:
 
 
 @lru_cache(maxsize=256)
-def _parabola_slopes(nodes: tuple[float, ...]) -> np.ndarray:
+def parabola_slopes(nodes: tuple[float, ...]) -> np.ndarray:
+    """Slopes at all nodes as a matrix of the values (k, k): of the parabola through a node and its neighbours."""
     k, found = len(nodes), np.zeros((len(nodes), len(nodes)))
     for i in range(k):
         first = min(max(i - 1, 0), max(k - 3, 0))
         near = np.arange(first, min(first + 3, k))
         found[i, near] = _lagrange_slopes(np.array(nodes)[near])[i - first]
     return found
-
-
-def parabola_slopes(nodes: np.ndarray) -> np.ndarray:
-    """Slopes at all nodes as a matrix of the values (k, k): of the parabola through a node and its neighbours."""
-    return _parabola_slopes(tuple(nodes.tolist()))
 
 
 def _lagrange_slopes(nodes: np.ndarray) -> np.ndarray:
