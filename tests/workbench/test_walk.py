@@ -302,6 +302,13 @@ def test_what_is_likelier_there_than_not_is_tried_last_and_only_beside_names(dia
     assert by_evidence(replace(diagnosed, names=(), ranking=likely)) == ()
 
 
+def test_what_was_refused_by_itself_is_tried_again_where_it_is_likely_though_no_name_is_sure(diagnosed):
+    first, second, *rest = diagnosed.ranking
+    unsure = replace(diagnosed, names=(), ranking=(replace(first, probability=0.96), replace(second, probability=0.4)))
+    assert by_evidence(unsure, {first.name, second.name}) == (first.name,)
+    assert by_evidence(unsure, {second.name}) == ()
+
+
 def test_a_step_tells_the_error_of_each_channel_in_percent(hidden):
     step = try_effect(*hidden, LIBRARY, "hardening").step
     assert step.rms_error["pull.force"] < 1.2 * step.noise_floor["pull.force"]

@@ -27,6 +27,7 @@ ALSO = 0.5  # probability that an unknown law which shows in one group of channe
 LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
+IMPOSSIBLE = -1e30  # ln density where the model has no answer: a number, so that it can be interpolated
 SIZES_TRIED, OTHERS_TRIED = 3, {2: 8, 3: 4, 4: 3}  # values of the size and of every other parameter, by their number
 TURNS_TRIED = 8  # parts of a turn by which a direction is moved
 SHARES = 100  # of a posterior, whose middles stand for it where several are brought together
@@ -147,18 +148,11 @@ def _turns(effect: Effect, z: np.ndarray, own: slice) -> np.ndarray:
 
 def _highest(hypothesis: Hypothesis, places: np.ndarray) -> np.ndarray | None:
     """The parameters (k,), of some (n, k), where the fit would be higher than it is, and highest; None where at none of
-    them. Places where the model has no answer are left out."""
+    them."""
     fit = hypothesis.fit
     if not len(places):
         return None
-
-    def height(z: np.ndarray) -> float:
-        try:
-            return _profile(hypothesis.problem, fit, fit.x, z)
-        except WorkbenchError:
-            return -np.inf
-
-    best = max((fit.z, *places), key=height)
+    best = max((fit.z, *places), key=lambda z: _profile(hypothesis.problem, fit, fit.x, z))
     return None if best is fit.z else best
 
 
@@ -313,9 +307,13 @@ def _integrated(problem: Problem, fit: Fit) -> tuple[np.ndarray, np.ndarray, flo
 
 
 def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:
-    """ln of prior times likelihood at z (k,) with the nuisances integrated out around their best values."""
+    """ln of prior times likelihood at z (k,) with the nuisances integrated out around their best values; nothing where
+    the model has no answer: a motor that cannot turn there made none of these readings."""
     slopes = fit.jacobian[:, : len(x)]
-    residual = problem.residual(x, with_parameters(fit.effects, z))
+    try:
+        residual = problem.residual(x, with_parameters(fit.effects, z))
+    except WorkbenchError:
+        return IMPOSSIBLE
     weights = problem.weights(residual)
     normal = slopes.T @ (weights[:, None] * slopes) + np.eye(len(x))
     move = np.linalg.solve(normal, slopes.T @ (weights * residual) - x)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -154,18 +154,23 @@ def walk(
 ) -> tuple[Ledger, Diagnosis]:
     """Diagnoses, adds what is named, and so on until nothing is named or all that is named is refused.
 
-    Of several names the one with the most evidence by itself is tried first; where each alone is refused, all together.
+    Of several names the one with the most evidence by itself is tried first; where each alone is refused, all together;
+    what was refused once more when others have been accepted.
     out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the fitted inputs also where nothing was added
     Nothing is tried or written while conventions are not settled.
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
     if diagnosis.verdict == CONVENTION:
         return read_ledger(out / LEDGER, campaign.id, model.base.name), diagnosis
+    refused: set[str] = set()
     for _ in range(MOST_STEPS):
-        added = next((a for a in _trials(model, campaign, library, diagnosis, out, seed, progress) if _holds(a)), None)
-        if added is None:
+        for added in _trials(model, campaign, library, diagnosis, refused, out, seed, progress):
+            if added.step.decision == ACCEPTED:
+                model, diagnosis = added.model, added.diagnosis
+                break
+            refused.add(added.step.effect)
+        else:
             break
-        model, diagnosis = added.model, added.diagnosis
     path = out / LEDGER
     if not path.exists() or not (out / NAME).exists():
         bench = bench_of(model, campaign, library)
@@ -176,23 +181,23 @@ def walk(
     return told(read_ledger(path, campaign.id, model.base.name), read_model(out / NAME, library)), diagnosis
 
 
-def _holds(added: Added) -> bool:
-    return added.step.decision == ACCEPTED
-
-
 def _trials(
     model: Model,
     campaign: Campaign,
     library: Mapping[str, type[Effect]],
     diagnosis: Diagnosis,
+    refused: Collection[str],
     out: Path,
     seed: int | None,
     progress: Callable[[str], None],
 ) -> Iterator[Added]:
-    """What is named, one after the other, then together; what has no answer is refused in the ledger."""
+    """What is named, one after the other, then together; what has no answer is refused in the ledger.
+
+    refused: what was at steps before
+    """
     attempts = {
         name: partial(add_effect, model, campaign, library, name, out, seed, progress, diagnosis)
-        for name in by_evidence(diagnosis)
+        for name in by_evidence(diagnosis, refused)
     }
     if len(diagnosis.names) > 1 and diagnosis.verdict != GROUP:
         every = TOGETHER.join(diagnosis.names)
@@ -217,13 +222,17 @@ def _refuse(
     append(path, replace(refused, reason=f"it cannot be added: {why}"), campaign, model)
 
 
-def by_evidence(diagnosis: Diagnosis) -> tuple[str, ...]:
+def by_evidence(diagnosis: Diagnosis, refused: Collection[str] = ()) -> tuple[str, ...]:
     """The names of a verdict, the one with the most evidence first; then, of those that cannot be told apart, the most
     probable one, and what is likelier there than not: without them what is named may not stand. Of a group the most
-    probable one is first: evidence is that of the best explanation with a name in it, which another may have made."""
+    probable one is first: evidence is that of the best explanation with a name in it, which another may have made.
+
+    refused: what was named before and refused by itself; where it is likelier there than not now that others are in the
+    model, it is tried again though no name is sure
+    """
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
     probable = {ranked.name: ranked.probability for ranked in diagnosis.ranking}
     weight = probable if diagnosis.verdict == GROUP else alone
     named = sorted(diagnosis.names, key=lambda name: -weight.get(name, 0.0))
-    likely = [ranked.name for ranked in diagnosis.ranking if named and ranked.probability > LIKELY]
+    likely = [r.name for r in diagnosis.ranking if r.probability > LIKELY and (named or r.name in refused)]
     return tuple(dict.fromkeys((*named, *diagnosis.alternatives, *likely)))

@@ -21,7 +21,7 @@ from effects.parameter import parameters_of
 from workbench.believed import TAILS
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
-from workbench.likelihood.predictor import STEP, Predictor, jacobian
+from workbench.likelihood.predictor import STEP, Predictor, jacobian, one_sided
 from workbench.likelihood.whitening import Whitener
 
 ITERATIONS = 15
@@ -228,9 +228,8 @@ class _Search:
     def effect_slopes(self, p: np.ndarray) -> np.ndarray:
         slopes = np.empty((self.problem.stack.size, len(p) - self.m))
         for k in range(self.m, len(p)):
-            step = np.zeros(len(p))
-            step[k] = STEP if p[k] < 0 else -STEP  # towards the centre: never over a bound for nothing
-            slopes[:, k - self.m] = (self.predict(p + step) - self.predict(p)) / step[k]
+            inward = STEP if p[k] < 0 else -STEP  # towards the centre: never over a bound for nothing
+            slopes[:, k - self.m] = one_sided(self.predict, p, k, inward, self.predict(p))
         return self.problem.white(slopes)
 
     def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray, close: float = CLOSE) -> tuple[np.ndarray, float]:

@@ -156,11 +156,25 @@ def jacobian(predictor: Predictor, x: np.ndarray, effects: Sequence[Effect] = ()
     slopes = np.empty((predictor.stack.size, len(x)))
     moved = len(x) - predictor.shapes.shape[1]
     slopes[:, moved:] = predictor.shapes
+    answer = lambda there: predictor.predict(there, effects)  # noqa: E731
     for k in range(moved):
-        step = np.zeros(len(x))
-        step[k] = STEP
         if base is None:
-            slopes[:, k] = (predictor.predict(x + step, effects) - predictor.predict(x - step, effects)) / (2 * STEP)
+            step = STEP * np.eye(len(x))[k]
+            slopes[:, k] = (answer(x + step) - answer(x - step)) / (2 * STEP)
         else:
-            slopes[:, k] = (predictor.predict(x + step, effects) - base) / STEP
+            slopes[:, k] = one_sided(answer, x, k, STEP, base)
     return slopes
+
+
+def one_sided(
+    answer: Callable[[np.ndarray], np.ndarray], p: np.ndarray, k: int, step: float, base: np.ndarray
+) -> np.ndarray:
+    """Slope of answers by component k of p (n,), by a step to one side; to the other where the model has no answer
+    there: a motor at its limit of voltage has one on one side only. base: answer(p)"""
+    moved = p.copy()
+    try:
+        moved[k] = p[k] + step
+        return (answer(moved) - base) / step
+    except WorkbenchError:
+        moved[k] = p[k] - step
+        return (base - answer(moved)) / step

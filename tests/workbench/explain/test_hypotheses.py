@@ -221,6 +221,30 @@ def test_an_unknown_law_is_seen_beside_an_effect_too(tmp_path):
 # ---- errors of laws --------------------------------------------------------------------------------------------------
 
 
+MOST = 1.1e5  # N/m^3, a little more than the size that a fit finds
+
+
+class Limited(Hardening):
+    """There is no answer beyond a size."""
+
+    def on_response(self, response, conditions, kind, design):
+        if self.cubic > MOST:
+            raise WorkbenchError("no answer")
+        return super().on_response(response, conditions, kind, design)
+
+
+def test_a_size_without_an_answer_is_not_believed_and_ends_no_fit(bench):
+    """As motors at their limit of voltage have; the evidence is less by the share of the sizes that are left."""
+    start = bench.null.x, np.array([-2.2])
+    free, limited = (fitted_from(bench, (effect,), *start) for effect in (Hardening(), Limited()))
+    assert limited.effects[0].cubic == pytest.approx(free.effects[0].cubic, rel=1e-3)
+    after = hypotheses_module.density_of(free)
+    left = np.trapezoid(np.where(after.values <= MOST, after.density, 0.0), after.values)
+    assert 0.3 < left < 0.9, "the limit lies among sizes that are believed"
+    assert limited.log_evidence - free.log_evidence == pytest.approx(np.log(left), abs=0.1)
+    assert hypotheses_module.estimates(limited)["limited"]["cubic"].high90 <= 1.05 * MOST
+
+
 class Wrong(Hardening):
     """Its law is good to a fifth."""
 
