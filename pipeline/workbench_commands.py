@@ -173,6 +173,17 @@ def _compare(options: argparse.Namespace) -> None:
             comparison = compare(model, campaign, effects, progress)
         _write_comparison(out, comparison)
         _print_comparison(comparison, out)
+        if comparison.failing:
+            _print_conventions(campaign, model)
+
+
+def _print_conventions(campaign: Campaign, model: Model) -> None:
+    """What the columns of the files look like, where campaign.toml does not say it: an error of a factor of a thousand
+    is seen before any effect."""
+    with _progress() as progress:
+        conventions = settle(model, campaign, progress)
+    if not conventions.are_right:
+        print("", *(f"! {words}" for words in conventions.sentences), "", conventions.fix, sep="\n")
 
 
 def _diagnose(options: argparse.Namespace) -> None:

@@ -57,7 +57,8 @@ def run(capsys, *arguments):
 
 def test_the_walk_from_failing_to_nothing_missing(bench, tmp_path, capsys):
     out = tmp_path / "out"
-    assert "force_velocity.force" in run(capsys, "compare", bench, "--out", out)
+    said = run(capsys, "compare", bench, "--out", out)
+    assert "force_velocity.force" in said and "campaign.toml" not in said, "nothing is wrong with its conventions"
     assert json.loads((out / "comparison.json").read_text())["failing"] == "force_velocity.force"
     assert "friction" in run(capsys, "diagnose", bench, "--out", out)
     said = json.loads((out / "diagnosis.json").read_text())
@@ -92,6 +93,8 @@ def test_no_step_is_taken_while_conventions_are_not_settled(bench, tmp_path, cap
     said = run(capsys, "ledger", wrong, "--out", out)
     assert "1000 times too large" in said and "factor" in said
     assert {path.name for path in out.iterdir()} == {"diagnosis.json", "diagnosis.html"}
+    first = run(capsys, "compare", wrong, "--out", out)
+    assert "1000 times too large" in first and "[conventions]" in first
 
 
 def test_effects_lists_every_effect_with_its_equation(capsys):

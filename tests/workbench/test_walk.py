@@ -12,7 +12,7 @@ from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import diagnose
 from workbench.explain.verdict import GROUP, PAIR
-from workbench.ledger.model_file import model_text, with_effects_of
+from workbench.ledger.model_file import model_text, read_model, with_effects_of
 from workbench.ledger.step import COLUMNS, read_ledger, try_effect
 from workbench.ledger.walk import add_effect, by_evidence, walk
 from workbench.models.model import Model
@@ -234,11 +234,11 @@ def test_a_name_that_has_no_answer_alone_is_refused_and_the_walk_goes_on(tmp_pat
 
     asked = []
 
-    def tried(model, campaign, library, name, *more):
+    def tried(model, campaign, library, name, *more, **said):
         asked.append(name)
         if len(asked) == 1:
             raise WorkbenchError("no steady state")
-        return try_effect(model, campaign, library, name, *more)
+        return try_effect(model, campaign, library, name, *more, **said)
 
     monkeypatch.setattr("workbench.ledger.walk.try_effect", tried)
     model, campaign = of(written(tmp_path / "c", lambda x: cubic(x) + even(x)))
@@ -250,10 +250,36 @@ def test_a_name_that_has_no_answer_alone_is_refused_and_the_walk_goes_on(tmp_pat
     assert {step.effect for step in rest if step.decision == "accepted"} == {"hardening", "bump"}
 
 
+def test_a_walk_that_adds_nothing_says_what_was_learned_from_these_data(tmp_path):
+    """A model file of other data, or of fewer of them, is not handed on as what was learned here."""
+    model, campaign = of(written(tmp_path / "fewer", n=40))
+    walk(model, campaign, LIBRARY, tmp_path / "out")
+    model, campaign = of(written(tmp_path / "more", n=60))
+    walk(model, campaign, LIBRARY, tmp_path / "out")
+    said = read_model(tmp_path / "out" / "model.toml", LIBRARY).source
+    assert dict(said.data_sha256) == dict(campaign.file_hashes)
+
+
+def test_an_error_after_a_step_was_accepted_is_no_refusal(tmp_path, monkeypatch):
+    """What ends the next diagnosis ends the walk and says so; the effect is not called one without an answer."""
+    model, campaign = of(written(tmp_path / "c", cubic))
+    first = diagnose(model, campaign, LIBRARY)
+
+    def ends(model, *more, **said):
+        if model.effects:
+            raise WorkbenchError("no answer in a sealed row")
+        return first
+
+    monkeypatch.setattr("workbench.ledger.walk.diagnose", ends)
+    with pytest.raises(WorkbenchError, match="no answer in a sealed row"):
+        walk(model, campaign, LIBRARY, tmp_path)
+    assert not any(step.decision == "refused" for step in read_ledger(tmp_path / "ledger.csv", "", "").steps)
+
+
 def test_what_is_refused_one_by_one_is_tried_together(tmp_path, monkeypatch):
     """Each alone has no answer; both at once, from the sizes of the diagnosis, are accepted as one step."""
 
-    def never(model, campaign, library, name, *more):
+    def never(model, campaign, library, name, *more, **said):
         raise WorkbenchError("no steady state")
 
     monkeypatch.setattr("workbench.ledger.walk.try_effect", never)

@@ -77,7 +77,8 @@ def diagnosis_of(
     if worse:
         judged = _taken_back(search, simulator, thresholds, judged.said, worse)
         best = leading(search, judged.said, judged.struck)
-    p, shown, said = judged.p, judged.shown, with_sealed(judged.said, sealed)
+    p, shown = judged.p, judged.shown
+    said = with_sealed(judged.said, opened(bench, best) if worse else sealed)
     ranked = ranking(search, shown)
     return Diagnosis(
         campaign=bench.campaign.id,

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from workbench.believed import DISAGREE
+from workbench.errors import WorkbenchError
 from workbench.explain.hypotheses import Hypothesis, sealed_rows
 from workbench.explain.tried import Search
 from workbench.explain.verdict import NONE_OF_THESE, NOTHING_MISSING, Verdict
@@ -24,7 +25,10 @@ def opened(bench: Bench, final: Hypothesis) -> Sealed | None:
     part = sealed_rows(bench, final)
     if part is None:
         return None
-    there = linearised(part, final.fit.x, final.fit.effects, final.fit.z)
+    try:
+        there = linearised(part, final.fit.x, final.fit.effects, final.fit.z)
+    except WorkbenchError:  # what was read where the model cannot be speaks against it as loudly as can be
+        return Sealed(part.stack.size, float("inf"), 0.0, sealed_words(bench), False)
     residual, slopes = there.residual, there.jacobian
     covariance = np.eye(len(residual)) + slopes @ final.fit.covariance @ slopes.T
     square = float(residual @ np.linalg.solve(covariance, residual))

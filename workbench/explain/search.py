@@ -69,12 +69,13 @@ def _shapes(bench: Bench) -> tuple[Shape, ...]:
 
 
 def _answers(hypothesis: Hypothesis, bench: Bench) -> np.ndarray:
-    """Of a fit for all rows of a bench (n,)."""
-    return hypothesis.problem.predictor.on(bench.stack).predict(hypothesis.fit.x, hypothesis.effects)
+    """Of a fit for all rows of a bench, as read where it has none: a row that is sealed may lie beyond it (n,)."""
+    found = hypothesis.problem.predictor.on(bench.stack).wherever_known(hypothesis.fit.x, hypothesis.effects)
+    return np.where(np.isfinite(found), found, bench.stack.y)
 
 
 def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypothesis:
-    """The fit of the one effect that the signatures are of.
+    """The fit of the one effect that the signatures are of, with the evidence of all its forms.
 
     Raises:
         WorkbenchError: the model has no answer with it.
@@ -83,7 +84,8 @@ def best_alone(bench: Bench, signatures: Signatures, beliefs: Beliefs) -> Hypoth
     if not (heap and fit_set(search, heap[0])):
         raise WorkbenchError(next(iter(search.failed.values()), "no answer"))
     _exactly(search, lambda words: None)
-    return search.fitted[heap[0].every]
+    every = heap[0].every
+    return replace(search.fitted[every], log_evidence=search.log_evidence(every))
 
 
 def _until_exact(search: Search, heap: list[Promise], progress: Progress) -> None:

@@ -34,6 +34,7 @@ NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a siz
 STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
 MOVED = 3.0  # of the noise of all readings, that one standard deviation of a tolerance makes more or less beside a fit
 KEPT = 40  # promises beside one fit that are followed up
+NO_FIT = (WorkbenchError, ArithmeticError, np.linalg.LinAlgError)
 
 Progress = Callable[[str], None]
 Set = frozenset[str]
@@ -321,16 +322,15 @@ def fit_set(search: Search, promise: Promise) -> bool:
     """Fits a set; False where the model has no answer. Replaces a guess of it, and an earlier fit that was worse. A fit
     that ends far below its guess may have ended in a wrong valley."""
     every = promise.every
-    guess = search.guessed.pop(every, -np.inf)
+    guess, bench = search.guessed.pop(every, -np.inf), _behind_the_lead(search)
     try:
-        found = turned(search.bench, _fitted(search.bench, promise))
-        if found.log_evidence + promise.forms < guess - PLAIN:
-            found = from_elsewhere(search.bench, found)
-    except (WorkbenchError, ArithmeticError, np.linalg.LinAlgError) as error:
+        found = _fitted(bench, promise)
+    except NO_FIT as error:
         if every not in search.fitted:
             search.failed[promise.label] = str(error)
         return every in search.fitted
-    if every in search.fitted and found.log_evidence + promise.forms <= search.log_evidence(every):
+    found = _bettered(bench, found, guess - PLAIN - promise.forms)
+    if every in search.fitted and found.log_evidence + promise.forms <= search.by_expansion(every):
         return True
     search.fitted[every] = found
     search.exact.pop(every, None)
@@ -338,6 +338,22 @@ def fit_set(search: Search, promise: Promise) -> bool:
     search.forms[every] = promise.forms
     _lower(search, every, max(guess - search.by_expansion(every), 0.0))
     return True
+
+
+def _bettered(bench: Bench, found: Hypothesis, least: float) -> Hypothesis:
+    """A fit from other directions, and from elsewhere where its ln evidence is less than it should be; as it was where
+    the model has no answer there."""
+    try:
+        found = turned(bench, found)
+        return from_elsewhere(bench, found) if found.log_evidence < least else found
+    except NO_FIT:
+        return found
+
+
+def _behind_the_lead(search: Search) -> Bench:
+    """The bench, whose fits need to be exact only near what leads."""
+    lead = search.fitted[search.ranked[0]].fit.objective
+    return replace(search.bench, fit=replace(search.bench.fit, lead=lead))
 
 
 def _fitted(bench: Bench, promise: Promise) -> Hypothesis:
@@ -354,7 +370,7 @@ def _fitted(bench: Bench, promise: Promise) -> Hypothesis:
     for share in STARTS[:-1]:
         try:
             return begun(share)
-        except WorkbenchError:
+        except NO_FIT:
             continue
     return begun(STARTS[-1])
 

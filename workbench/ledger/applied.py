@@ -14,7 +14,7 @@ calibration can do as well is taken up by the calibration.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -24,11 +24,10 @@ from scipy.linalg import block_diag
 
 from effects.base import Effect
 from effects.parameter import parameters_of
-from workbench.data.stack import Channel, Stack, part_of, rows_in, rows_of, stacked
+from workbench.data.stack import Stack, part_of, rows_in, stacked
 from workbench.data.table import Table
-from workbench.errors import WorkbenchError
 from workbench.ledger.learned import FittedInput, Learned, LearnedRange
-from workbench.likelihood.bench import CONDITION_STEP
+from workbench.likelihood.conditions import readings, with_conditions
 from workbench.likelihood.noise import Noise, measured_noise
 from workbench.likelihood.nuisance import Calibration
 from workbench.likelihood.own_errors import left_open, numerical
@@ -192,7 +191,7 @@ class _Asked:
         at_c = lambda move: readings(self.model_at(none, c + move), stack)  # noqa: E731
         over_p = [_slope(at_p, base, direction, s) for direction, s in zip(np.eye(len(none)), self.known.steps)]
         over_c = [_slope(at_c, base, direction, STEP) for direction in np.eye(len(c))]
-        u = _with_conditions(self.model_at(none, c), stack, base)
+        u = with_conditions(self.model_at(none, c), stack)
         p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
         left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
         unexplained = np.repeat(left, [c.size for c in stack.channels])
@@ -304,43 +303,3 @@ def _slope(at: Callable[[Any], np.ndarray], base: np.ndarray, direction: Any, st
     if missing.any():
         slope[missing] = ((base - at(-step * direction)) / step)[missing]
     return slope
-
-
-def readings(model: Model, stack: Stack) -> np.ndarray:
-    """Readings of a stack; NaN where the model has no steady state (n,)."""
-    return stack.vector([_answers(model, table) for table in stack.tables])
-
-
-def _answers(model: Model, table: Table) -> Mapping[str, np.ndarray]:
-    """Response columns, the rows without an answer found by halves."""
-    try:
-        return model.answers(table)
-    except WorkbenchError:
-        if table.rows == 1:
-            return {name: np.array([np.nan]) for name in table.responses}
-    middle = table.rows // 2
-    halves = [_answers(model, rows_of(table, part)) for part in (slice(None, middle), slice(middle, None))]
-    return {name: np.concatenate([half[name] for half in halves]) for name in table.responses}
-
-
-def _with_conditions(model: Model, stack: Stack, base: np.ndarray) -> np.ndarray:
-    """u of every row with the uncertainty of its conditions, through the slope of this model (n,)."""
-    variance = stack.u**2
-    for number, table in enumerate(stack.tables):
-        channels = [c for c in stack.channels if c.table == number and c.size]
-        for name, u in table.condition_random.items() if channels else ():
-            at = lambda h: _stacked_answers(model, _moved(table, name, h), channels)  # noqa: B023, E731
-            step = CONDITION_STEP * (np.ptp(table.conditions[name]) or 1.0)
-            slopes = _slope(at, np.concatenate([base[c.rows] for c in channels]), 1.0, step)
-            for channel, slope in zip(channels, np.split(slopes, len(channels))):
-                variance[channel.rows] += (slope * u) ** 2
-    return np.sqrt(variance)
-
-
-def _stacked_answers(model: Model, table: Table, channels: Sequence[Channel]) -> np.ndarray:
-    answers = _answers(model, table)
-    return np.concatenate([answers[c.response] for c in channels])
-
-
-def _moved(table: Table, name: str, step: float) -> Table:
-    return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})

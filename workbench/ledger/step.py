@@ -12,7 +12,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from math import log, log1p, prod
+from math import log, log1p
 from pathlib import Path
 
 import numpy as np
@@ -82,7 +82,7 @@ def try_effect(
         log_evidence_gain=float(hypothesis.log_evidence - before.null.log_evidence),
         reason=contradiction(cls, sizes, campaign.tolerances),
     )
-    return _decided(before, after, (model, trial), row, cls.base_rate)
+    return _decided(before, after, (model, trial), row, (cls,))
 
 
 def try_together(
@@ -110,13 +110,16 @@ def try_together(
         parameters={f"{one.name}.{name}": size for one in named for name, size in one.parameters.items()},
         log_evidence_gain=min(one.log_evidence for one in named),
     )
-    return _decided(before, after, (model, trial), row, prod(library[one.name].base_rate for one in named))
+    return _decided(before, after, (model, trial), row, [library[one.name] for one in named])
 
 
-def _decided(before: Bench, after: Bench, models: tuple[Model, Model], row: LedgerStep, base_rate: float) -> Trial:
+def _decided(
+    before: Bench, after: Bench, models: tuple[Model, Model], row: LedgerStep, effects: Sequence[type[Effect]]
+) -> Trial:
     """What was tried, with the decision; models: without and with it; row: undecided, its reason what speaks against"""
     model, trial = models
-    decision, reason = decide(before, after, row.log_evidence_gain, base_rate)
+    rates = [effect.base_rate for effect in effects]
+    decision, reason = decide(before, after, row.log_evidence_gain + sum(log(rate) - log1p(-rate) for rate in rates))
     if decision == ACCEPTED:
         fitted_again = after.fit.predictor.model_at(after.null.x).effects[: len(trial.effects)]
         model = replace(model, effects=fitted_again)
@@ -143,10 +146,9 @@ def best_fit(bench: Bench, cls: type[Effect]) -> Hypothesis:
     return best_alone(bench, signatures, beliefs_of({cls.name(): cls}, signatures.names))
 
 
-def decide(before: Bench, after: Bench, gain: float, base_rate: float) -> tuple[str, str]:
-    """Accepted or refused, and why. gain: of ln p by the effect [nats];  base_rate: of the effect"""
+def decide(before: Bench, after: Bench, odds: float) -> tuple[str, str]:
+    """Accepted or refused, and why. odds: ln of those for what is added, after the data"""
     old, new = (predicted(bench.fit, bench.null) for bench in (before, after))
-    odds = gain + log(base_rate) - log1p(-base_rate)
     words = f"the data speak {_nats(odds)} the effect"
     if old.blocks:
         words += (
@@ -179,7 +181,7 @@ def start_step(bench: Bench) -> LedgerStep:
 def step_of(bench: Bench, number: int, decision: str) -> LedgerStep:
     """A row with the errors of a bench, effect and gain still empty."""
     stack, predictor = bench.stack, bench.fit.predictor.on(bench.stack)
-    error = stack.y - predictor.predict(bench.null.x)
+    error = stack.y - predictor.wherever_known(bench.null.x)
     size = {c.name: _rms(stack.y, c) for c in stack.channels}
     return LedgerStep(
         step=number,
@@ -198,8 +200,8 @@ def step_of(bench: Bench, number: int, decision: str) -> LedgerStep:
 
 
 def _rms(values: np.ndarray, channel: Channel) -> float:
-    """Of the rows of a channel, in its own unit."""
-    return float(np.sqrt(np.mean((values[channel.rows] / channel.scale) ** 2)))
+    """Of the rows of a channel that have a value, in its own unit."""
+    return float(np.sqrt(np.nanmean((values[channel.rows] / channel.scale) ** 2)))
 
 
 def _left_out(bench: Bench) -> float | None:

@@ -64,28 +64,13 @@ def add_effect(
     out: folder of ``ledger.csv`` and ``model.toml``, which are the only files written
     before: diagnosis of the model as it is, where it was made already; it holds on if the effect is refused
     """
-    number = len(read_ledger(out / LEDGER, campaign.id, model.base.name).steps)
-    trial = try_effect(model, campaign, library, name, number or 1, progress)
+    trial = try_effect(model, campaign, library, name, _number(model, campaign, out), progress)
     return _decided(trial, model, campaign, library, out, seed, progress, before)
 
 
-def add_together(
-    model: Model,
-    campaign: Campaign,
-    library: Mapping[str, type[Effect]],
-    before: Diagnosis,
-    out: Path,
-    seed: int | None = None,
-    progress: Callable[[str], None] = lambda words: None,
-) -> Added:
-    """As ``add_effect`` with all that a diagnosis names at once: one may make no sense without the others.
-
-    before: diagnosis of the model as it is
-    """
-    number = len(read_ledger(out / LEDGER, campaign.id, model.base.name).steps)
-    named = [ranked for ranked in before.ranking if ranked.name in before.names]
-    trial = try_together(model, campaign, library, named, number or 1, progress)
-    return _decided(trial, model, campaign, library, out, seed, progress, before)
+def _number(model: Model, campaign: Campaign, out: Path) -> int:
+    """Of the next step."""
+    return len(read_ledger(out / LEDGER, campaign.id, model.base.name).steps) or 1
 
 
 def _decided(
@@ -136,7 +121,10 @@ def skeleton_for(path: Path, campaign: Campaign | None, library, model: Model | 
     """The text of an effect file; with a campaign its first guess comes from the residual."""
     if campaign is None:
         return skeleton(path, {}, "response", "generic", ["condition"], 1.0)
-    signature = diagnose(model, campaign, library).residual_signature
+    found = diagnose(model, campaign, library)
+    if found.verdict == CONVENTION:
+        raise WorkbenchError(f"{campaign.folder}: settle its conventions first, `airgap diagnose` says which.")
+    signature = found.residual_signature
     bench = bench_of(model, campaign, library)
     channel = next(c for c in bench.stack.channels if c.name == signature["channel"])
     table = bench.stack.tables[channel.table]
@@ -156,28 +144,26 @@ def walk(
 
     Of several names the one with the most evidence by itself is tried first; where each alone is refused, all together;
     what was refused once more when others have been accepted.
-    out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the fitted inputs also where nothing was added
+    out: folder of ``ledger.csv`` and ``model.toml``; the latter holds the inputs fitted to these data, effects or none
     Nothing is tried or written while conventions are not settled.
     """
     diagnosis = diagnose(model, campaign, library, SEED if seed is None else seed, progress)
     if diagnosis.verdict == CONVENTION:
         return read_ledger(out / LEDGER, campaign.id, model.base.name), diagnosis
     refused: set[str] = set()
+    begun = model
     for _ in range(MOST_STEPS):
-        for added in _trials(model, campaign, library, diagnosis, refused, out, seed, progress):
-            if added.step.decision == ACCEPTED:
-                model, diagnosis = added.model, added.diagnosis
-                break
-            refused.add(added.step.effect)
-        else:
+        trials = _trials(model, campaign, library, diagnosis, refused, out, seed, progress)
+        added = next((one for one in trials if one.step.decision == ACCEPTED), None)
+        if added is None:
             break
+        model, diagnosis = added.model, added.diagnosis
     path = out / LEDGER
-    if not path.exists() or not (out / NAME).exists():
+    if model is begun:
         bench = bench_of(model, campaign, library)
-    if not path.exists():
-        append(path, replace(start_step(bench), verdict=diagnosis.verdict), campaign, model)
-    if not (out / NAME).exists():
         write_model(out / NAME, learned_from(bench))
+        if not path.exists():
+            append(path, replace(start_step(bench), verdict=diagnosis.verdict), campaign, model)
     return told(read_ledger(path, campaign.id, model.base.name), read_model(out / NAME, library)), diagnosis
 
 
@@ -186,27 +172,35 @@ def _trials(
     campaign: Campaign,
     library: Mapping[str, type[Effect]],
     diagnosis: Diagnosis,
-    refused: Collection[str],
+    refused: set[str],
     out: Path,
     seed: int | None,
     progress: Callable[[str], None],
 ) -> Iterator[Added]:
-    """What is named, one after the other, then together; what has no answer is refused in the ledger.
+    """What is named, one after the other, then together, as one may make no sense without the others; what has no
+    answer is refused in the ledger.
 
-    refused: what was at steps before
+    refused: what was at steps before; what is now is added
     """
-    attempts = {
-        name: partial(add_effect, model, campaign, library, name, out, seed, progress, diagnosis)
+    attempts: dict[str, Callable[[int], Trial]] = {
+        name: partial(try_effect, model, campaign, library, name, progress=progress)
         for name in by_evidence(diagnosis, refused)
     }
     if len(diagnosis.names) > 1 and diagnosis.verdict != GROUP:
+        named = [ranked for ranked in diagnosis.ranking if ranked.name in diagnosis.names]
         every = TOGETHER.join(diagnosis.names)
-        attempts[every] = partial(add_together, model, campaign, library, diagnosis, out, seed, progress)
+        attempts[every] = partial(try_together, model, campaign, library, named, progress=progress)
     for name, attempt in attempts.items():
         try:
-            yield attempt()
+            trial = attempt(_number(model, campaign, out))
         except WorkbenchError as no_answer:
             _refuse(name, str(no_answer), model, campaign, library, out / LEDGER)
+            refused.add(name)
+            continue
+        added = _decided(trial, model, campaign, library, out, seed, progress, diagnosis)
+        if added.step.decision == REFUSED:
+            refused.add(name)
+        yield added
 
 
 def _refuse(

@@ -17,6 +17,7 @@ from workbench.data.schema import BY_REGION
 from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
+from workbench.likelihood.conditions import with_conditions
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
 from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
@@ -30,7 +31,6 @@ MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is sai
 SHARPENINGS = 3  # times a fit is repeated with a base model expanded about its result
 SHARP = 0.3  # change of the objective [nats] that is none
 PULLED = 6.0  # standard deviations of a tolerance from where it is declared, which chance does not explain
-CONDITION_STEP = 1e-3  # of the range of a condition, to see how its own uncertainty acts
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,8 @@ def bench_of(
     tables = tuple(thinned(table, most_rows) for table in sealed.tables)
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = predictor.stack
-    stack = replace(stack, u=_with_conditions(predictor), left_open=left_open(predictor.model, stack))
+    u = with_conditions(predictor.model_at(predictor.start), stack)
+    stack = replace(stack, u=u, left_open=left_open(predictor.model, stack))
     chosen = _chosen(tables)
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
@@ -238,24 +239,6 @@ def _problem(predictor: DirectPredictor, stack: Stack, noise: Noise, chosen: Seq
     white = whitener(part, noise_on_rows(noise, stack, chosen))
     dof = np.array([channel.dof for channel in noise.channels])
     return Problem(predictor.on(part), part, white, dof, predictor.start)
-
-
-def _with_conditions(predictor: DirectPredictor) -> np.ndarray:
-    """u of every row with the uncertainty of its conditions, through the slope of the nominal model (n,)."""
-    stack, model = predictor.stack, predictor.model_at(predictor.start)
-    variance = stack.u**2
-    for number, table in enumerate(stack.tables):
-        for name, u in table.condition_random.items():
-            step = CONDITION_STEP * (np.ptp(table.conditions[name]) or 1.0)
-            up, down = (model.answers(_moved(table, name, sign * step)) for sign in (1, -1))
-            for channel in (c for c in stack.channels if c.table == number):
-                slope = (up[channel.response] - down[channel.response]) / (2 * step)
-                variance[channel.rows] += (slope * u) ** 2
-    return np.sqrt(variance)
-
-
-def _moved(table: Table, name: str, step: float) -> Table:
-    return replace(table, conditions={**table.conditions, name: table.conditions[name] + step})
 
 
 def _thinning(tables: Sequence[Table], used: Sequence[Table]) -> tuple[str, ...]:

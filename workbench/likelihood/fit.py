@@ -27,6 +27,8 @@ from workbench.likelihood.whitening import Whitener
 ITERATIONS = 15
 CLOSE = 1e-4  # change of the objective [nats] at which a fit is done
 ROUND_CLOSE = 1e-2  # change of the objective [nats] that new slopes may still bring when it is
+BEHIND = 30.0  # nats behind what leads, from which on a fit may be less exact,
+INEXACT = 0.005  # by this share of what it lies further behind
 LENGTHS = (1.0, 0.5, 0.2, 0.05)  # of a bent step that are tried where a straight one is too long
 DAMPINGS = (1.0, 30.0)
 ALONG = 0.1  # of a step, over which its bend is taken by differences
@@ -54,13 +56,21 @@ def prior_weight(z: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Readings, their noise and the predictor for one set of rows. start: x of the nominal device (m,)."""
+    """Readings, their noise and the predictor for one set of rows.
+
+    start: x of the nominal device (m,);  lead: objective of the best fit so far, infinite where there is none
+    """
 
     predictor: Predictor
     stack: Stack
     white: Whitener
     dof: np.ndarray
     start: np.ndarray
+    lead: float = np.inf
+
+    def close(self, objective: float) -> float:
+        """Change that new slopes may still bring when a fit is done at an objective [nats]."""
+        return max(ROUND_CLOSE, INEXACT * (objective - self.lead - BEHIND))
 
     def residual(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
         """Whitened reading minus prediction (n,)."""
@@ -132,25 +142,25 @@ def fitted(
     """
     search = _Search(problem, tuple(effects), len(x))
     p = np.concatenate([x, z])
-    p, _ = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes, ROUND_CLOSE)
+    p, *_ = search.descend(p, search.nuisance_slopes(x, z) if slopes is None else slopes, ROUND_CLOSE)
     return _with_new_slopes(search, p)
 
 
 def refitted(problem: Problem, fit: Fit) -> Fit:
     """The fit again where the problem is another one, from where it ended, with its slopes if that changes little."""
     search = _Search(problem, fit.effects, len(fit.x))
-    p, gain = search.descend(np.concatenate([fit.x, fit.z]), fit.slopes)
-    return search.result(p, fit.slopes) if gain < ROUND_CLOSE else _with_new_slopes(search, p)
+    p, gain, value = search.descend(np.concatenate([fit.x, fit.z]), fit.slopes)
+    return search.result(p, fit.slopes) if gain < problem.close(value) else _with_new_slopes(search, p)
 
 
 def _with_new_slopes(search: _Search, p: np.ndarray) -> Fit:
     """The fit from p on, its slopes taken anew until that gains no more: each time by the same share of what the time
-    before did."""
+    before did; of one that lies far behind what leads, nothing that matters."""
     gain = 0.0
     for _ in range(ROUNDS):
         slopes, before = search.nuisance_slopes(p[: search.m], p[search.m :]), gain
-        p, gain = search.descend(p, slopes)
-        if gain * min(gain / max(before, CLOSE), 1.0) < ROUND_CLOSE:
+        p, gain, value = search.descend(p, slopes)
+        if gain * min(gain / max(before, CLOSE), 1.0) < search.problem.close(value):
             break
     return search.result(p, slopes)
 
@@ -232,10 +242,12 @@ class _Search:
             slopes[:, k - self.m] = one_sided(self.predict, p, k, inward, self.predict(p))
         return self.problem.white(slopes)
 
-    def descend(self, p: np.ndarray, nuisance_slopes: np.ndarray, close: float = CLOSE) -> tuple[np.ndarray, float]:
-        """Where a step with these slopes promises or gains less than ``close`` [nats], or little of what it promises,
-        and what the objective gains by all of them [nats]. The slopes by the effects are taken anew where these have
-        moved, and before a step is believed to be the last."""
+    def descend(
+        self, p: np.ndarray, nuisance_slopes: np.ndarray, close: float = CLOSE
+    ) -> tuple[np.ndarray, float, float]:
+        """Where a step with these slopes promises or gains less than ``close`` [nats], or little of what it promises;
+        what the objective gains by all of them, and what it is there [nats]. The slopes by the effects are taken anew
+        where these have moved, and before a step is believed to be the last."""
         nuisance_slopes, residual = self.problem.white(nuisance_slopes), self.residual(p)
         first = value = self.objective(p, residual)
         taken_at, is_last = p, True
@@ -251,7 +263,7 @@ class _Search:
             is_last = gain < max(close, POOR * line.promised)
             if is_last and is_new:
                 break
-        return p, first - value
+        return p, first - value, value
 
     def _is_far(self, p: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.any(np.abs(p - other)[self.m :] > NEAR))

@@ -100,10 +100,12 @@ class EffectParameters:
     def moved(self, x: np.ndarray) -> Effect:
         """The effect with its parameters moved by x standard normal numbers (k,) from where they stand; at 0 bit for
         bit."""
-        if not np.any(x):
-            return self.effect
-        now = [p.prior.standard(getattr(self.effect, name)) for name, p in parameters_of(self.effect).items()]
-        return self.effect.at(np.array(now) + x)
+        return self.effect.at(self.now + x) if np.any(x) else self.effect
+
+    @property
+    def now(self) -> np.ndarray:
+        """Where they stand, as standard normal numbers (k,)."""
+        return np.array([p.prior.standard(getattr(self.effect, n)) for n, p in parameters_of(self.effect).items()])
 
 
 Calibration = InstrumentError | DeclaredError

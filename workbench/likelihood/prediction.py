@@ -27,8 +27,9 @@ class Prediction:
 
 
 def predicted(problem: Problem, fit: Fit) -> Prediction:
-    """The prediction of a fit. Parameters are as uncertain as their priors and the other rows leave them."""
-    zero = fit.residual + fit.jacobian @ np.concatenate([fit.x, fit.z])
+    """The prediction of a fit. Parameters are as uncertain as their priors and the other rows leave them; those of
+    effects that the model has, too, though they stand where all rows have put them."""
+    zero = fit.residual + fit.jacobian @ np.concatenate([fit.x - problem.predictor.centre, fit.z])
     found = [_left_out(fit.jacobian, zero, rows) for rows in regions(problem)]
     if not found:
         return Prediction(0, 0, float("nan"), 0.0)

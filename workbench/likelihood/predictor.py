@@ -15,6 +15,7 @@ from geometry.errors import GeometryError
 from materials.errors import MaterialError
 from workbench.data.stack import Stack
 from workbench.errors import WorkbenchError
+from workbench.likelihood.conditions import readings
 from workbench.likelihood.nuisance import EffectParameters, InstrumentError, Nuisance, TolerancedInput
 from workbench.likelihood.own_errors import numerical
 from workbench.models.model import Model
@@ -28,6 +29,7 @@ class Predictor(Protocol):
 
     names: tuple[str, ...]  # one a component of x
     stack: Stack  # whose rows are predicted
+    centre: np.ndarray  # x (m,) at the centres of the priors: elsewhere than zero for what the model has learned
     shapes: np.ndarray  # of the model's own numerical error (n, L); their weights are the last L components of x
 
     def predict(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
@@ -74,6 +76,13 @@ class DirectPredictor:
     def start(self) -> np.ndarray:
         """x of the nominal device with the effects as they stand in the model, or the origin that was given (m,)."""
         return np.zeros(len(self.names)) if self.origin is None else self.origin
+
+    @property
+    def centre(self) -> np.ndarray:
+        """x at the centres of the priors (m,): zero but for the effects of the model, which stand where they were
+        fitted."""
+        own = [-effect.now for effect in self.fitted]
+        return np.concatenate([np.zeros(len(self.nuisances)), *own, np.zeros(self.weights)])
 
     def answering(self) -> DirectPredictor:
         """This, or where the nominal device has no answer in some row, the same from an origin that has one: one
@@ -136,7 +145,15 @@ class DirectPredictor:
             exact = self.stack.vector([model.answers(table) for table in self.stack.tables])
         except (GeometryError, MaterialError) as error:
             raise WorkbenchError(f"there can be no such device: {error}") from error
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            raise WorkbenchError(f"the model has no answer: {error}") from error
+        if not np.isfinite(exact).all():
+            raise WorkbenchError(f"the answer of the model is no number in {np.sum(~np.isfinite(exact))} readings")
         return exact + self.shapes @ x[len(x) - self.weights :] if self.weights else exact
+
+    def wherever_known(self, x: np.ndarray, effects: Sequence[Effect] = ()) -> np.ndarray:
+        """As ``predict``; NaN in rows where the model has no answer (n,)."""
+        return readings(self.model_at(x, effects), self.stack) + self.shapes @ x[len(x) - self.weights :]
 
     def on(self, stack: Stack) -> DirectPredictor:
         """The same for other rows."""
@@ -170,11 +187,10 @@ def one_sided(
     answer: Callable[[np.ndarray], np.ndarray], p: np.ndarray, k: int, step: float, base: np.ndarray
 ) -> np.ndarray:
     """Slope of answers by component k of p (n,), by a step to one side; to the other where the model has no answer
-    there: a motor at its limit of voltage has one on one side only. base: answer(p)"""
-    moved = p.copy()
+    there, as a motor at its limit of voltage, or does not move, as an effect on its bound. base: answer(p)"""
+    along = step * np.eye(len(p))[k]
     try:
-        moved[k] = p[k] + step
-        return (answer(moved) - base) / step
+        slope = (answer(p + along) - base) / step
+        return slope if slope.any() else (base - answer(p - along)) / step
     except WorkbenchError:
-        moved[k] = p[k] - step
-        return (base - answer(moved)) / step
+        return (base - answer(p - along)) / step

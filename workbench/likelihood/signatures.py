@@ -227,8 +227,9 @@ def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = 
             found.setdefault(effect.name(), []).append(signature(effect, change))
         except (WorkbenchError, ArithmeticError, ValueError) as error:
             failed[effect.name()] = str(error)
-    seen = {n: tuple(v) for n, v in found.items() if n not in failed and any(_is_seen(bench, s) for s in v)}
-    failed |= {n: "it changes nothing in these data" for n in found if n not in seen and n not in failed}
+    seen = {n: tuple(v) for n, v in found.items() if any(_is_seen(bench, s) for s in v)}
+    failed = {n: why for n, why in failed.items() if n not in found}  # another form of it has an answer
+    failed |= {n: "it changes nothing in these data" for n in found if n not in seen}
     return Signatures(seen, failed, bench.fit.white)
 
 

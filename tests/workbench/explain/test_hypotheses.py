@@ -263,6 +263,39 @@ def test_the_error_of_a_law_widens_the_covariance_by_its_share(bench):
     assert log_det == pytest.approx(0.5 * np.linalg.slogdet(np.eye(len(x)) + wrong)[1], abs=0.05)
 
 
+class Unheld(Wrong):
+    """Without its partner there is no answer, as where a supply cannot hold a saturated motor."""
+
+    def on_response(self, response, conditions, kind, design):
+        if not response.get("held"):
+            raise WorkbenchError("no steady state")
+        return super().on_response(response, conditions, kind, design)
+
+
+class Holding(Bump):
+    """The partner."""
+
+    def on_response(self, response, conditions, kind, design):
+        return super().on_response(response, conditions, kind, design) | {"held": True}
+
+
+def test_the_error_of_a_law_that_has_no_answer_alone_is_that_beside_its_partner(bench):
+    holding = Holding().at([1.0])
+    alone = with_law_error(bench.fit, (Wrong().at([1.0]),), np.zeros(2))[1]
+    beside = with_law_error(bench.fit, (holding, Unheld().at([1.0])), np.zeros(2))[1]
+    assert beside == pytest.approx(alone, rel=1e-9)
+
+
+def test_a_fit_is_kept_where_another_start_of_it_has_no_answer(bench, monkeypatch):
+    def none(*_):
+        raise WorkbenchError("no answer")
+
+    monkeypatch.setattr(tried_module, "turned", none)
+    signatures = signatures_of(bench, (Hardening(),))
+    best = best_alone(bench, signatures, beliefs_of({"hardening": Hardening}, signatures.names))
+    assert best.names == {"hardening"}
+
+
 def test_the_error_of_a_law_is_that_of_the_fitted_size_wherever_the_fit_began(tmp_path):
     """From a start far too large a fit would be free to be wrong by a large error, and its evidence not its own."""
     bench = sure_of_noise(tmp_path, extra=lambda x: 4e5 * x**3)

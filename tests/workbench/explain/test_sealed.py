@@ -1,11 +1,17 @@
 """Rows that no fit has seen take a name back where the effect makes them worse, and say so."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
+from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import diagnose
+from workbench.explain.hypotheses import null_of
+from workbench.explain.sealed import opened
+from workbench.likelihood.bench import bench_of
 from workbench.models.model import Model
 
 REGION = '{ rule = "by region" }'
@@ -40,3 +46,20 @@ def test_sealed_rows_that_disagree_for_another_reason_leave_the_name(tmp_path):
     found = diagnosis_with(tmp_path, lambda x: even_part(x) + np.where(np.abs(x) < WITHIN, 0.0, 2.0))
     assert found.names == ("bump",) and not found.sealed.holds and not found.contradictions
     assert found.probability == pytest.approx(1.0, abs=0.03)
+
+
+def test_sealed_rows_without_an_answer_speak_against_the_model_and_end_nothing(tmp_path):
+    """The model ends within what was sealed, as a motor at its limit of voltage."""
+
+    class Ending(SpringModel):
+        def respond(self, design, kind, conditions):
+            if np.any(np.abs(conditions["displacement"]) > 0.0095):
+                raise WorkbenchError("no steady state")
+            return super().respond(design, kind, conditions)
+
+    campaign = read_campaign(written(tmp_path, n=80, repeats=3, holdout=REGION))
+    bench = bench_of(Model(SpringModel(), SpringModel().design(campaign.device)), campaign, LIBRARY)
+    ending = replace(bench.fit.predictor.model, base=Ending())
+    fit = replace(bench.fit, predictor=replace(bench.fit.predictor, model=ending))
+    found = opened(bench, replace(null_of(bench), problem=fit))
+    assert found.n == bench.held_out.stack.size and not found.holds and found.p_value == 0.0

@@ -1,6 +1,6 @@
 """What a fit by Gauss and Newton asks of the model, and where it ends."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -9,7 +9,7 @@ from effects.base import DesignEffect
 from effects.parameter import parameter
 from effects.prior import Normal
 from workbench.data.stack import Channel, Stack
-from workbench.likelihood.fit import Problem, fitted
+from workbench.likelihood.fit import INEXACT, Problem, fitted
 from workbench.likelihood.whitening import Whitener
 
 ROWS = 40
@@ -59,6 +59,14 @@ def test_a_model_bent_in_the_size_is_followed_to_its_maximum():
     found, asked = fit(lambda x, size: x * PLACES + np.exp(size * PLACES), (0.3, 1.4))
     assert_allclose((found.x[0], found.z[0]), (0.3, 1.4), atol=1e-3)
     assert asked <= 16
+
+
+def test_a_fit_far_behind_what_leads_is_less_exact_by_no_more_than_a_share_of_that():
+    ridge = lambda x, size: np.exp((x + size) * PLACES) + 0.05 * x * size * PLACES**2  # noqa: E731
+    near, far = (replace(problem(ridge, (2.0, 1.0)), lead=lead) for lead in (np.inf, -1e3))
+    exact, rough = (fitted(one, (Bent(),), np.zeros(1), np.zeros(1)) for one in (near, far))
+    assert far.predictor.asked < near.predictor.asked
+    assert 0.1 < rough.objective - exact.objective < INEXACT * 1e3
 
 
 def test_a_model_bent_in_a_tolerance_gets_new_slopes_instead_of_short_steps():

@@ -20,7 +20,7 @@ class Linear:
 
     def __init__(self, stack, slopes):
         self.stack, self.slopes, self.shapes = stack, slopes, np.zeros((len(slopes), 0))
-        self.names = tuple("abcdefgh"[: slopes.shape[1]])
+        self.names, self.centre = tuple("abcdefgh"[: slopes.shape[1]]), np.zeros(slopes.shape[1])
 
     def predict(self, x, effects=()):
         return self.slopes @ x
@@ -88,9 +88,9 @@ def test_a_step_that_raises_the_error_of_prediction_is_refused():
     plain, bent = (bench(of_polynomial(order, readings(4, wave))) for order in (2, 7))
     old, new = (predicted(b.fit, b.null).chi2_per_n for b in (plain, bent))
     assert new > old and np.mean(bent.null.residual**2) < np.mean(plain.null.residual**2)
-    decision, words = decide(plain, bent, gain=50.0, base_rate=0.1)
+    decision, words = decide(plain, bent, 50.0)
     assert decision == REFUSED and words.endswith("it rises") and f"{new:.3g}" in words
-    assert decide(bent, plain, gain=50.0, base_rate=0.1)[0] == ACCEPTED
+    assert decide(bent, plain, 50.0)[0] == ACCEPTED
 
 
 def test_a_gain_below_the_base_rate_is_refused_and_chance_does_not_refuse():
@@ -99,8 +99,8 @@ def test_a_gain_below_the_base_rate_is_refused_and_chance_does_not_refuse():
     old, new = (predicted(b.fit, b.null).chi2_per_n for b in (plain, more))
     assert max(old, new) < noise_alone(ROWS) and old != new
     for before, after in ((plain, more), (more, plain)):
-        assert decide(before, after, gain=3.0, base_rate=0.1)[0] == ACCEPTED, "odds e^3 to nine"
-        assert decide(before, after, gain=2.0, base_rate=0.1)[0] == REFUSED
+        assert decide(before, after, 0.8)[0] == ACCEPTED
+        assert decide(before, after, -0.2)[0] == REFUSED
 
 
 def test_noise_alone_stays_below_its_level_in_nineteen_of_twenty():
@@ -108,8 +108,21 @@ def test_noise_alone_stays_below_its_level_in_nineteen_of_twenty():
     assert np.mean(squares < noise_alone(30)) == pytest.approx(0.95, abs=0.011)
 
 
+def test_what_stands_where_all_rows_have_put_it_is_not_known_where_a_region_is_left_out():
+    """A step of 4 at the highest speeds, that nothing else tells of, as a tolerance of one about zero, and as a
+    parameter of an effect that was fitted: it stands at 4, the centre of its prior lies four deviations below."""
+    high, noise = np.zeros(ROWS), readings(6) - 3 * SPEED / 6
+    *_, last = regions(of_polynomial(2, noise))
+    high[last] = 1.0
+    fresh, learned = problem(high[:, None], 4.0 * high + noise), problem(high[:, None], noise)
+    assert predicted(learned, fit(learned)).chi2_per_n < 1.4, "as if zero, where it stands, were the centre"
+    learned.predictor.centre = np.array([-4.0])
+    old, new = (predicted(one, fit(one)).chi2_per_n for one in (fresh, learned))
+    assert old > 5 and new == pytest.approx(old, rel=0.05)
+
+
 def test_it_is_said_where_prediction_was_not_tested():
     turn = np.linspace(0, 6, ROWS)
     one = bench(problem(np.ones((ROWS, 1)), readings(3), angle_mech=turn))
-    decision, words = decide(one, one, 50.0, 0.1)
+    decision, words = decide(one, one, 50.0)
     assert decision == ACCEPTED and "was not tested" in words
