@@ -17,7 +17,18 @@ from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
 from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
-from workbench.explain.tried import REACH, Progress, Promise, Search, Set, expand, fit_set, label_of, promised_of
+from workbench.explain.tried import (
+    NO_FIT,
+    REACH,
+    Progress,
+    Promise,
+    Search,
+    Set,
+    expand,
+    fit_set,
+    label_of,
+    promised_of,
+)
 from workbench.likelihood.bench import Bench, reweighed
 from workbench.likelihood.signatures import Signatures, candidates, signatures_of
 from workbench.likelihood.unknown import Shape, shapes_of
@@ -203,7 +214,11 @@ def _exactly(search: Search, progress: Progress) -> None:
             break
         progress("field solutions for " + label_of(names))
         before = search.fitted[names].log_evidence
-        search.fitted[names] = exact(search.fitted[names])
+        try:
+            search.fitted[names] = exact(search.fitted[names])
+        except NO_FIT as error:  # it ended at a device that cannot be
+            search.drop(names, str(error))
+            continue
         search.exact[names] = search.fitted[names].log_evidence - before
         if search.beside.pop(names, None) is not None:
             weigh(search, names)

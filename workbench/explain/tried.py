@@ -124,6 +124,13 @@ class Search:
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
     elsewhere: list[tuple[np.ndarray, Signatures]] = field(default_factory=list)
 
+    def drop(self, names: Set, why: str) -> None:
+        """Takes back a set that was fitted and cannot be."""
+        del self.fitted[names]
+        self.forms.pop(names, None)
+        self.beside.pop(names, None)
+        self.failed[label_of(names)] = why
+
     def log_evidence(self, names: Set) -> float:
         """Of a set that was fitted, all its forms together [nats]."""
         return self.fitted[names].log_evidence + self.forms.get(names, 0.0) + self.exactness(names)

@@ -22,7 +22,7 @@ from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
 from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
-from workbench.likelihood.predictor import DirectPredictor
+from workbench.likelihood.predictor import DirectPredictor, answers_only
 from workbench.likelihood.regions import sealed_region
 from workbench.likelihood.whitening import Whitener, whitener
 from workbench.models.model import Model
@@ -135,8 +135,7 @@ def bench_of(
     first = fitted(drawn, (), predictor.start, np.zeros(0))
     noise = _noise_at(stack, chosen, predictor.predict(first.x))
     drawn = _problem(predictor, stack, noise, chosen)
-    fit, null = sharpened(drawn, refitted(drawn, first))
-    fit = drawn if _far(fit, null) else fit
+    fit, null = _where_it_can_be(drawn, refitted(drawn, first))
     held_out = _held_out(fit.predictor, stack, noise, chosen)
     remarks = campaign.complaints + _thinning(campaign.tables, tables) + _untested(tables)
     white = whitener(stack, noise)
@@ -205,9 +204,22 @@ def _far(fit: Problem, null: Fit) -> bool:
     return bool(np.abs(null.x - fit.start).max(initial=0.0) > PULLED)
 
 
+def _where_it_can_be(drawn: Problem, null: Fit) -> tuple[Problem, Fit]:
+    """Sharpened, unless what is missing has pulled the tolerances to a device that is far off or cannot be."""
+    try:
+        fit, sharp = sharpened(drawn, null)
+    except WorkbenchError:
+        return drawn, null
+    return drawn if _far(fit, sharp) else fit, sharp
+
+
 def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
     """The fit again with a base model that is exact where it ended, for base models that answer by an expansion. Its
-    slopes are taken anew: those of an expansion far off promised 0.01 nats where 1.9 were to be had."""
+    slopes are taken anew: those of an expansion far off promised 0.01 nats where 1.9 were to be had.
+
+    Raises:
+        WorkbenchError: there can be no such device.
+    """
     for _ in range(SHARPENINGS):
         model = problem.predictor.model
         if not model.base.is_expansion:
@@ -215,7 +227,8 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         there = problem.predictor.model_at(fit.x, fit.at_maximum)
         rows = (table for table in problem.stack.tables if table.rows)
         tables = [replace(table, conditions=there.true_conditions(table)) for table in rows]
-        base = model.base.recentred(there.design_as_built, tables)
+        with answers_only():
+            base = model.base.recentred(there.design_as_built, tables)
         predictor = replace(problem.predictor, model=replace(model, base=base))
         problem, before = replace(problem, predictor=predictor), fit.objective
         fit = fitted(problem, fit.effects, fit.x, fit.z)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any, Protocol
@@ -140,13 +141,9 @@ class DirectPredictor:
             WorkbenchError: the model has no answer there, or there can be no such device: a step of a fit may be long.
         """
         self.calls[0] += 1
-        try:
+        with answers_only():
             model = self.model_at(x, effects)
             exact = self.stack.vector([model.answers(table) for table in self.stack.tables])
-        except (GeometryError, MaterialError) as error:
-            raise WorkbenchError(f"there can be no such device: {error}") from error
-        except (ArithmeticError, np.linalg.LinAlgError) as error:
-            raise WorkbenchError(f"the model has no answer: {error}") from error
         if not np.isfinite(exact).all():
             raise WorkbenchError(f"the answer of the model is no number in {np.sum(~np.isfinite(exact))} readings")
         return exact + self.shapes @ x[len(x) - self.weights :] if self.weights else exact
@@ -158,6 +155,21 @@ class DirectPredictor:
     def on(self, stack: Stack) -> DirectPredictor:
         """The same for other rows."""
         return replace(self, stack=stack, least_shapes=self.weights)
+
+
+@contextmanager
+def answers_only() -> Iterator[None]:
+    """Where a model is asked for what may not be.
+
+    Raises:
+        WorkbenchError: in the place of all that says so.
+    """
+    try:
+        yield
+    except (GeometryError, MaterialError) as error:
+        raise WorkbenchError(f"there can be no such device: {error}") from error
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        raise WorkbenchError(f"the model has no answer: {error}") from error
 
 
 def _near(m: int) -> Iterator[np.ndarray]:

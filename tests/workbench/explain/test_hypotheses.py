@@ -15,6 +15,7 @@ import workbench.explain.tried as tried_module
 from effects.base import ResponseEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal, Normal, Uniform
+from geometry.errors import GeometryError
 from tests.workbench.toy_bench import LIBRARY, RATE, Bump, Hardening, Spring, SpringModel, written
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
@@ -380,6 +381,26 @@ def test_a_fit_ends_where_the_expansion_is_exact(bench):
     assert sharp.x == pytest.approx(bench.null.x, abs=0.15)
     effect = alone(bench, Hardening)
     assert exact(effect) is effect  # nothing to do for a model that is exact everywhere
+
+
+class Unbuildable(Expansion):
+    """It cannot be had about any other place, as a mesh that cannot be moved that far."""
+
+    def recentred(self, design, tables=()):
+        raise GeometryError("triangles would turn over")
+
+
+def test_what_ends_at_a_device_that_cannot_be_is_taken_back(bench):
+    """The campaign is still answered, by what is left."""
+    expansion = replace(bench.fit.predictor, model=replace(bench.fit.predictor.model, base=Unbuildable()))
+    problem = replace(bench.fit, predictor=expansion)
+    with pytest.raises(WorkbenchError, match="no such device: triangles would turn over"):
+        sharpened(problem, bench.null)
+    somewhere = replace(bench, fit=problem, model=expansion.model)
+    found = searched(somewhere, {"hardening": Hardening})
+    assert "hardening" in found.failed and found.ranked[0] != {"hardening"}
+    whole = bench_of(expansion.model, bench.campaign, LIBRARY)
+    assert whole.fit.predictor.model.base.about == Expansion.about
 
 
 # ---- promises --------------------------------------------------------------------------------------------------------
