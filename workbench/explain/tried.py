@@ -337,7 +337,7 @@ def fit_set(search: Search, promise: Promise) -> bool:
             search.failed[promise.label] = str(error)
         return every in search.fitted
     found = _bettered(bench, found, guess - PLAIN - promise.forms)
-    if every in search.fitted and found.log_evidence + promise.forms <= search.by_expansion(every):
+    if every in search.fitted and found.log_evidence + promise.forms <= search.log_evidence(every):
         return True
     search.fitted[every] = found
     search.exact.pop(every, None)
