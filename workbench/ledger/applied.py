@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -191,7 +190,7 @@ class _Asked:
         at_c = lambda move: readings(self.model_at(none, c + move), stack)  # noqa: E731
         over_p = [_slope(at_p, base, direction, s) for direction, s in zip(np.eye(len(none)), self.known.steps)]
         over_c = [_slope(at_c, base, direction, STEP) for direction in np.eye(len(c))]
-        u = with_conditions(self.model_at(none, c), stack)
+        u = with_conditions(self.model_at(none, c), stack, base)
         p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
         left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
         unexplained = np.repeat(left, [c.size for c in stack.channels])
@@ -294,7 +293,9 @@ def _outer(covariance: np.ndarray) -> np.ndarray:
     return np.outer(sd, sd)
 
 
-def _slope(at: Callable[[Any], np.ndarray], base: np.ndarray, direction: Any, step: float) -> np.ndarray:
+def _slope(
+    at: Callable[[np.ndarray], np.ndarray], base: np.ndarray, direction: np.ndarray, step: float
+) -> np.ndarray:
     """d readings / d number by a step to one side, to the other where there is no answer; zero for a step of zero."""
     if step == 0.0:
         return np.zeros_like(base)

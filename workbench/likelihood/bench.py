@@ -125,12 +125,13 @@ def bench_of(
     tables = tuple(thinned(table, most_rows) for table in sealed.tables)
     predictor = predictor_of(model, campaign, library, stacked(tables), progress).answering()
     stack = predictor.stack
-    u = with_conditions(predictor.model_at(predictor.start), stack)
+    here = predictor.predict(predictor.start)
+    u = with_conditions(predictor.model_at(predictor.start), stack, here)
     stack = replace(stack, u=u, left_open=left_open(predictor.model, stack))
     chosen = _chosen(tables)
     if not any(mask.any() for mask in chosen):
         raise WorkbenchError(f"{campaign.folder}: every row is held out; leave some rows for the fit.")
-    noise = _noise_at(stack, chosen, predictor.predict(predictor.start))
+    noise = _noise_at(stack, chosen, here)
     drawn = _problem(predictor, stack, noise, chosen)
     first = fitted(drawn, (), predictor.start, np.zeros(0))
     noise = _noise_at(stack, chosen, predictor.predict(first.x))

@@ -21,9 +21,9 @@ def readings(model: Model, stack: Stack) -> np.ndarray:
     return stack.vector([_answers(model, table) for table in stack.tables])
 
 
-def with_conditions(model: Model, stack: Stack) -> np.ndarray:
-    """u of every row with the uncertainty of its conditions, through the slope of this model (n,)."""
-    variance, here = stack.u**2, readings(model, stack)
+def with_conditions(model: Model, stack: Stack, here: np.ndarray) -> np.ndarray:
+    """u of every row with the uncertainty of its conditions, through the slope of this model, which reads ``here`` (n,)."""
+    variance = stack.u**2
     for number, table in enumerate(stack.tables):
         channels = [c for c in stack.channels if c.table == number and c.size]
         for name, u in table.condition_random.items() if channels else ():
