@@ -22,7 +22,10 @@ def readings(model: Model, stack: Stack) -> np.ndarray:
 
 
 def with_conditions(model: Model, stack: Stack, here: np.ndarray) -> np.ndarray:
-    """u of every row with the uncertainty of its conditions, through the slope of this model, which reads ``here`` (n,)."""
+    """u of every row with the uncertainty of its conditions, through the slope of this model (n,).
+
+    here: its readings (n,)
+    """
     variance = stack.u**2
     for number, table in enumerate(stack.tables):
         channels = [c for c in stack.channels if c.table == number and c.size]
