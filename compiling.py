@@ -16,6 +16,7 @@ SOURCES = (
     "actuator/compiled.py",
     "actuator/imposed.py",
     "actuator/step.py",
+    "electrical/bicubic.py",
     "magnetostatics/fronts.py",
     "magnetostatics/multifrontal.py",
     "magnetostatics/passes.py",

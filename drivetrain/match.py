@@ -18,7 +18,6 @@ from drivetrain.constraints import (
     Constraint,
     LengthLimit,
     NominalForce,
-    Numbers,
     OverloadForce,
     PlanetClearance,
     RegenerativeDamping,
@@ -31,6 +30,7 @@ from drivetrain.masses import CopperBars, MassModel
 from drivetrain.output import Output
 from drivetrain.planetary import Gearbox, GearboxDesign
 from drivetrain.requirements import Requirements
+from electrical.dq import Values
 from electrical.wound_machine import machine_end_turn
 from geometry.machine import Machine
 from units import MILLIMETRE
@@ -141,26 +141,26 @@ class Constraints:
 class Cost:
     """Masses [kg] and the terms of the cost (3.98); radius_term, inertia_term, mass_term: dimensionless."""
 
-    motor_mass: float
-    gearbox_mass: float
-    motor_equivalent_mass: float
-    gearbox_equivalent_mass: float
+    motor_mass: Values
+    gearbox_mass: Values
+    motor_equivalent_mass: Values
+    gearbox_equivalent_mass: Values
     radius_term: float
-    inertia_term: float
-    mass_term: float
+    inertia_term: Values
+    mass_term: Values
 
     @property
-    def total(self) -> float:
+    def total(self) -> Values:
         """F_cost, dimensionless."""
         return self.radius_term + self.inertia_term + self.mass_term
 
     @property
-    def mass(self) -> float:
+    def mass(self) -> Values:
         """m_tot [kg] (3.99)."""
         return self.motor_mass + self.gearbox_mass
 
     @property
-    def equivalent_mass(self) -> float:
+    def equivalent_mass(self) -> Values:
         """m_eq at the wheel [kg] (3.100)."""
         return self.motor_equivalent_mass + self.gearbox_equivalent_mass
 
@@ -327,7 +327,7 @@ class DampingEnforced(DampingReading):
         return Constraints(reported.enforced + reported.reported)
 
 
-def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: Gearbox, model: CostModel) -> Cost:
+def evaluate_cost(section: SizedSection, ratio: Values, length: Values, gearbox: Gearbox, model: CostModel) -> Cost:
     """Masses and cost of one design (3.98-3.100).
 
     F = w_R R_so/R_lim + w_m m_eq/m_eq,max + (1 - w_m) m_tot/m_max          (3.98)
@@ -350,9 +350,10 @@ def evaluate_cost(section: SizedSection, ratio: float, length: float, gearbox: G
     )
 
 
-def active_length(enforced: tuple[Constraint, ...], ratio: Numbers) -> Numbers:
+def active_length(enforced: tuple[Constraint, ...], ratio: Values) -> Values:
     """Largest of the enforced minimum lengths [m] at a ratio [m/rad], of its shape."""
-    return np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])[()]
+    longest = np.maximum.reduce([np.asarray(constraint.minimum_length(ratio)) for constraint in enforced])
+    return longest if longest.ndim else longest.item()
 
 
 def ratio_bounds(enforced: tuple[Constraint, ...], gearbox: GearboxDesign) -> tuple[float, float]:
@@ -399,7 +400,7 @@ def match(
     bounds = ratio_bounds(enforced, gearbox)
     design = _Design(section, enforced, gearbox, model)
     ratio = _minimum(design.cost_at, *bounds, samples)
-    length = float(active_length(enforced, ratio))
+    length = active_length(enforced, ratio)
     box = design.gearbox_at(ratio)
     return Match(
         section=section,
@@ -432,7 +433,7 @@ def match_at(
     bounds = _gear_bounds(enforced, gearbox)
     if not bounds[0] * (1 - BOUND_SLACK) <= ratio <= bounds[1] * (1 + BOUND_SLACK):
         raise Infeasible(RatioOutside(ratio, *bounds))
-    chosen = float(active_length(enforced, ratio)) if length is None else length
+    chosen = active_length(enforced, ratio) if length is None else length
     box = gearbox.size(envelope_radius=section.machine.stator_outer_radius, transmission_ratio=ratio)
     return Match(
         section=section,
@@ -465,7 +466,7 @@ def match_curves(
     """
     ratio = np.asarray(ratio, dtype=float)
     design = _Design(section, enforced, gearbox, model)
-    costs = [design.evaluate(value) for value in ratio]
+    cost = design.evaluate(ratio)
     lengths = (LengthCurve(one, np.asarray(one.minimum_length(ratio))) for one in enforced + reported)
     low, high = ratio_bounds(enforced, gearbox)
     return MatchCurves(
@@ -473,9 +474,9 @@ def match_curves(
         lengths=tuple(one for one in lengths if np.any(one.length > 0)),
         active_length=np.asarray(active_length(enforced, ratio)),
         feasible=(ratio >= low) & (ratio <= high),
-        radius_term=np.array([cost.radius_term for cost in costs]),
-        inertia_term=np.array([cost.inertia_term for cost in costs]),
-        mass_term=np.array([cost.mass_term for cost in costs]),
+        radius_term=np.full(len(ratio), cost.radius_term),
+        inertia_term=cost.inertia_term,
+        mass_term=cost.mass_term,
     )
 
 
@@ -523,26 +524,28 @@ class _Design:
     gearbox: GearboxDesign
     model: CostModel
 
-    def gearbox_at(self, ratio: float) -> Gearbox:
+    def gearbox_at(self, ratio: Values) -> Gearbox:
         radius = self.section.machine.stator_outer_radius
         return self.gearbox.size(envelope_radius=radius, transmission_ratio=ratio)
 
-    def evaluate(self, ratio: float) -> Cost:
-        length = float(active_length(self.enforced, ratio))
-        return evaluate_cost(self.section, ratio, length, self.gearbox_at(ratio), self.model)
+    def evaluate(self, ratio: Values) -> Cost:
+        """At one ratio or at many, whose masses and terms are arrays then."""
+        return evaluate_cost(
+            self.section, ratio, active_length(self.enforced, ratio), self.gearbox_at(ratio), self.model
+        )
 
-    def cost_at(self, ratio: float) -> float:
+    def cost_at(self, ratio: Values) -> Values:
         return self.evaluate(ratio).total
 
 
-def _minimum(cost: Callable[[float], float], low: float, high: float, samples: int) -> float:
+def _minimum(cost: Callable[[Values], Values], low: float, high: float, samples: int) -> float:
     """Position of the least cost between low and high: best sample, refined between its neighbours, ends included."""
     grid = np.linspace(low, high, samples)
-    best = int(np.argmin([cost(value) for value in grid]))
+    best = int(np.argmin(cost(grid)))
     return _refine(cost, grid, best)
 
 
-def _refine(cost: Callable[[float], float], grid: np.ndarray, best: int) -> float:
+def _refine(cost: Callable[[float], Values], grid: np.ndarray, best: int) -> float:
     """Least cost between the neighbours of the best sample."""
     low, high = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, len(grid) - 1)])
     inner = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high})

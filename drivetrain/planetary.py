@@ -10,7 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
 
+import numpy as np
+
 from drivetrain.constraints import largest_stage_ratio
+from electrical.dq import Values
 
 STEEL_DENSITY = 7800.0  # kg/m^3, thesis below eq. 3.101
 PLANETS = 3  # per stage, thesis below eq. 3.115
@@ -23,7 +26,7 @@ class GearboxError(ValueError):
 class DynamicFactor:
     """Factor K_v by which tooth errors raise the load at speed; the concrete rules are below."""
 
-    def at(self, pitch_line_velocity: float) -> float:
+    def at(self, pitch_line_velocity: Values) -> Values:
         """K_v at the peripheral speed of the sun [m/s]."""
         raise NotImplementedError
 
@@ -32,9 +35,9 @@ class DynamicFactor:
 class PrintedDynamicFactor(DynamicFactor):
     """K_v = (5.6 + sqrt(v)) / 5.6, thesis eq. 3.118: without the root of the handbook's rule for ground teeth."""
 
-    def at(self, pitch_line_velocity: float) -> float:
+    def at(self, pitch_line_velocity: Values) -> Values:
         """K_v, dimensionless; pitch_line_velocity: [m/s]."""
-        return (5.6 + sqrt(pitch_line_velocity)) / 5.6
+        return (5.6 + pitch_line_velocity**0.5) / 5.6
 
 
 @dataclass(frozen=True)
@@ -45,9 +48,9 @@ class GroundTeethDynamicFactor(DynamicFactor):
     (0.02 m/s) its teeth are 1.3 % narrower than with the printed rule.
     """
 
-    def at(self, pitch_line_velocity: float) -> float:
+    def at(self, pitch_line_velocity: Values) -> Values:
         """K_v, dimensionless; pitch_line_velocity: [m/s]."""
-        return sqrt((5.56 + sqrt(pitch_line_velocity)) / 5.56)
+        return ((5.56 + pitch_line_velocity**0.5) / 5.56) ** 0.5
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class GearLaws:
     ring_fraction: float
     dynamic_factor: DynamicFactor
 
-    def pitting_factor(self, pitch_line_velocity: float) -> float:
+    def pitting_factor(self, pitch_line_velocity: Values) -> Values:
         """Z = Z_E Z_H Z_eps sqrt(K_A K_v) [sqrt(Pa)], eqs 3.115-3.118.
 
         Z_E = sqrt(E / (2 pi (1 - nu^2)))               (3.116)
@@ -77,7 +80,7 @@ class GearLaws:
         """
         elastic = sqrt(self.youngs_modulus / (2 * pi * (1 - self.poisson_ratio**2)))
         zone = sqrt(2 / (cos(self.pressure_angle) * sin(self.pressure_angle)))
-        load = sqrt(self.overload_factor * self.dynamic_factor.at(pitch_line_velocity))
+        load = (self.overload_factor * self.dynamic_factor.at(pitch_line_velocity)) ** 0.5
         return elastic * zone * self.contact_ratio_factor * load
 
 
@@ -100,29 +103,30 @@ NITRIDED_STEEL = GearLaws(
 class StageShape:
     """Pitch diameters of one stage from its ratio i = 1 + d_ring/d_sun, ring pitch diameter [m], number of planets."""
 
-    ratio: float
+    ratio: Values
     ring_diameter: float
     planets: int = PLANETS
 
     def __post_init__(self) -> None:
-        if not self.ratio > 2:
+        least = np.min(self.ratio)
+        if not least > 2:
             raise GearboxError(
                 f"a stage with a fixed ring needs a ratio above 2 for its planets to have a diameter; found "
-                f"{self.ratio:.4g}: use fewer stages (match.gearbox_stages) or a smaller transmission ratio"
+                f"{least:.4g}: use fewer stages (match.gearbox_stages) or a smaller transmission ratio"
             )
 
     @property
-    def sun_diameter(self) -> float:
+    def sun_diameter(self) -> Values:
         """d_sun = d_ring / (i - 1) (3.106)."""
         return self.ring_diameter / (self.ratio - 1)
 
     @property
-    def planet_diameter(self) -> float:
+    def planet_diameter(self) -> Values:
         """d_planet = d_ring (i - 2) / (2 (i - 1)) (3.107)."""
         return self.ring_diameter * (self.ratio - 2) / (2 * (self.ratio - 1))
 
     @property
-    def carrier_diameter(self) -> float:
+    def carrier_diameter(self) -> Values:
         """d_carrier = d_ring i / (2 (i - 1)), the circle of the planet centres (3.108)."""
         return self.ring_diameter * self.ratio / (2 * (self.ratio - 1))
 
@@ -137,12 +141,12 @@ class PlanetaryStage:
     """One stage with its face width [m] inside an envelope diameter [m], made of steel of one density [kg/m^3]."""
 
     shape: StageShape
-    face_width: float
+    face_width: Values
     envelope_diameter: float
     density: float
 
     @property
-    def mass(self) -> float:
+    def mass(self) -> Values:
         """Sun, planets, solid carrier and ring [kg].
 
         m = pi/4 rho b [d_sun^2 + n d_planet^2 + d_carrier^2 + D^2 - d_ring^2]          (3.109)
@@ -153,7 +157,7 @@ class PlanetaryStage:
         return pi / 4 * self.density * self.face_width * squares
 
     @property
-    def inertia_at_carrier(self) -> float:
+    def inertia_at_carrier(self) -> Values:
         """Inertia of all moving parts seen at the carrier [kg m^2].
 
         J = pi/512 rho b d_ring^4 i^2 / (i - 1)^4 [16 + i^2 + 3 n (i - 2)^2]
@@ -174,17 +178,18 @@ class Gearbox:
     linkage_ratio: float
 
     @property
-    def mass(self) -> float:
+    def mass(self) -> Values:
         """Sum over the stages [kg] (3.110)."""
         return sum(stage.mass for stage in self.stages)
 
     @property
-    def equivalent_mass(self) -> float:
+    def equivalent_mass(self) -> Values:
         """Inertia of all stages seen at the wheel [kg] (3.111-3.112).
 
         m_eq = sum_j J_j i^(2 (j - 1)) / tau_l^2: the carrier of stage j turns i^(j-1) times as fast as the linkage.
         """
-        total, speed_ratio = 0.0, 1.0
+        total: Values = 0.0
+        speed_ratio: Values = 1.0
         for stage in self.stages:
             total += stage.inertia_at_carrier * (speed_ratio / self.linkage_ratio) ** 2
             speed_ratio *= stage.shape.ratio
@@ -224,12 +229,13 @@ class GearboxDesign:
         """tau_t at which the stage ratio falls to 2 and the planets vanish [m/rad]; tau_l without stages."""
         return self.linkage_ratio / 2**self.stage_count
 
-    def stage_ratio(self, transmission_ratio: float) -> float:
+    def stage_ratio(self, transmission_ratio: Values) -> Values:
         """i = (tau_l / tau_t)^(1/N), dimensionless, equal stages (3.104-3.105); tau_t in m/rad."""
         return (self.linkage_ratio / transmission_ratio) ** (1 / self.stage_count)
 
-    def size(self, *, envelope_radius: float, transmission_ratio: float) -> Gearbox:
-        """Gearbox of this envelope radius [m] and overall ratio tau_t [m/rad] (3.103-3.118).
+    def size(self, *, envelope_radius: float, transmission_ratio: Values) -> Gearbox:
+        """Gearbox of this envelope radius [m] and overall ratio tau_t [m/rad] (3.103-3.118); a family at an array of
+        ratios.
 
         Raises GearboxError when the stage ratio is not above 2.
         """
@@ -241,7 +247,7 @@ class GearboxDesign:
         stages = tuple(PlanetaryStage(shape, width, 2 * envelope_radius, self.laws.density) for width in widths)
         return Gearbox(stages, self.linkage_ratio)
 
-    def _carrier_load(self, ratio: float, stages_before: int) -> tuple[float, float]:
+    def _carrier_load(self, ratio: Values, stages_before: int) -> tuple[Values, Values]:
         """Torque [Nm] and speed [rad/s] of the carrier behind so many stages.
 
         T_c = F tau_l / i^(j-1), omega_c = v i^(j-1) / tau_l: eqs 3.113-3.114 print i^j, one stage too far for the
@@ -251,7 +257,7 @@ class GearboxDesign:
         return self.force_rms * self.linkage_ratio / speed_ratio, self.velocity_rms / self.linkage_ratio * speed_ratio
 
 
-def face_width(shape: StageShape, carrier_torque: float, carrier_speed: float, laws: GearLaws) -> float:
+def face_width(shape: StageShape, carrier_torque: Values, carrier_speed: Values, laws: GearLaws) -> Values:
     """Face width at which the contact stress between sun and planets reaches its limit [m].
 
     b = (T_c / n) / [ (sigma_H / Z)^2 (i - 2) / (2 (i - 1)^2) d_ring^2 ]

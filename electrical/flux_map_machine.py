@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
+from electrical.bicubic import Bicubics
 from electrical.dq import LIMIT_SLACK, Values, torque_of, voltage_of
 from electrical.newton import damped_newton
 from electrical.synchronous_machine import SynchronousMachine
@@ -102,8 +102,8 @@ class FluxMapMachine:
 
     def flux_linkage(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """(psi_d, psi_q) [Wb] at peak phase currents [A]."""
-        i_d, i_q = self._inside(i_d, i_q)
-        return self._psi_d.ev(i_d, i_q), self._psi_q.ev(i_d, i_q)
+        psi_d, psi_q = self._psi(*self._inside(i_d, i_q))
+        return psi_d[()], psi_q[()]
 
     def torque(self, i_d: Values, i_q: Values) -> Values:
         """T = 1.5 p (psi_d i_q - psi_q i_d) [Nm]."""
@@ -118,7 +118,7 @@ class FluxMapMachine:
 
         Reciprocity (L_dq = L_qd) holds for the map itself and for the two splines as far as they follow it.
         """
-        return self._jacobian(*self._inside(i_d, i_q))
+        return self._psi.slopes(*self._inside(i_d, i_q))
 
     def apparent_inductances(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """((psi_d(i_d, i_q) - psi_d(0, i_q)) / i_d, psi_q / i_q) [H]; currents of zero are refused.
@@ -214,16 +214,8 @@ class FluxMapMachine:
     # ---- splines ------------------------------------------------------------------------------------------------
 
     @cached_property
-    def _psi_d(self) -> RectBivariateSpline:
-        return RectBivariateSpline(self.i_d, self.i_q, self.psi_d)
-
-    @cached_property
-    def _psi_q(self) -> RectBivariateSpline:
-        return RectBivariateSpline(self.i_d, self.i_q, self.psi_q)
-
-    def _jacobian(self, i_d: Values, i_q: Values) -> np.ndarray:
-        rows = [[psi.ev(i_d, i_q, dx=1), psi.ev(i_d, i_q, dy=1)] for psi in (self._psi_d, self._psi_q)]
-        return np.array(rows)
+    def _psi(self) -> Bicubics:
+        return Bicubics.through(self.i_d, self.i_q, (self.psi_d, self.psi_q))
 
     @cached_property
     def _box(self) -> np.ndarray:
@@ -249,7 +241,7 @@ class FluxMapMachine:
 
     @cached_property
     def _fine_jacobian(self) -> np.ndarray:
-        return self._jacobian(*np.meshgrid(_refined(self.i_d), _refined(self.i_q), indexing="ij"))
+        return self._psi.slopes(*np.meshgrid(_refined(self.i_d), _refined(self.i_q), indexing="ij"))
 
     def _check_monotone(self) -> None:
         (dd, dq), (qd, qq) = self._fine_jacobian
@@ -289,12 +281,12 @@ class FluxMapMachine:
     def _miss(self, i: np.ndarray, psi: np.ndarray) -> np.ndarray:
         inside = self._clip(i)
         beyond = self._edge_inductance[:, None] * (i - inside)
-        return psi - np.stack([self._psi_d.ev(*inside), self._psi_q.ev(*inside)]) - beyond
+        return psi - self._psi(*inside) - beyond
 
     def _continued_jacobian(self, i: np.ndarray) -> np.ndarray:
         inside = self._clip(i)
         edge = np.diag(self._edge_inductance)[:, :, None]
-        return np.where((i != inside)[None], edge, self._jacobian(*inside))
+        return np.where((i != inside)[None], edge, self._psi.slopes(*inside))
 
 
 def _check_axis(name: str, values: np.ndarray) -> None:

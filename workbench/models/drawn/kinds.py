@@ -8,10 +8,10 @@ from functools import partial
 from math import pi, sqrt
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 from effects.base import Columns
 from effects.dq_design import DqMachine
+from electrical.bicubic import Bicubics
 from workbench.errors import WorkbenchError
 from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamental, by_phase, phase_currents
 from workbench.models.drawn.answers import Answers
@@ -124,18 +124,14 @@ class FluxMap:
     """Flux linkages beyond those of constant inductances, as a law of the dq machine; beyond the map they go on with
     the slope at its edge."""
 
-    direct: RectBivariateSpline
-    quadrature: RectBivariateSpline
+    psi: Bicubics
     largest: float
 
     def flux(self, i_d: np.ndarray, i_q: np.ndarray, machine: DqMachine) -> tuple[np.ndarray, np.ndarray]:
         """psi_d and psi_q [Vs] at currents [A]."""
-        return self._beyond(self.direct, i_d, i_q), self._beyond(self.quadrature, i_d, i_q)
-
-    def _beyond(self, spline: RectBivariateSpline, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
         d, q = (np.clip(i, -self.largest, self.largest) for i in (i_d, i_q))
-        along = spline.ev(d, q, dx=1) * (i_d - d) + spline.ev(d, q, dy=1) * (i_q - q)
-        return np.asarray(spline.ev(d, q) + along)
+        direct, quadrature = self.psi(d, q) + np.einsum("ij...,j...->i...", self.psi.slopes(d, q), [i_d - d, i_q - q])
+        return direct, quadrature
 
 
 def dq_machine(answers: Answers) -> DqMachine:
@@ -151,7 +147,7 @@ def dq_machine(answers: Answers) -> DqMachine:
     l_d = float((psi[-1, none, 0] - psi[0, none, 0]) / (2 * largest))
     l_q = float((psi[none, -1, 1] - psi[none, 0, 1]) / (2 * largest))
     left = psi - np.stack([psi_m + l_d * axis[:, None] + 0 * axis, l_q * axis + 0 * axis[:, None]], axis=2)
-    law = FluxMap(*(RectBivariateSpline(axis, axis, left[:, :, k], s=0) for k in (0, 1)), largest)
+    law = FluxMap(Bicubics.through(axis, axis, np.moveaxis(left, 2, 0)), largest)
     machine = DqMachine(answers.design.machine.pole_pairs, psi_m, l_d, l_q, answers.design.phase_resistance)
     machine = machine.with_flux(law).with_torque(Drag(partial(lost_torque, answers)))
     return machine.with_brake(_loaded_delta(answers, axis)) if answers.design.drawing.is_delta else machine
@@ -173,19 +169,20 @@ class LoadedDelta:
 
     Between the currents of the map within 10 % of the loss where that is well above idle, within 30 % deep in
     saturation.
-    waves: real and imaginary part of every order, over i_d and the size of i_q [Wb]; beyond the largest current [A]
+    waves: real and imaginary parts of all orders, over i_d and the size of i_q [Wb]; beyond the largest current [A]
     they stay as they are there;  idle: squares of the amplitudes without current [Wb^2] (orders,)
     """
 
     answers: Answers
-    waves: tuple[tuple[RectBivariateSpline, RectBivariateSpline], ...]
+    waves: Bicubics
     idle: np.ndarray
     largest: float
 
     def lost_torque(self, speed: np.ndarray, i_d: np.ndarray, i_q: np.ndarray) -> np.ndarray:
         """See ``BrakeLaw``."""
         d, q = np.clip(i_d, -self.largest, self.largest), np.minimum(np.abs(i_q), self.largest)
-        squares = np.stack([sum(part.ev(d, q) ** 2 for part in parts) for parts in self.waves], axis=1)
+        real, imaginary = np.split(self.waves(d, q), 2)
+        squares = (real**2 + imaginary**2).T
         loss = self.answers.loss_round_delta(speed, self.answers.common_orders, squares - self.idle)
         return np.asarray(loss * np.sign(speed) / np.maximum(np.abs(speed), _STILL))
 
@@ -194,12 +191,9 @@ def _loaded_delta(answers: Answers, axis: np.ndarray) -> LoadedDelta:
     half = axis[axis >= 0]
     i_d, i_q = (values.ravel() for values in np.meshgrid(axis, half, indexing="ij"))
     waves = answers.common_waves(i_d, i_q).reshape(len(axis), len(half), -1)
-
-    def spline(values: np.ndarray) -> RectBivariateSpline:
-        return RectBivariateSpline(axis, half, values, s=0)
-
-    parts = tuple((spline(one.real), spline(one.imag)) for one in np.moveaxis(waves, 2, 0))
-    return LoadedDelta(answers, parts, np.abs(waves[len(axis) // 2, 0]) ** 2, float(axis[-1]))
+    parts = np.moveaxis(np.concatenate([waves.real, waves.imag], axis=2), 2, 0)
+    idle = np.abs(waves[len(axis) // 2, 0]) ** 2
+    return LoadedDelta(answers, Bicubics.through(axis, half, parts), idle, float(axis[-1]))
 
 
 KINDS: Mapping[str, Callable[[Answers, Columns], Found]] = {
