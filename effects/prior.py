@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, log
+from math import exp, inf, log
 
 from scipy.special import ndtr, ndtri
 
@@ -15,7 +15,7 @@ class Prior:
         raise NotImplementedError
 
     def standard(self, value: float) -> float:
-        """z of a value; the inverse of ``value``."""
+        """z of a value; the inverse of ``value``. Infinite where no z has it."""
         raise NotImplementedError
 
 
@@ -44,7 +44,7 @@ class LogNormal(Prior):
         return self.median * exp(self.spread * z)
 
     def standard(self, value: float) -> float:
-        return log(value / self.median) / self.spread
+        return log(value / self.median) / self.spread if value > 0 else -inf
 
 
 @dataclass(frozen=True)

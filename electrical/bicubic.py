@@ -1,5 +1,5 @@
-"""Bicubic splines through the same points of a plane, looked up in one compiled pass: the innermost loop of every
-search over a flux map."""
+"""Bicubic splines of flux linkages over currents, looked up in one compiled pass: the innermost loop of every search
+over a flux map."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from compiling import compiled
 
 @dataclass(frozen=True, eq=False)
 class Bicubics:
-    """k functions of (x, y), twice continuously differentiable; beyond the grid what they are at its edge.
+    """k flux linkages over two currents x and y, twice continuously differentiable; beyond the grid as at its edge.
 
-    x (n + 1,), y (m + 1,): where one cubic passes into the next, increasing, four or more each
-    cubics: of every cell, from its lower corner, highest powers first (n, m, k, 4, 4), in the units of the functions
+    x (n + 1,), y (m + 1,): where one cubic passes into the next, increasing, four or more each [A]
+    cubics: of every cell, from its lower corner, highest powers first [Wb and over A] (n, m, k, 4, 4)
     """
 
     x: np.ndarray
@@ -27,17 +27,17 @@ class Bicubics:
     @classmethod
     def through(cls, x: np.ndarray, y: np.ndarray, values: Sequence[np.ndarray]) -> Bicubics:
         """Interpolating, the third derivative continuous at the second and last but one of the points (de Boor's
-        not-a-knot). values: k of (n + 1, m + 1)"""
+        not-a-knot). x (n + 1,), y (m + 1,): [A];  values: k of (n + 1, m + 1) [Wb]"""
         powers_x = CubicSpline(x, np.array(values), axis=1).c  # (4, n, k, m + 1)
         powers = CubicSpline(y, powers_x, axis=3).c  # (4, m, 4, n, k)
         return cls(x, y, np.ascontiguousarray(powers.transpose(3, 1, 4, 2, 0)))
 
     def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Values (k, ...); x and y broadcast, NaN stays NaN."""
+        """Flux linkages (k, ...) [Wb] at currents x and y [A], which broadcast; NaN stays NaN."""
         return self._of(values_at, (), x, y)
 
     def slopes(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(d/dx, d/dy) of every function (k, 2, ...)."""
+        """(d/dx, d/dy) of each (k, 2, ...) [H] at currents x and y [A]."""
         return self._of(slopes_at, (2,), x, y)
 
     def _of(
@@ -49,7 +49,10 @@ class Bicubics:
 
 @compiled
 def values_at(ends_x: np.ndarray, ends_y: np.ndarray, cubics: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Values (k, points) of ``Bicubics`` at x and y (points,)."""
+    """Flux linkages (k, points) [Wb] at currents x and y (points,) [A].
+
+    ends_x (n + 1,), ends_y (m + 1,): [A];  cubics: [Wb and over A] (n, m, k, 4, 4), all as of ``Bicubics``
+    """
     found = np.empty((cubics.shape[2], len(x)))
     for p in range(len(x)):
         i, u = place(ends_x, x[p])
@@ -64,7 +67,10 @@ def values_at(ends_x: np.ndarray, ends_y: np.ndarray, cubics: np.ndarray, x: np.
 
 @compiled
 def slopes_at(ends_x: np.ndarray, ends_y: np.ndarray, cubics: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """d/dx and d/dy (k, 2, points) of ``Bicubics`` at x and y (points,)."""
+    """d/dx and d/dy (k, 2, points) [H] at currents x and y (points,) [A].
+
+    ends_x (n + 1,), ends_y (m + 1,): [A];  cubics: [Wb and over A] (n, m, k, 4, 4), all as of ``Bicubics``
+    """
     found = np.empty((cubics.shape[2], 2, len(x)))
     for p in range(len(x)):
         i, u = place(ends_x, x[p])
@@ -81,7 +87,10 @@ def slopes_at(ends_x: np.ndarray, ends_y: np.ndarray, cubics: np.ndarray, x: np.
 
 @compiled
 def place(ends: np.ndarray, x: float) -> tuple[int, float]:
-    """Number of the interval in which x lies, and how far from its lower end; the nearest end where x is beyond."""
+    """Number of the interval in which x [A] lies, and how far from its lower end [A]; where x is beyond, the nearest.
+
+    ends: of the intervals, increasing [A] (n + 1,)
+    """
     x = min(max(x, ends[0]), ends[-1]) if x == x else x
     low, high = 0, len(ends) - 1
     while high - low > 1:

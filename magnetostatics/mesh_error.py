@@ -37,7 +37,7 @@ def torque_errors(solutions: Sequence[FieldSolution]) -> list[float]:
     finer = refined_model(solutions[0].model)
     fine: list[FieldSolution] = []
     for solution in solutions:
-        fine.append(finer.solve(solution.point, start=fine[-1] if fine else prolonged(solution, finer)))
+        fine.append(finer.solve(solution.point, fine[-1]) if fine else refined_solution(solution, finer))
     return [torque_error(*both) for both in zip(solutions, fine, strict=True)]
 
 
@@ -58,10 +58,17 @@ def torque_error(solution: FieldSolution, finer: FieldSolution) -> float:
     return float(np.ptp(coarse) + SAFETY * np.abs(coarse - fine).max() + unsolved)
 
 
-def refined_solution(solution: FieldSolution) -> FieldSolution:
-    """The same operating point on the refined mesh, from the field on the coarse one."""
-    finer = refined_model(solution.model)
-    return finer.solve(solution.point, prolonged(solution, finer))
+def refined_solution(solution: FieldSolution, finer: FieldModel | None = None) -> FieldSolution:
+    """The same operating point on the refined mesh, from the field on the coarse one.
+
+    Linear elements are solved there before: a start from quadratic ones would else be changed by what linear ones lack.
+    finer: the model of the refined mesh, where there is one already
+    """
+    finer = finer or refined_model(solution.model)
+    start = prolonged(solution, finer)
+    if start.coarse is not None:
+        start = replace(start, coarse=finer.coarse_model.solve(solution.point, start.coarse))
+    return finer.solve(solution.point, start)
 
 
 def prolonged(solution: FieldSolution, finer: FieldModel) -> FieldSolution:

@@ -2,6 +2,7 @@
 what cannot be built. Another assembly on the same mesh: ``test_weak_form``."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from geometry.magnetisation import HalbachMagnetisation, RadialMagnetisation
 from geometry.morph import Morpher
 from geometry.parts import ComposedMachine
 from magnetostatics.flux_linkage import phase_flux_linkage
-from magnetostatics.mesh_error import prolonged, refined_model
+from magnetostatics.mesh_error import refined_model, refined_solution
 from magnetostatics.newton import NewtonSettings
 from magnetostatics.positions import torque_period
 from magnetostatics.probes import probe_reader
@@ -48,6 +49,7 @@ AMPERE_TURNS = {
 ANGLE = 0.07  # rad
 
 
+@lru_cache(maxsize=2)
 def solved(name, density, **options):
     model = model_of(NAMED[name], density, settings=NewtonSettings(tolerance=3e-11), **options)
     return model.solve(currents(model, ANGLE, AMPERE_TURNS[name], 0.5, 1.0))
@@ -105,7 +107,7 @@ def on_halved_triangles(model, points, times):
     found = [[model.solve(point) for point in points]]
     for _ in range(times):
         model = refined_model(model)
-        found.append([model.solve(one.point, prolonged(one, model)) for one in found[-1]])
+        found.append([refined_solution(one, model) for one in found[-1]])
     return found
 
 

@@ -321,6 +321,15 @@ def test_the_first_of_names_that_cannot_be_told_apart_is_tried_last(diagnosed):
     assert by_evidence(unsure) == (one, other)
 
 
+def test_what_ends_on_a_bound_is_tried_after_what_may_stand_for_it(diagnosed):
+    """Its size is not to be believed: a friction of the largest bearing there is stands for a loss of the iron."""
+    first, second, *rest = diagnosed.ranking
+    held = (replace(first, probability=0.95, at_bound=("size",)), replace(second, probability=0.04, at_bound=()), *rest)
+    group = replace(diagnosed, verdict=GROUP, names=(first.name, second.name), ranking=held)
+    assert by_evidence(group) == (second.name, first.name)
+    assert by_evidence(replace(group, names=(), alternatives={first.name: (second.name,)}))[0] == second.name
+
+
 def test_what_is_likelier_there_than_not_is_tried_last_and_only_beside_names(diagnosed):
     first, second, *rest = diagnosed.ranking
     likely = (replace(first, probability=0.99), replace(second, probability=0.6), *rest)

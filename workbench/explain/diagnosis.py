@@ -201,7 +201,7 @@ def _ranked(search: Search, name: str, probability: float, gain: float, before: 
         return Ranked(name, title, probability, gain, {}, before[0], before[0], before[1], before[1])
     hypothesis = search.fitted[best]
     after = _errors(hypothesis)
-    bounds = tuple(p for effect in hypothesis.effects if effect.name() == name for p in _on_bounds(effect))
+    bounds = tuple(p for effect in hypothesis.effects if effect.name() == name for p in on_bounds(effect))
     sizes = estimates(hypothesis, search.weights(name))[name]
     return Ranked(name, title, probability, gain, sizes, before[0], after[0], before[1], after[1], bounds)
 
@@ -212,7 +212,7 @@ def _errors(hypothesis: Hypothesis) -> tuple[float, float | None]:
     return float(np.mean(hypothesis.fit.residual**2)), left_out.chi2_per_n if left_out.blocks else None
 
 
-def _on_bounds(effect: Effect) -> tuple[str, ...]:
+def on_bounds(effect: Effect) -> tuple[str, ...]:
     """Parameters of an effect that stand on a bound of what is possible, other than that of doing nothing."""
     found = []
     for name, p in parameters_of(effect).items():

@@ -17,7 +17,7 @@ from effects.prior import Uniform
 from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
-from workbench.likelihood.fit import FAR, Fit, Problem, fitted, prior_cost, refitted, with_parameters
+from workbench.likelihood.fit import FAR, Fit, Problem, fitted, possible, prior_cost, refitted, with_parameters
 from workbench.likelihood.unknown import Seen, Shape, expected, seen, smooth
 from workbench.likelihood.whitening import LawError, law_error
 
@@ -307,7 +307,7 @@ def _integrated(problem: Problem, fit: Fit) -> tuple[np.ndarray, np.ndarray, flo
     """Places of the one parameter z, ln density there, and ln evidence; the nuisances by Laplace at each place."""
     m = len(fit.x)
     spread = np.sqrt(fit.covariance[m, m])
-    places = np.unique(np.clip(fit.z[0] + spread * np.linspace(-REACH, REACH, PLACES), -FAR, FAR))
+    places = np.unique(np.clip(fit.z[0] + spread * np.linspace(-REACH, REACH, PLACES), *possible(fit.effects)))
     drift = fit.covariance[:m, m] / fit.covariance[m, m]
     density = np.array([_profile(problem, fit, fit.x + drift * (z - fit.z[0]), np.array([z])) for z in places])
     widths = np.gradient(places)

@@ -23,6 +23,7 @@ from workbench.data.stack import Channel
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.contradictions import contradiction
+from workbench.explain.diagnosis import on_bounds
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import Hypothesis, estimates
 from workbench.explain.search import best_alone
@@ -71,7 +72,8 @@ def try_effect(
     before = bench_of(model, campaign, library)
     progress(f"fitting {name}")
     hypothesis = best_fit(before, cls)
-    trial = model + hypothesis.effects[0]
+    effect = hypothesis.effects[0]
+    trial = model + effect
     after = bench_of(trial, campaign, library)
     sizes = estimates(hypothesis)[name]
     row = replace(
@@ -80,9 +82,15 @@ def try_effect(
         title=cls.title,
         parameters=sizes,
         log_evidence_gain=float(hypothesis.log_evidence - before.null.log_evidence),
-        reason=contradiction(cls, sizes, campaign.tolerances),
+        reason="; ".join(filter(None, (_on_bound(effect), contradiction(cls, sizes, campaign.tolerances)))),
     )
     return _decided(before, after, (model, trial), row, (cls,))
+
+
+def _on_bound(effect: Effect) -> str:
+    """A sentence where a parameter ends on a bound; else empty."""
+    names = on_bounds(effect)
+    return f"on a bound of what is possible: {', '.join(names)}" if names else ""
 
 
 def try_together(

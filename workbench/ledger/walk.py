@@ -221,12 +221,15 @@ def by_evidence(diagnosis: Diagnosis, refused: Collection[str] = ()) -> tuple[st
     probable one, and what is likelier there than not: without them what is named may not stand. Of a group the most
     probable one is first: evidence is that of the best explanation with a name in it, which another may have made.
 
+    What ends on a bound of what is possible comes after what may stand for it: its size is not to be believed.
     refused: what was named before and refused by itself; where it is likelier there than not now that others are in the
     model, it is tried again though no name is sure
     """
     alone = {ranked.name: ranked.log_evidence for ranked in diagnosis.ranking}
     probable = {ranked.name: ranked.probability for ranked in diagnosis.ranking}
+    held = {ranked.name for ranked in diagnosis.ranking if ranked.at_bound}
     weight = probable if diagnosis.verdict == GROUP else alone
-    named = sorted(diagnosis.names, key=lambda name: -weight.get(name, 0.0))
+    named = sorted(diagnosis.names, key=lambda name: (name in held, -weight.get(name, 0.0)))
+    apart = [min((first, *others), key=held.__contains__) for first, others in diagnosis.alternatives.items()]
     likely = [r.name for r in diagnosis.ranking if r.probability > LIKELY and (named or r.name in refused)]
-    return tuple(dict.fromkeys((*named, *diagnosis.alternatives, *likely)))
+    return tuple(dict.fromkeys((*named, *apart, *sorted(likely, key=held.__contains__))))

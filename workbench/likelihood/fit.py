@@ -4,7 +4,8 @@
     q: sum of squares of the whitened residuals of a channel;  nu: degrees of freedom of its measured noise
 
 The first is Student's t for a noise whose size was measured by repeats: the Gaussian with its size integrated out.
-The last is Student's t for the size of an effect, whose prior is only a guess of its magnitude.
+The last is Student's t for the size of an effect, whose prior is only a guess of its magnitude. Beyond what is
+possible of a parameter there is nothing: where data ask for more, the evidence is that of the possible side alone.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from functools import cache, cached_property
 
 import numpy as np
 import scipy
+from scipy.special import log_ndtr
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -98,6 +100,20 @@ def misfit(squares: np.ndarray, dof: np.ndarray, sizes: np.ndarray) -> float:
     return float(np.sum(0.5 * (dof + sizes) * np.log1p(squares / dof)))
 
 
+def possible(effects: Sequence[Effect]) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest z of all parameters, one after the other (k,), so far as they are followed."""
+    ends = [_possible(type(effect)) for effect in effects]
+    low, high = (np.array([z for one in ends for z in one[side]]) for side in (0, 1))
+    return low, high
+
+
+@cache
+def _possible(effect: type[Effect]) -> tuple[list[float], list[float]]:
+    parameters = parameters_of(effect).values()
+    low, high = [p.prior.standard(p.low) for p in parameters], [p.prior.standard(p.high) for p in parameters]
+    return np.clip(low, -FAR, FAR).tolist(), np.clip(high, -FAR, FAR).tolist()
+
+
 @dataclass(frozen=True, eq=False)
 class Fit:
     """Of some effects (none: the null).
@@ -178,6 +194,7 @@ class _Line:
 
     p: the place (m + k,);  residual: whitened there (n,);  slopes: d f / d p, whitened (n, m + k)
     weights: of the rows (n,);  prior: curvature of the prior (m + k,)
+    low, high: ends of what is possible (m + k,), infinite where none are
     """
 
     p: np.ndarray
@@ -185,6 +202,8 @@ class _Line:
     slopes: np.ndarray
     weights: np.ndarray
     prior: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
 
     @cached_property
     def normal(self) -> np.ndarray:
@@ -197,9 +216,20 @@ class _Line:
         return self.slopes.T @ (self.weights * self.residual) - self.prior * self.p
 
     @cached_property
+    def held(self) -> np.ndarray:
+        """Where the data ask for more than is possible (m + k,)."""
+        return np.where(self.downhill > 0, self.p >= self.high, self.p <= self.low)
+
+    def solved(self, ahead: np.ndarray, damping: float = 0.0) -> np.ndarray:
+        """The step that a slope of the objective asks for (m + k,), what is held left where it is."""
+        free = ~self.held
+        normal = np.where(free[:, None] & free, self.normal, 0.0) + np.diag(self.held + damping * np.diag(self.normal))
+        return np.linalg.solve(normal, np.where(free, ahead, 0.0))
+
+    @cached_property
     def straight(self) -> np.ndarray:
         """The step of Gauss and Newton."""
-        return np.linalg.solve(self.normal, self.downhill)
+        return self.solved(self.downhill)
 
     @property
     def promised(self) -> float:
@@ -213,6 +243,12 @@ class _Search:
     effects: tuple[Effect, ...]
     m: int
     memory: dict = field(default_factory=dict)
+
+    @cached_property
+    def possible(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and greatest x, which has no ends, and z (m + k,)."""
+        low, high = possible(self.effects)
+        return np.append(np.full(self.m, -np.inf), low), np.append(np.full(self.m, np.inf), high)
 
     def predict(self, p: np.ndarray) -> np.ndarray:
         key = p.tobytes()
@@ -248,6 +284,7 @@ class _Search:
         """Where a step with these slopes promises or gains less than ``close`` [nats], or little of what it promises;
         what the objective gains by all of them, and what it is there [nats]. The slopes by the effects are taken anew
         where these have moved, and before a step is believed to be the last."""
+        p = np.clip(p, *self.possible)
         nuisance_slopes, residual = self.problem.white(nuisance_slopes), self.residual(p)
         first = value = self.objective(p, residual)
         taken_at, is_last = p, True
@@ -269,14 +306,13 @@ class _Search:
         return bool(np.any(np.abs(p - other)[self.m :] > NEAR))
 
     def _line(self, p: np.ndarray, residual: np.ndarray, slopes: np.ndarray) -> _Line:
-        return _Line(p, residual, slopes, self.problem.weights(residual), self.prior_curvature(p))
+        return _Line(p, residual, slopes, self.problem.weights(residual), self.prior_curvature(p), *self.possible)
 
     def _step(self, line: _Line, value: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Gauss-Newton, the step shortened and bent until the objective falls: that stays on a ridge between an effect
         and a tolerance; then damped. The place, the residual and the objective there."""
         for move in self._moves(line):
-            trial = line.p + move
-            trial[self.m :] = np.clip(trial[self.m :], -FAR, FAR)
+            trial = np.clip(line.p + move, *self.possible)
             try:
                 residual = self.residual(trial)
             except WorkbenchError:  # no steady state there: as bad as can be
@@ -296,7 +332,7 @@ class _Search:
         for length in LENGTHS:
             yield length * line.straight + length**2 * bend
         for damping in DAMPINGS:
-            yield np.linalg.solve(line.normal + damping * np.diag(np.diag(line.normal)), line.downhill)
+            yield line.solved(line.downhill, damping)
 
     def _bend(self, line: _Line) -> np.ndarray:
         """By which a step leaves its line to follow the ridge, at its whole length (m + k,): the geodesic acceleration
@@ -310,13 +346,29 @@ class _Search:
         except WorkbenchError:
             return np.zeros(len(line.p))
         curved = (ahead - 2 * line.residual + behind) / ALONG**2  # of the residual: minus that of the model
-        return 0.5 * np.linalg.solve(line.normal, line.slopes.T @ (line.weights * curved))
+        return 0.5 * line.solved(line.slopes.T @ (line.weights * curved))
 
     def result(self, p: np.ndarray, nuisance_slopes: np.ndarray) -> Fit:
         residual = self.residual(p)
         slopes = np.hstack([self.problem.white(nuisance_slopes), self.effect_slopes(p)])
-        hessian = self._line(p, residual, slopes).normal
-        value = self.objective(p, residual)
-        evidence = -value - 0.5 * np.linalg.slogdet(hessian)[1]
-        x, z, covariance = p[: self.m], p[self.m :], np.linalg.inv(hessian)
+        line, value = self._line(p, residual, slopes), self.objective(p, residual)
+        x, z, covariance = p[: self.m], p[self.m :], np.linalg.inv(line.normal)
+        evidence = -value - 0.5 * np.linalg.slogdet(line.normal)[1] + _log_possible(line, np.sqrt(np.diag(covariance)))
         return Fit(self.effects, x, z, residual, slopes, nuisance_slopes, value, float(evidence), covariance)
+
+
+def _log_possible(line: _Line, spread: np.ndarray) -> float:
+    """ln of the share of the bell about a fit that is possible; for each parameter, with the slope a where it is held,
+
+        integral from low to high of exp(a t - t^2/2) dt / sqrt(2 pi) = exp(a^2/2) (Phi(high - a) - Phi(low - a))
+
+    spread: standard deviations (m + k,), in which low, high and 1/a are measured from the fit
+    """
+    ends = np.isfinite(line.high)
+    slope = np.where(line.held, line.downhill * spread, 0.0)[ends]
+    low, high = ((end[ends] - line.p[ends]) / spread[ends] for end in (line.low, line.high))
+    up = slope >= 0  # the larger of both integrals to the left of the ends, by symmetry
+    left, right = np.where(up, low, -high), np.where(up, high, -low)
+    slope = np.abs(slope)
+    shares = log_ndtr(right - slope) + np.log1p(-np.exp(log_ndtr(left - slope) - log_ndtr(right - slope)))
+    return float(np.sum(shares + slope**2 / 2))

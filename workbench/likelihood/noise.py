@@ -174,7 +174,7 @@ def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviati
     spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
     middle[stations] = values - np.median(values, axis=1, keepdims=True)
     row[stations] = values - np.median(votes, axis=1, keepdims=True)
-    lost = np.setdiff1d(np.arange(channel.size), stations)
+    lost = np.flatnonzero(np.bincount(stations.ravel(), minlength=channel.size) == 0)
     if 0 < len(lost) < stations.size:
         row[lost] = _of_lost(stack.tables[channel.table], residual[channel.rows], lost)
     return _Deviation(spread, middle, row, growth)

@@ -3,13 +3,15 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
+from scipy.special import logsumexp
 
 from effects.base import DesignEffect
 from effects.parameter import parameter
 from effects.prior import Normal
 from workbench.data.stack import Channel, Stack
-from workbench.likelihood.fit import INEXACT, Problem, fitted
+from workbench.likelihood.fit import INEXACT, Problem, fitted, prior_cost
 from workbench.likelihood.whitening import Whitener
 
 ROWS = 40
@@ -74,3 +76,28 @@ def test_a_model_bent_in_a_tolerance_gets_new_slopes_instead_of_short_steps():
     found, asked = fit(lambda x, size: np.exp(2 * x * PLACES) + size * PLACES**2, (1.2, 0.5))
     assert_allclose((found.x[0], found.z[0]), (1.2, 0.5), atol=1e-3)
     assert asked <= 40
+
+
+@dataclass(frozen=True)
+class Limited(Bent):
+    size: float = parameter(0.0, "1", prior=Normal(1.0), low=-0.5, high=0.5, source="made up")
+
+
+@pytest.mark.parametrize("side", (1.0, -1.0))
+@pytest.mark.parametrize("asked_for", (0.3, 0.498, 0.503, 0.52))
+def test_what_is_not_possible_is_no_evidence(asked_for, side):
+    """Inside, close to the end, and beyond it: against the integral over all that is possible, on a fine grid."""
+    asked = problem(lambda x, size: x * PLACES + size * (PLACES + PLACES**2), (0.3, side * asked_for))
+    found = fitted(asked, (Limited(),), np.zeros(1), np.zeros(1))
+    assert_allclose(found.z, side * min(asked_for, 0.5), atol=1e-3)
+    spread = np.sqrt(np.diag(found.covariance))
+    step = spread[1] / 10
+    sizes = np.arange(max(-0.5, found.z[0] - 8 * spread[1]), min(0.5, found.z[0] + 8 * spread[1]), step) + step / 2
+    slope = found.covariance[0, 1] / found.covariance[1, 1]
+    tolerances = 12 * spread[0] * np.linspace(-1.0, 1.0, 101)
+    objective = [
+        [asked.misfit(asked.residual(np.array([x]), (Limited(z),))) + x * x / 2 + prior_cost(np.array([z]))
+         for x in found.x[0] + slope * (z - found.z[0]) + tolerances] for z in sizes
+    ]  # fmt: skip
+    cell = (tolerances[1] - tolerances[0]) * step
+    assert found.log_evidence == pytest.approx(logsumexp(-np.array(objective)) + np.log(cell / (2 * np.pi)), abs=0.1)
