@@ -15,17 +15,17 @@ from compiling import compiled, vectorised
 def symmetric_product(starts: np.ndarray, rows: np.ndarray, lower: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Product of a symmetric matrix and a vector [any unit], (n,).
 
-    starts: of the columns, indices (n + 1,); rows: indices (k,); lower: its lower triangle [any unit], (k,)
+    starts: of the columns, indices (n + 1,); rows: indices (k,); lower: its lower triangle [any unit], (k,), the
+        diagonal first in every column
     u: [any unit], (n,)
     """
     product = np.zeros_like(u)
     for j in range(len(u)):
-        total = 0.0
-        for k in range(starts[j], starts[j + 1]):
+        one, total = u[j], lower[starts[j]] * u[j]
+        for k in range(starts[j] + 1, starts[j + 1]):
             i = rows[k]
             total += lower[k] * u[i]
-            if i != j:
-                product[i] += lower[k] * u[j]
+            product[i] += lower[k] * one
         product[j] += total
     return product
 
