@@ -102,7 +102,8 @@ class FluxMapMachine:
 
     def flux_linkage(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """(psi_d, psi_q) [Wb] at peak phase currents [A]."""
-        psi_d, psi_q = self._psi(*self._inside(i_d, i_q))
+        self._check_inside(i_d, i_q)
+        psi_d, psi_q = self._psi(i_d, i_q)
         return psi_d[()], psi_q[()]
 
     def torque(self, i_d: Values, i_q: Values) -> Values:
@@ -118,7 +119,8 @@ class FluxMapMachine:
 
         Reciprocity (L_dq = L_qd) holds for the map itself and for the two splines as far as they follow it.
         """
-        return self._psi.slopes(*self._inside(i_d, i_q))
+        self._check_inside(i_d, i_q)
+        return self._psi.slopes(i_d, i_q)
 
     def apparent_inductances(self, i_d: Values, i_q: Values) -> tuple[Values, Values]:
         """((psi_d(i_d, i_q) - psi_d(0, i_q)) / i_d, psi_q / i_q) [H]; currents of zero are refused.
@@ -229,12 +231,12 @@ class FluxMapMachine:
     def _slack(self, i: np.ndarray) -> np.ndarray:
         return _OUTSIDE * (self._box[1] - self._box[0]).reshape(2, *[1] * (i.ndim - 1))
 
-    def _inside(self, i_d: Values, i_q: Values) -> np.ndarray:
-        i = np.stack(np.broadcast_arrays(np.asarray(i_d, dtype=float), np.asarray(i_q, dtype=float)))
-        clipped = self._clip(i)
-        if (np.abs(i - clipped) > self._slack(i)).any():  # NaN passes and stays NaN
-            raise FluxMapMachineError(f"a current lies outside the map, {self._extent()}: solve a larger map")
-        return clipped
+    def _check_inside(self, *currents: Values) -> None:
+        for current, low, high in zip(currents, *self._box):
+            slack = _OUTSIDE * (high - low)
+            least, most = (end.reduce(current, axis=None, initial=low) for end in (np.fmin, np.fmax))  # NaN passes
+            if least < low - slack or most > high + slack:
+                raise FluxMapMachineError(f"a current lies outside the map, {self._extent()}: solve a larger map")
 
     def _extent(self) -> str:
         return f"i_d {self.i_d[0]:.4g} to {self.i_d[-1]:.4g} A, i_q {self.i_q[0]:.4g} to {self.i_q[-1]:.4g} A"
