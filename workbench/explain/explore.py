@@ -10,7 +10,6 @@ from itertools import combinations, product
 from math import exp, fsum, log, log1p
 
 import numpy as np
-from scipy.special import logsumexp
 
 from effects.base import Effect
 from workbench.believed import MOST, UNKNOWN_RATE
@@ -284,7 +283,7 @@ def posterior(
     unknown law counts as its effects beside something unknown."""
     logs = [v + beliefs.log_prior(n) for n, v in alone.items()]
     more = [v + beliefs.log_prior(n) + beliefs.log_unknown for n, v in beside.items()]
-    total = logsumexp(logs + more)
+    total = np.logaddexp.reduce(logs + more)
     found = Posterior({}, {})
     for names, v in zip(alone, logs):
         _add(found.alone if LAWS.keys().isdisjoint(names) else found.beside, names, exp(v - total))

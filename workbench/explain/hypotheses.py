@@ -9,7 +9,7 @@ from itertools import product
 from math import log
 
 import numpy as np
-from scipy.special import logsumexp, ndtr, ndtri
+from scipy.special import ndtr, ndtri
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -76,7 +76,7 @@ def fitted_from(
     for each in product(*(effect.with_errors for effect in effects)):
         found.append(_fitted_from(bench, each, x, z, slopes))
         x, z, slopes = found[-1].fit.x, found[-1].fit.z, found[-1].fit.slopes
-    evidence = float(logsumexp([h.log_evidence for h in found])) - log(len(found))
+    evidence = float(np.logaddexp.reduce([h.log_evidence for h in found])) - log(len(found))
     return replace(max(found, key=lambda h: h.log_evidence), log_evidence=evidence)
 
 
@@ -256,13 +256,13 @@ def _leading(shapes: Sequence[Shape], background: np.ndarray, residual: np.ndarr
         return (), 0.0
     groups = len({s.channels for s in shapes})
     chosen = [max(found, key=lambda s: s.log_evidence)]
-    share = float(logsumexp([s.log_evidence for s in found])) - float(chosen[0].gains.max())
+    share = float(np.logaddexp.reduce([s.log_evidence for s in found])) - float(chosen[0].gains.max())
     while left := _in_other_channels(shapes, chosen):
         background = np.hstack([background, chosen[-1].columns(len(residual))])
         found = seen(left, background, residual)
         best = max(found, key=lambda s: s.log_evidence)
         of_group = [s.log_evidence for s in found if s.shape.channels == best.shape.channels]
-        gain = float(logsumexp(of_group)) + log(groups) + log(ALSO)
+        gain = float(np.logaddexp.reduce(of_group)) + log(groups) + log(ALSO)
         if gain <= 0:
             break
         chosen.append(best)
@@ -312,7 +312,7 @@ def _integrated(problem: Problem, fit: Fit) -> tuple[np.ndarray, np.ndarray, flo
     density = np.array([_profile(problem, fit, fit.x + drift * (z - fit.z[0]), np.array([z])) for z in places])
     widths = np.gradient(places)
     widths[[0, -1]] *= 0.5
-    return places, density, float(logsumexp(density + np.log(widths)) - 0.5 * log(2 * np.pi))
+    return places, density, float(np.logaddexp.reduce(density + np.log(widths)) - 0.5 * log(2 * np.pi))
 
 
 def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:

@@ -66,24 +66,23 @@ class _Forms:
 
 def _expected(seen: np.ndarray, true: tuple[int, ...], other: tuple[int, ...]) -> np.ndarray:
     """Expected log-Bayes factor [nats] of one hypothesis over another, both as fitted, from products of what the
-    nuisances leave (..., k, k).
+    nuisances leave (..., k, k). The columns of a hypothesis stand side by side.
 
         D = 1/2 min over v of |W_true - W_other - T v|^2 + |v|^2
 
     W: change of the readings;  T: slopes of the other hypothesis over its standard normal parameters v, which can
     follow only as far as their prior lets them
     """
-    difference = np.zeros(seen.shape[-1])
-    difference[list(true[:1])] += 1.0
-    difference[list(other[:1])] -= 1.0
-    products = seen @ difference
-    size = products @ difference
-    slopes = list(other[1:])
-    if not slopes:
+    signed = [(k, sign) for block, sign in ((true, 1.0), (other, -1.0)) for k in block[:1]]
+    products = sum(sign * seen[..., k] for k, sign in signed)
+    size = sum(sign * products[..., k] for k, sign in signed)
+    if not other[1:]:
         return 0.5 * np.maximum(size, 0.0)
-    along = products[..., slopes][..., None]
-    block = seen[..., slopes, :][..., slopes] + np.eye(len(slopes))
-    followed = (np.swapaxes(along, -1, -2) @ np.linalg.solve(block, along))[..., 0, 0]
+    slopes = slice(other[1], other[-1] + 1)
+    along, block = products[..., slopes], seen[..., slopes, slopes] + np.eye(len(other) - 1)
+    if len(other) == 2:  # a division, not a system of one equation for each of many rows
+        return 0.5 * np.maximum(size - along[..., 0] ** 2 / block[..., 0, 0], 0.0)
+    followed = np.sum(along * np.linalg.solve(block, along[..., None])[..., 0], axis=-1)
     return 0.5 * np.maximum(size - followed, 0.0)
 
 

@@ -14,7 +14,6 @@ from math import log
 
 import numpy as np
 import scipy
-from scipy.special import logsumexp
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -136,7 +135,7 @@ def signature(effect: Effect, change: Callable[[Effect], np.ndarray]) -> Signatu
     below, above = (scipy.stats.t.cdf(z + side * width / 2, TAILS) for side in (-1, 1))
     masses = np.log(above - below).sum(axis=1)
     masses = np.where(possible, masses, -np.inf)
-    return Signature(effect, z, changes, masses - logsumexp(masses), width)
+    return Signature(effect, z, changes, masses - np.logaddexp.reduce(masses), width)
 
 
 def _tangent(s: np.ndarray, possible: np.ndarray, shape: tuple[int, ...], axis: int, width: float) -> np.ndarray:

@@ -17,7 +17,6 @@ from math import log
 
 import numpy as np
 import scipy
-from scipy.special import logsumexp
 
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
@@ -58,6 +57,11 @@ class Shape:
         """The columns before whitening, SI (n_c, k); most of it is zero, so it is not kept."""
         return _blocks(self.parts)
 
+    @cached_property
+    def products(self) -> np.ndarray:
+        """Of the whitened columns with each other (k, k); every explanation asks for them."""
+        return self.columns.T @ self.columns
+
     def words(self) -> str:
         """For people."""
         where = ", ".join(self.channels)
@@ -82,7 +86,7 @@ class Seen:
     @property
     def log_evidence(self) -> float:
         """ln p gained with the size integrated out and the prior of the shape included [nats]."""
-        return float(logsumexp(self.gains)) - log(len(SIZES)) + self.shape.log_prior
+        return float(np.logaddexp.reduce(self.gains)) - log(len(SIZES)) + self.shape.log_prior
 
     @property
     def size(self) -> float:
@@ -265,7 +269,7 @@ def _gains(shape: Shape, taken: np.ndarray, residual: np.ndarray, own: np.ndarra
     """1/2 sum over the principal shapes of (a^2 c^2 / (1 + a^2 e) - ln(1 + a^2 e)) at every size a (sizes,)."""
     x = shape.columns
     beside = taken[:, shape.rows] @ x
-    energy, turn = np.linalg.eigh(x.T @ x - beside.T @ beside)
+    energy, turn = np.linalg.eigh(shape.products - beside.T @ beside)
     pull = turn.T @ (x.T @ residual[shape.rows] - beside.T @ own)
     a2e = np.square(SIZES)[:, None] * np.maximum(energy, 0.0)
     return 0.5 * np.sum(np.square(SIZES)[:, None] * pull**2 / (1 + a2e) - np.log1p(a2e), axis=1)
@@ -288,7 +292,7 @@ class Beside:
         found = []
         for shape in self.shapes:
             beside = np.linalg.solve(self._root, self.background[shape.rows].T @ shape.columns)
-            energy, turn = np.linalg.eigh(shape.columns.T @ shape.columns - beside.T @ beside)
+            energy, turn = np.linalg.eigh(shape.products - beside.T @ beside)
             keep = energy > 1e-9 * max(energy.max(initial=0.0), 1e-300)
             found.append((energy[keep], turn[:, keep], beside @ turn[:, keep]))
         return found
@@ -303,7 +307,7 @@ class Beside:
                 a2e = size**2 * energy
                 gain = 0.5 * ((size**2 / (1 + a2e)) @ square - np.log1p(a2e).sum())
                 found.append(gain + shape.log_prior - log(len(SIZES)))
-        return logsumexp(found, axis=0)
+        return np.logaddexp.reduce(found, axis=0)
 
 
 def expected(seen_: Seen, background: np.ndarray, residual: np.ndarray) -> np.ndarray:
