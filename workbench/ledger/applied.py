@@ -31,7 +31,7 @@ from workbench.likelihood.noise import Noise, measured_noise
 from workbench.likelihood.nuisance import Calibration
 from workbench.likelihood.own_errors import left_open, numerical
 from workbench.likelihood.predictor import STEP
-from workbench.likelihood.whitening import Whitener, whitener
+from workbench.likelihood.whitening import Whitener, variance_of_readings, whitener
 from workbench.models.model import Model
 
 ROUNDS = 6  # of finding the calibrations; gains and offsets act almost linearly, two or three are needed
@@ -241,14 +241,6 @@ class _Around:
         return whitener(self.part, self.noise)
 
     @cached_property
-    def noise_variance(self) -> np.ndarray:
-        """Of a reading: its own, what its scan as a whole may be off by, and what the model leaves open (n,)."""
-        of_scans = [2 * c.scans**2 for c in self.noise.channels]  # an offset and a slope, each of rms 1
-        straight = np.square(self.white.sigma / self.noise.inflation)
-        of_scans = straight * np.repeat(of_scans, [c.size for c in self.part.channels])
-        return self.white.sigma**2 + of_scans + np.square(self.part.left_open).sum(axis=1)
-
-    @cached_property
     def residual(self) -> np.ndarray:
         return self.part.y - self.base[self.kept]
 
@@ -274,7 +266,8 @@ class _Around:
         taken_up = self.posterior @ self.white(over_c).T @ self.white(over_p)
         left = over_p - over_c @ taken_up
         of_calibration = ((over_c @ self.posterior) * over_c).sum(axis=1)
-        variance = (left**2).sum(axis=1) + of_calibration + self.unexplained[self.kept] ** 2 + self.noise_variance
+        of_readings = variance_of_readings(self.part, self.white, self.noise.channels)
+        variance = (left**2).sum(axis=1) + of_calibration + self.unexplained[self.kept] ** 2 + of_readings
         whole = Prediction(self.part, self.base[self.kept], np.sqrt(variance), self.white(self.residual), c)
         return whole.on(self.stack, self.kept)
 

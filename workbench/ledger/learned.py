@@ -15,6 +15,7 @@ from workbench.data.table import Systematic, Table, Tolerance
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.nuisance import TolerancedInput
 from workbench.likelihood.regions import SAME_SETTING, ZERO_CELSIUS
+from workbench.likelihood.whitening import variance_of_readings
 
 TURN = 2 * np.pi
 SLOPE_STEP = 1e-4  # of a standard normal number, for the slope of a parameter over it
@@ -151,7 +152,8 @@ def device_hash(device: Mapping[str, object]) -> str:
 def ranges_of(bench: Bench) -> tuple[LearnedRange, ...]:
     """One range a kind and response, over the rows that were fitted."""
     stack, white = bench.fit.stack, bench.null.residual**2
-    beyond = (stack.y - bench.fit.predictor.predict(bench.null.x)) ** 2 - bench.fit.white.sigma**2
+    noise = variance_of_readings(stack, bench.fit.white, bench.noise.channels)
+    beyond = (stack.y - bench.fit.predictor.predict(bench.null.x)) ** 2 - noise
     found: dict[tuple[str, str], list[_Part]] = {}
     for channel in (c for c in stack.channels if c.size):
         table = stack.tables[channel.table]

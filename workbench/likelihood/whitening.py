@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -117,6 +117,17 @@ def whitener(stack: Stack, noise: Noise) -> Whitener:
     white = Whitener(sigma, rho)
     laws = (_unknown(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels))
     return white.with_laws(laws)
+
+
+def variance_of_readings(stack: Stack, white: Whitener, channels: Sequence[ChannelNoise]) -> np.ndarray:
+    """Of a reading, SI (n,): its own, what its scan as a whole may be off by, and what the model leaves open.
+
+    white: whitener of the stack;  channels: their noise
+    """
+    of_scans = np.empty(stack.size)
+    for channel, found in zip(stack.channels, channels):
+        of_scans[channel.rows] = 2 * np.square(stack.u[channel.rows] * found.scale * found.scans)  # offset and slope
+    return white.sigma**2 + of_scans + np.square(stack.left_open).sum(axis=1)
 
 
 def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError:
