@@ -310,6 +310,7 @@ def _integrated(problem: Problem, fit: Fit) -> tuple[np.ndarray, np.ndarray, flo
     places = np.unique(np.clip(fit.z[0] + spread * np.linspace(-REACH, REACH, PLACES), *possible(fit.effects)))
     drift = fit.covariance[:m, m] / fit.covariance[m, m]
     density = np.array([_profile(problem, fit, fit.x + drift * (z - fit.z[0]), np.array([z])) for z in places])
+    density -= _unkept(problem, fit)
     widths = np.gradient(places)
     widths[[0, -1]] *= 0.5
     return places, density, float(np.logaddexp.reduce(density + np.log(widths)) - 0.5 * log(2 * np.pi))
@@ -328,6 +329,15 @@ def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:
     move = np.linalg.solve(normal, slopes.T @ (weights * residual) - x)
     value = problem.misfit(residual - slopes @ move) + 0.5 * float(np.sum((x + move) ** 2)) + prior_cost(z)
     return -value - 0.5 * float(np.linalg.slogdet(normal)[1])
+
+
+def _unkept(problem: Problem, fit: Fit) -> float:
+    """What straight lines still promise at the maximum of a fit, and the model did not keep [nats]: it is no evidence,
+    as it is none for the fit without effects, which the same lines promise as much."""
+    reached = problem.misfit(fit.residual) + 0.5 * float(fit.x @ fit.x) + prior_cost(fit.z)
+    slopes, weights = fit.jacobian[:, : len(fit.x)], problem.weights(fit.residual)
+    normal = slopes.T @ (weights[:, None] * slopes) + np.eye(len(fit.x))
+    return _profile(problem, fit, fit.x, fit.z) + reached + 0.5 * float(np.linalg.slogdet(normal)[1])
 
 
 def estimates(

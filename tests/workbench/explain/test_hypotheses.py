@@ -167,6 +167,15 @@ def test_a_size_lies_in_the_interval_that_is_printed_beside_it(bench, monkeypatc
         assert found.low90 < found.value < found.high90
 
 
+def test_what_slopes_promise_and_the_model_does_not_keep_is_no_evidence(bench):
+    """A fit that could go no further, of a model that is not as straight as its slopes say, against Laplace's rule
+    where it ended: there the fit without effects is judged too."""
+    fit = fitted_from(bench, (Hardening(),), bench.null.x, np.zeros(1)).fit
+    short = linearised(bench.fit, fit.x + 1.5, fit.effects, fit.z)
+    assert fit.log_evidence - short.log_evidence > 1.0
+    assert hypotheses_module._integrated(bench.fit, short)[2] == pytest.approx(short.log_evidence, abs=0.1)
+
+
 def test_two_starts_find_the_same_maximum(bench):
     low, high = (fitted_from(bench, (Hardening(),), bench.null.x, np.array([z])) for z in (-1.5, 1.5))
     assert low.fit.z == pytest.approx(high.fit.z, abs=1e-3)
