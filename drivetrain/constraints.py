@@ -14,10 +14,10 @@ import numpy as np
 
 from drivetrain.finding import Finding
 from drivetrain.output import Output, amount
+from electrical.dq import Values
 from units import MILLIMETRE
 
 CAPABILITY_SLACK = 1e-6  # relative; a capability this close below its requirement is met
-Numbers = float | np.ndarray  # one value or an array of any shape
 
 
 class Constraint:
@@ -53,7 +53,7 @@ class Constraint:
         """What it would take, as the end of a sentence."""
         raise NotImplementedError
 
-    def minimum_length(self, ratio: Numbers) -> Numbers:
+    def minimum_length(self, ratio: Values) -> Values:
         """Smallest active length allowed at these ratios [m], same shape as ``ratio``; not falling in the ratio."""
         return np.zeros_like(np.asarray(ratio, dtype=float))[()]
 
@@ -114,7 +114,7 @@ class _Force(Constraint):
     force: float
     torque_per_length: float
 
-    def minimum_length(self, ratio: Numbers) -> Numbers:
+    def minimum_length(self, ratio: Values) -> Values:
         return self.force / self.torque_per_length * np.asarray(ratio, dtype=float)[()]
 
     def capability(self, ratio: float, length: float) -> float:
@@ -177,7 +177,7 @@ class RegenerativeDamping(Constraint):
     def unit(self, output: Output) -> str:
         return output.damping_unit
 
-    def minimum_length(self, ratio: Numbers) -> Numbers:
+    def minimum_length(self, ratio: Values) -> Values:
         """Positive root of a l^2 - l - l_et = 0 with a = alpha / (c tau_t^2) [m] (3.94); 0 for no damping.
 
         ratio: tau_t [m/rad]

@@ -30,7 +30,7 @@ OTHERWISE = {
     ("optimisation", "torque", "Nm/m"),  # of a section, per metre of its length
     ("vehicle", "stroke", "kg/s^4"),  # the weight of the stroke
 }
-_NUMBER = re.compile(r"\b(float|complex|ndarray|Values|Numbers|Batch|ArrayLike)\b")
+_NUMBER = re.compile(r"\b(float|complex|ndarray|Values|Batch|ArrayLike)\b")
 _ARRAY = re.compile(r"\bndarray\b")  # ``units.Values`` says itself that any shape goes
 _PURE = re.compile(r"dimensionless|relative|per unit|number of|share|fraction|\bind(ex|ices)\b|whether", re.IGNORECASE)
 _DIMENSION = r"(?:\.\.\.|[\w +*-]{1,14})"

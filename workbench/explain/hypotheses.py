@@ -325,7 +325,7 @@ def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:
     except WorkbenchError:
         return IMPOSSIBLE
     weights = problem.weights(residual)
-    normal = slopes.T @ (weights[:, None] * slopes) + np.eye(len(x))
+    normal = _normal(fit, weights)
     move = np.linalg.solve(normal, slopes.T @ (weights * residual) - x)
     value = problem.misfit(residual - slopes @ move) + 0.5 * float(np.sum((x + move) ** 2)) + prior_cost(z)
     return -value - 0.5 * float(np.linalg.slogdet(normal)[1])
@@ -334,10 +334,16 @@ def _profile(problem: Problem, fit: Fit, x: np.ndarray, z: np.ndarray) -> float:
 def _unkept(problem: Problem, fit: Fit) -> float:
     """What straight lines still promise at the maximum of a fit, and the model did not keep [nats]: it is no evidence,
     as it is none for the fit without effects, which the same lines promise as much."""
-    reached = problem.misfit(fit.residual) + 0.5 * float(fit.x @ fit.x) + prior_cost(fit.z)
-    slopes, weights = fit.jacobian[:, : len(fit.x)], problem.weights(fit.residual)
-    normal = slopes.T @ (weights[:, None] * slopes) + np.eye(len(fit.x))
+    residual = problem.residual(fit.x, with_parameters(fit.effects, fit.z))
+    reached = problem.misfit(residual) + 0.5 * float(fit.x @ fit.x) + prior_cost(fit.z)
+    normal = _normal(fit, problem.weights(residual))
     return _profile(problem, fit, fit.x, fit.z) + reached + 0.5 * float(np.linalg.slogdet(normal)[1])
+
+
+def _normal(fit: Fit, weights: np.ndarray) -> np.ndarray:
+    """Curvature of the objective over the nuisances (m, m). weights: of the rows (n,)"""
+    slopes = fit.jacobian[:, : len(fit.x)]
+    return slopes.T @ (weights[:, None] * slopes) + np.eye(len(fit.x))
 
 
 def estimates(
