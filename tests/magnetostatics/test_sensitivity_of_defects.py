@@ -74,7 +74,7 @@ MATERIAL = {
     "axis of one magnet": OneMagnet(3, "axis_error", 1e-7),
     "recoil permeability of one magnet": OneMagnet(5, "recoil_permeability"),
     "turns of a coil": CoilTurns(4),
-    "severity of a cut edge": Materials(lambda _, d: damaged(0.5e-3, 0.3 + d), 1e-6),
+    "severity of a cut edge": Materials(lambda _, d: damaged(0.5e-3, 0.3 + d), 1e-5),
     "depth of a cut edge": Materials(lambda _, d: damaged(0.5e-3 + d, 0.3), 3e-9),
 }
 
