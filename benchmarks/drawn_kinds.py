@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from math import pi
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -45,6 +46,7 @@ def drawn() -> Iterator[tuple[str, MachineFile]]:
         yield "consequent_12_8, another rotor", _with_rotor(twelve, rotor)
 
 
+@cache
 def cut_out_with_magnets() -> tuple[str, MachineFile]:
     """The Prius motor, its rotor by outlines of lamination and magnets."""
     found = read_machine("prius_2004")

@@ -18,6 +18,7 @@ from matplotlib.typing import RcKeyType
 
 WIDTH = 9.0  # inches; 900 px wide at 100 px an inch, where 10 pt letters are 14 px high
 DPI = 150  # of saved pictures: sharp on dense screens when shown 900 px wide
+_SQUEEZE = 3  # of deflate's levels 0 to 9: half of the time of 6, which is usual, for files that are a twelfth larger
 
 # Okabe and Ito's palette, told apart with any kind of colour vision.
 BLACK, BLUE, ORANGE, GREEN = "#000000", "#0072B2", "#E69F00", "#009E73"
@@ -123,7 +124,7 @@ def png_bytes(figure: Figure) -> bytes:
     canvas: Any = FigureCanvasAgg(figure)  # its functions have no annotations
     figure.dpi = DPI
     try:
-        canvas.print_png(buffer, metadata={"Software": None})
+        canvas.print_png(buffer, metadata={"Software": None}, pil_kwargs={"compress_level": _SQUEEZE})
     finally:
         figure.dpi = dpi
     return buffer.getvalue()

@@ -11,6 +11,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -84,10 +85,14 @@ def about(text: str) -> str:
     return text[:begin] + _END.split(text[begin:])[0]
 
 
-def numbers() -> Iterator[Number]:
-    for room in ROOMS:
-        for path in sorted((PROJECT / room).rglob("*.py")):
-            yield from numbers_of(path)
+@cache
+def numbers() -> tuple[Number, ...]:
+    files = (path for room in ROOMS for path in sorted((PROJECT / room).rglob("*.py")))
+    return tuple(one for path in files for one in numbers_of(path))
+
+
+def arrays() -> list[Number]:
+    return [one for one in numbers() if _ARRAY.search(one.kind)]
 
 
 def numbers_of(path: Path) -> Iterator[Number]:
@@ -129,24 +134,20 @@ def is_private(name: str) -> bool:
     return name.startswith("_")
 
 
-NUMBERS = tuple(numbers())
-ARRAYS = tuple(one for one in NUMBERS if _ARRAY.search(one.kind))
-
-
 def share(covered: int, of: int) -> float:
     return 100 * covered / of
 
 
 def test_the_share_of_numbers_with_a_unit_does_not_fall():
-    missing = [f"{one.where} {one.name}" for one in NUMBERS if not one.has_unit]
-    found = share(len(NUMBERS) - len(missing), len(NUMBERS))
-    assert found >= UNITS_STATED, f"{found:.1f} % of {len(NUMBERS)}; without: " + "; ".join(missing)
+    missing = [f"{one.where} {one.name}" for one in numbers() if not one.has_unit]
+    found = share(len(numbers()) - len(missing), len(numbers()))
+    assert found >= UNITS_STATED, f"{found:.1f} % of {len(numbers())}; without: " + "; ".join(missing)
 
 
 def test_the_share_of_arrays_with_a_shape_does_not_fall():
-    missing = [f"{one.where} {one.name}" for one in ARRAYS if not one.has_shape]
-    found = share(len(ARRAYS) - len(missing), len(ARRAYS))
-    assert found >= SHAPES_STATED, f"{found:.1f} % of {len(ARRAYS)}; without: " + "; ".join(missing)
+    missing = [f"{one.where} {one.name}" for one in arrays() if not one.has_shape]
+    found = share(len(arrays()) - len(missing), len(arrays()))
+    assert found >= SHAPES_STATED, f"{found:.1f} % of {len(arrays())}; without: " + "; ".join(missing)
 
 
 @pytest.mark.parametrize("room", ROOMS)
@@ -154,7 +155,7 @@ def test_stated_units_are_those_of_the_names(room):
     """``radius`` is in metres everywhere, so a docstring that says millimetres is wrong, or the name is."""
     wrong = [
         f"{one.where} {one.name} [{unit}], usually [{usual_unit(one.name)}]"
-        for one in NUMBERS
+        for one in numbers()
         if one.where.startswith(f"{room}/") and usual_unit(one.name) is not None
         for unit in one.stated_units
         if unit != usual_unit(one.name) and (room, one.name, unit) not in OTHERWISE

@@ -17,7 +17,7 @@ from workbench.findings import ChannelScore, Comparison, Pull, SignatureMatch
 from workbench.likelihood.bench import Bench, bench_of, sealed_tables
 from workbench.likelihood.noise import measured_noise
 from workbench.likelihood.nuisance import DeclaredError, InstrumentError, TolerancedInput
-from workbench.likelihood.own_errors import left_open
+from workbench.likelihood.own_errors import left_open_by_base
 from workbench.likelihood.signatures import candidates, nearest, signatures_of
 from workbench.likelihood.whitening import whitener
 from workbench.models.model import Model
@@ -78,14 +78,15 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
 
 
 def scoreboard(bench: Bench) -> tuple[ChannelScore, ...]:
-    """V0: one score a channel over all rows of the campaign, fitted or not; the model is asked block by block."""
+    """V0: one score a channel over all rows of the campaign, fitted or not; the model is asked block by block, and of
+    tables that are too long for a fit not what the laws of its effects leave open."""
     stack = stacked(sealed_tables(bench.campaign).tables)
     predictor = bench.fit.predictor.on(stack)
     nominal, fitted = (_in_blocks(predictor, x) for x in (predictor.start, bench.null.x))
     if stack.size == bench.stack.size:
         white, noise = bench.white, bench.noise
     else:
-        stack = replace(stack, left_open=left_open(bench.model, stack))
+        stack = replace(stack, left_open=left_open_by_base(bench.model, stack))
         noise = measured_noise(stack, nominal)
         white = whitener(stack, noise)
     squares = white(stack.y - fitted) ** 2

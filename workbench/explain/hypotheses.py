@@ -18,13 +18,13 @@ from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
 from workbench.likelihood.fit import FAR, Fit, Problem, fitted, possible, prior_cost, refitted, with_parameters
-from workbench.likelihood.unknown import Seen, Shape, expected, seen, smooth
+from workbench.likelihood.own_errors import shapes_of_laws
+from workbench.likelihood.unknown import Seen, Shape, expected, seen
 from workbench.likelihood.whitening import LawError, law_error
 
 REACH = 4.0  # standard deviations to either side over which a posterior is integrated
 PLACES = 17
 ALSO = 0.5  # probability that an unknown law which shows in one group of channels shows in another one too
-LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
 LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
 IMPOSSIBLE = -1e30  # ln density where the model has no answer: a number, so that it can be interpolated
@@ -157,12 +157,8 @@ def _highest(hypothesis: Hypothesis, places: np.ndarray) -> np.ndarray | None:
 
 
 def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -> tuple[Problem, float]:
-    """The problem with the declared errors of the effects' own laws integrated out, and half the ln determinant of
-    that.
-
-    The change that an effect makes is wrong by a smooth function of the conditions of relative size ``law_error``:
-        covariance_ij += (law_error change_i) (law_error change_j) exp(-d_ij^2 / 2)
-    """
+    """The problem with the declared errors of the effects' own laws integrated out, whose shapes are those of
+    ``shapes_of_laws``, and half the ln determinant of that."""
     wrong = [effect for effect in effects if effect.law_error > 0]
     if not wrong:
         return problem, 0.0
@@ -186,8 +182,7 @@ def _without_laws(problem: Problem, laws: Sequence[LawError]) -> tuple[Problem, 
 
 def _law(problem: Problem, number: int, changes: Sequence[np.ndarray]) -> LawError:
     channel = problem.stack.channels[number]
-    shapes = smooth(problem.stack.tables[channel.table], LAW_LENGTH)
-    raw = np.hstack([change[channel.rows, None] * shapes for change in changes])
+    raw = shapes_of_laws(problem.stack, channel, changes)
     return law_error(channel.rows, problem.white.of(np.arange(problem.stack.size)[channel.rows])(raw))
 
 

@@ -195,7 +195,7 @@ class _Asked:
         left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
         unexplained = np.repeat(left, [c.size for c in stack.channels])
         columns = np.column_stack([p, *over_c])
-        stack = replace(stack, u=u, left_open=left_open(self.known.nominal, stack))
+        stack = replace(stack, u=u, left_open=left_open(self.known.model_at(none), stack))
         return _Around(stack, base + shapes @ self.known.weights, columns, len(c), unexplained)
 
     def _shapes(self, stack: Stack) -> np.ndarray:

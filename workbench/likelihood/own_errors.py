@@ -1,11 +1,18 @@
-"""What a base model says of its own errors, for all rows of a stack."""
+"""What a model says of its own errors, for all rows of a stack: its base, and the laws of the effects that it has."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from workbench.data.stack import Stack
+from effects.base import Effect
+from workbench.data.stack import Channel, Stack
+from workbench.likelihood.conditions import readings
+from workbench.likelihood.unknown import smooth
 from workbench.models.model import Model
+
+LAW_LENGTH = 1  # number of the length over which the error of a law changes, see ``likelihood.unknown.LENGTHS``
 
 
 def numerical(model: Model, stack: Stack) -> np.ndarray:
@@ -20,10 +27,44 @@ def numerical(model: Model, stack: Stack) -> np.ndarray:
 
 
 def left_open(model: Model, stack: Stack) -> np.ndarray:
-    """What the base model cannot say of readings, one standard deviation of each, every channel by itself (n, L)."""
+    """What a base model and the laws of its effects cannot say of readings, one standard deviation of each, every
+    channel by itself (n, L)."""
+    changes = [effect.law_error * _change(model, effect, stack) for effect in model.effects if effect.law_error > 0]
+    return np.hstack([left_open_by_base(model, stack), _of_laws(stack, changes)])
+
+
+def left_open_by_base(model: Model, stack: Stack) -> np.ndarray:
+    """What the base model alone cannot say of readings, as ``left_open`` (n, L)."""
     of_tables = [model.base.left_open(model.design, table) for table in stack.tables]
-    found = [of_tables[c.table].get(c.response, np.zeros((c.size, 0))) for c in stack.channels]
-    columns = np.zeros((stack.size, max((shapes.shape[1] for shapes in found), default=0)))
-    for channel, shapes in zip(stack.channels, found):
-        columns[channel.rows, : shapes.shape[1]] = shapes
+    return _side_by_side(stack, [of_tables[c.table].get(c.response, np.zeros((c.size, 0))) for c in stack.channels])
+
+
+def shapes_of_laws(stack: Stack, channel: Channel, changes: Sequence[np.ndarray]) -> np.ndarray:
+    """What laws may be wrong by in the rows of a channel: shapes with a standard normal weight each (n_c, q).
+
+    The change that an effect makes is wrong by a smooth function of the conditions:
+        covariance_ij = change_i change_j exp(-d_ij^2 / 2)
+    changes: what each effect does to the readings, times the relative error of its law (n,)
+    """
+    shapes = smooth(stack.tables[channel.table], LAW_LENGTH)
+    return np.hstack([change[channel.rows, None] * shapes for change in changes])
+
+
+def _of_laws(stack: Stack, changes: Sequence[np.ndarray]) -> np.ndarray:
+    if not changes:
+        return np.zeros((stack.size, 0))
+    none = np.zeros((0, 0))
+    return _side_by_side(stack, [shapes_of_laws(stack, c, changes) if c.size else none for c in stack.channels])
+
+
+def _change(model: Model, effect: Effect, stack: Stack) -> np.ndarray:
+    """What one effect of a model does beside the others, SI; none where one of both has no answer (n,)."""
+    return np.nan_to_num(readings(model, stack) - readings(model.without(effect.name()), stack))
+
+
+def _side_by_side(stack: Stack, shapes: Sequence[np.ndarray]) -> np.ndarray:
+    """Those of every channel in its own rows (n, most of one channel)."""
+    columns = np.zeros((stack.size, max((own.shape[1] for own in shapes), default=0)))
+    for channel, own in zip(stack.channels, shapes):
+        columns[channel.rows, : own.shape[1]] = own
     return columns

@@ -339,6 +339,36 @@ def test_an_unknown_error_of_a_law_is_averaged_over(tmp_path):
     assert unsure.fit.effects == max((close, wrong), key=lambda h: h.log_evidence).fit.effects
 
 
+def having(folder, effect, extra):
+    """The bench of a model that has an effect already."""
+    campaign = read_campaign(written(folder, n=40, rho=0.3, extra=extra))
+    return bench_of(Model(SpringModel(), SpringModel().design(campaign.device)) + effect, campaign, LIBRARY)
+
+
+def test_the_error_of_a_law_stays_when_its_effect_is_in_the_model(bench, tmp_path):
+    """In what is left open of the readings, fitted and sealed alike."""
+    effect = Wrong().at([1.0])
+    had = having(tmp_path, effect, lambda x: effect.cubic * x**3)
+    tried = with_law_error(bench.fit, (effect,), np.zeros(2))[0]
+    assert logs_of(had.fit) == pytest.approx(logs_of(tried), rel=0.02)
+    exact_one = having(tmp_path / "exact", Hardening(effect.cubic), lambda x: effect.cubic * x**3)
+    assert logs_of(exact_one.fit) == pytest.approx(logs_of(bench.fit), rel=0.02)
+    assert logs_of(tried) > 1.1 * logs_of(bench.fit)
+
+
+def logs_of(problem):
+    return sum(law.half_log_det for law in problem.white.laws)
+
+
+def test_what_a_law_in_the_model_may_be_wrong_by_is_no_other_effect(tmp_path):
+    """A hardening that is a tenth stiffer at one end and softer at the other, which an even part would follow."""
+    extra = lambda x: 2e6 * x**3 * (1 + 0.1 * np.tanh(x / 0.005))  # noqa: E731
+    exact_one, wrong = (having(tmp_path / kind.name(), kind(2e6), extra) for kind in (Hardening, Wrong))
+    gains = [alone(one, Bump).log_evidence - one.null.log_evidence for one in (exact_one, wrong)]
+    assert gains[0] > 8.0, "an exact law leaves no room"
+    assert gains[1] < 1.0, "a law that is good to a fifth explains it"
+
+
 def test_an_exact_law_has_no_error(bench):
     assert with_law_error(bench.fit, (Hardening().at([1.0]),), np.zeros(2)) == (bench.fit, 0.0)
 
