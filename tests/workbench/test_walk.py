@@ -94,6 +94,23 @@ def test_nothing_is_missing_where_nothing_is(tmp_path):
     assert found.verdict == "nothing_missing" and found.p_nothing_missing > 0.6 and found.sealed.holds
 
 
+class Brittle(Bump):
+    """Beyond 12 mm its spring is broken."""
+
+    def on_response(self, response, conditions, kind, design):
+        if np.abs(conditions["displacement"]).max() > 0.012:
+            raise WorkbenchError("broken")
+        return super().on_response(response, conditions, kind, design)
+
+
+def test_what_one_explanation_has_no_answer_to_may_still_separate_others(tmp_path):
+    """A hardening too small to be seen so far would show at twice the stroke, where the leader has no answer."""
+    model, campaign = of(written(tmp_path / "c", even))
+    found = diagnose(model, campaign, {n: c for n, c in LIBRARY.items() if n != "bump"} | {"brittle": Brittle})
+    assert found.names == ("brittle",)
+    assert any(m.conditions["displacement / m"][0] < -0.019 for m in found.next_measurements)
+
+
 def test_what_no_effect_explains_is_none_of_these_and_its_law_is_said(tmp_path):
     found = diagnose(*of(written(tmp_path / "c", root)), LIBRARY)
     assert (found.verdict, found.names) == ("none_of_these", ()) and found.probability > 0.95

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil
+from math import floor
 
 import numpy as np
 
@@ -147,9 +147,9 @@ class Simulator:
 def thresholds_of(simulator: Simulator) -> tuple[Thresholds, dict[float, float]]:
     """What is said from which probability on, and the share of unknown functions of a size that would be noticed."""
     empty, hiding = simulator.empty(EMPTY), simulator.hiding(HIDDEN)
-    quiet = min(1.0 - NAMED, _lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
+    quiet = min(1.0 - NAMED, lowest([p.nothing for p in simulator.posteriors(empty, 1)], FALSE_ALARMS))
     wrong = [_surest_false_name(p, c.truth) for p, c in zip(simulator.posteriors(hiding, 2), hiding)]
-    sure = max(NAMED, -_lowest([-p for p in wrong], FALSE_ALARMS))
+    sure = max(NAMED, -lowest([-p for p in wrong], FALSE_ALARMS))
     if spare_readings(simulator.bench) < SPARE:
         return Thresholds(sure, quiet, False), dict.fromkeys(POWER_SIZES, 0.0)
     power = {size: _noticed(simulator, size, quiet, sure) for size in POWER_SIZES}
@@ -163,9 +163,10 @@ def spare_readings(bench: Bench) -> float:
     return bench.fit.stack.size - float(taken) - 1.0
 
 
-def _lowest(values: list[float], share: float) -> float:
-    """The value that a new one falls below with at most this probability (split conformal, finite sample)."""
-    place = max(ceil(share * (len(values) + 1)) - 1, 0)
+def lowest(values: list[float], share: float) -> float:
+    """The value that a new one falls below with at most this probability (split conformal, finite sample); the least of
+    fewer values than that takes."""
+    place = max(floor(share * (len(values) + 1)) - 1, 0)
     return float(np.sort(values)[place])
 
 

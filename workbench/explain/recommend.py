@@ -110,16 +110,22 @@ def gains_of(search: Search, p: Posterior, options: Sequence[Option]) -> np.ndar
 def _weighing(search: Search, p: Posterior) -> tuple[_Forms, _Columns, np.ndarray] | None:
     """What the leading hypotheses are weighed with, and the sums over the rows that were fitted."""
     known = [names for names in search.ranked if names and not names & LAWS.keys() and names in p.sets]
-    hypotheses = [search.fitted[names] for names in known[:LEADERS]]
+    bench = search.bench
+    hypotheses = [h for h in (search.fitted[names] for names in known[:LEADERS]) if _has_an_answer(bench, h)]
     if not hypotheses:
         return None
-    bench = search.bench
-    forms, columns = _forms(bench, hypotheses, p), _Columns(bench, hypotheses)
+    columns = _Columns(bench, hypotheses)
+    have = columns.of_fit(bench.fit.white(search.unknown * bench.fit.white.sigma))
+    return _forms(bench, hypotheses, p), columns, have.T @ have
+
+
+def _has_an_answer(bench: Bench, h: Hypothesis) -> bool:
+    """Without the tolerances that were fitted with it, too."""
     try:
-        have = columns.of_fit(bench.fit.white(search.unknown * bench.fit.white.sigma))
-    except WorkbenchError:  # a leader that has no answer without the tolerances that were fitted with it
-        return None
-    return forms, columns, have.T @ have
+        bench.fit.predictor.predict(bench.null.x, h.effects)
+    except WorkbenchError:
+        return False
+    return True
 
 
 def _gain_of_all(option: Option, forms: _Forms, columns: _Columns, gram: np.ndarray) -> float:
@@ -167,16 +173,21 @@ class _Columns:
     def _raw(self, predictor) -> np.ndarray:
         x = self.bench.null.x
         base = predictor.predict(x)
-        columns = [jacobian(predictor, x, (), base)]
-        for h in self.hypotheses:
+        added = [self._added(predictor, h, base) for h in self.hypotheses]
+        return np.hstack([jacobian(predictor, x, (), base), *added])
+
+    def _added(self, predictor, h: Hypothesis, base: np.ndarray) -> np.ndarray:
+        """Change and slopes of a hypothesis; none where it has no answer, so that nothing is expected to tell it by
+        (rows, 1 + k)."""
+        x, z = self.bench.null.x, h.fit.z
+        try:
             there = predictor.predict(x, h.effects)
-            columns.append((there - base)[:, None])
-            for k in range(len(h.fit.z)):
-                z = h.fit.z.copy()
-                z[k] += STEP if z[k] < 0 else -STEP
-                moved = predictor.predict(x, with_parameters(h.fit.effects, z))
-                columns.append(((moved - there) / (z[k] - h.fit.z[k]))[:, None])
-        return np.hstack(columns)
+            ends = z + np.diag(np.where(z < 0, STEP, -STEP))
+            moved = [predictor.predict(x, with_parameters(h.fit.effects, end)) for end in ends]
+        except WorkbenchError:
+            return np.zeros((len(base), 1 + len(z)))
+        slopes = [(one - there) / (end[k] - z[k]) for k, (one, end) in enumerate(zip(moved, ends))]
+        return np.column_stack([there - base, *slopes])
 
 
 def _best_rows(option: Option, forms: _Forms, columns: _Columns, gram: np.ndarray) -> NextMeasurement:

@@ -11,7 +11,7 @@ from scipy.stats import multivariate_t
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.believed import FALSE_ALARMS, LIKELY, NAMED, UNKNOWN_RATE
 from workbench.data.campaign import read_campaign
-from workbench.explain.calibrate import Simulated, Simulator, detection_limits, thresholds_of
+from workbench.explain.calibrate import Simulated, Simulator, detection_limits, lowest, thresholds_of
 from workbench.explain.explore import beliefs_of
 from workbench.explain.verdict import verdict
 from workbench.likelihood.bench import bench_of
@@ -113,6 +113,14 @@ def test_thresholds_keep_false_alarms_and_false_names_rare(simulator):
     empty = simulator.posteriors(simulator.empty(1000), 1)
     alarms = np.mean([p.nothing < thresholds.quiet for p in empty])
     assert alarms <= FALSE_ALARMS + 3 * np.sqrt(FALSE_ALARMS / 1000) + 1 / 100  # the place among 100 is coarse
+
+
+@pytest.mark.parametrize("count", (50, 100, 120, 175))
+def test_a_new_value_falls_below_the_lowest_with_at_most_the_probability_asked_for(count):
+    """Of values from one distribution: the place is counted over them and the new one together."""
+    random = default_rng(3)
+    below = [random.random() < lowest(list(random.random(count)), FALSE_ALARMS) for _ in range(20_000)]
+    assert FALSE_ALARMS / 2 < np.mean(below) < FALSE_ALARMS + 3 * np.sqrt(FALSE_ALARMS / 20_000)
 
 
 def test_ten_rows_see_less_than_sixty(tmp_path, simulator):
