@@ -8,8 +8,8 @@ B over c, both over the noise, that is linear in the readings:
     c = K (r + B c_0),   K = (1 + B^T B)^-1 B^T
 
 so that a prediction errs by (A - B K A) p from what is not known exactly, by B (1 + B^T B)^-1 B^T from the calibration,
-by what the model left unexplained where it was learned, and the reading by its noise. What an error of p does that a
-calibration can do as well is taken up by the calibration.
+by what the laws of its effects may be wrong by, by what was left unexplained where it was learned, and the reading by
+its noise. What an error of p does that a calibration can do as well is taken up by the calibration.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from workbench.ledger.learned import FittedInput, Learned, LearnedRange
 from workbench.likelihood.conditions import readings, with_conditions
 from workbench.likelihood.noise import Noise, measured_noise
 from workbench.likelihood.nuisance import Calibration
-from workbench.likelihood.own_errors import left_open, numerical
+from workbench.likelihood.own_errors import errors_of_laws, left_open_by_base, numerical
 from workbench.likelihood.predictor import STEP
 from workbench.likelihood.whitening import Whitener, variance_of_readings, whitener
 from workbench.models.model import Model
@@ -193,9 +193,10 @@ class _Asked:
         u = with_conditions(self.model_at(none, c), stack, base)
         p = np.column_stack([*over_p, shapes]) @ _root(self.known.covariance)
         left = [self.known.unexplained(stack.tables[c.table].kind, c.response) for c in stack.channels]
-        unexplained = np.repeat(left, [c.size for c in stack.channels])
+        laws = errors_of_laws(self.known.model_at(none), stack)
+        unexplained = np.sqrt(sum(np.square([np.repeat(left, [c.size for c in stack.channels]), *laws])))
         columns = np.column_stack([p, *over_c])
-        stack = replace(stack, u=u, left_open=left_open(self.known.model_at(none), stack))
+        stack = replace(stack, u=u, left_open=left_open_by_base(self.known.nominal, stack))
         return _Around(stack, base + shapes @ self.known.weights, columns, len(c), unexplained)
 
     def _shapes(self, stack: Stack) -> np.ndarray:
@@ -206,7 +207,10 @@ class _Asked:
 @dataclass(frozen=True, eq=False)
 class _Around:
     """Prediction at some calibration and its derivatives over standard normal numbers: those of what is known, its
-    numerical error among them, then the m calibrations."""
+    numerical error among them, then the m calibrations.
+
+    unexplained: what was left where it was learned, and what laws of its effects may be wrong by, SI (n,)
+    """
 
     stack: Stack
     base: np.ndarray

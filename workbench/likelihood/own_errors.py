@@ -29,8 +29,7 @@ def numerical(model: Model, stack: Stack) -> np.ndarray:
 def left_open(model: Model, stack: Stack) -> np.ndarray:
     """What a base model and the laws of its effects cannot say of readings, one standard deviation of each, every
     channel by itself (n, L)."""
-    changes = [effect.law_error * _change(model, effect, stack) for effect in model.effects if effect.law_error > 0]
-    return np.hstack([left_open_by_base(model, stack), _of_laws(stack, changes)])
+    return np.hstack([left_open_by_base(model, stack), _of_laws(stack, errors_of_laws(model, stack))])
 
 
 def left_open_by_base(model: Model, stack: Stack) -> np.ndarray:
@@ -39,27 +38,33 @@ def left_open_by_base(model: Model, stack: Stack) -> np.ndarray:
     return _side_by_side(stack, [of_tables[c.table].get(c.response, np.zeros((c.size, 0))) for c in stack.channels])
 
 
-def shapes_of_laws(stack: Stack, channel: Channel, changes: Sequence[np.ndarray]) -> np.ndarray:
+def errors_of_laws(model: Model, stack: Stack) -> list[np.ndarray]:
+    """One standard deviation of what the law of each effect of a model, of those that are not exact, is wrong by, SI
+    (n,) each: its relative error times what the effect does beside the others; zero where there is no answer."""
+    return [e.law_error * np.nan_to_num(_change(model, e, stack)) for e in model.effects if e.law_error > 0]
+
+
+def shapes_of_laws(stack: Stack, channel: Channel, errors: Sequence[np.ndarray]) -> np.ndarray:
     """What laws may be wrong by in the rows of a channel: shapes with a standard normal weight each (n_c, q).
 
     The change that an effect makes is wrong by a smooth function of the conditions:
-        covariance_ij = change_i change_j exp(-d_ij^2 / 2)
-    changes: what each effect does to the readings, times the relative error of its law (n,)
+        covariance_ij = error_i error_j exp(-d_ij^2 / 2)
+    errors: of each law, one standard deviation, SI (n,)
     """
     shapes = smooth(stack.tables[channel.table], LAW_LENGTH)
-    return np.hstack([change[channel.rows, None] * shapes for change in changes])
+    return np.hstack([error[channel.rows, None] * shapes for error in errors])
 
 
-def _of_laws(stack: Stack, changes: Sequence[np.ndarray]) -> np.ndarray:
-    if not changes:
+def _of_laws(stack: Stack, errors: Sequence[np.ndarray]) -> np.ndarray:
+    if not errors:
         return np.zeros((stack.size, 0))
     none = np.zeros((0, 0))
-    return _side_by_side(stack, [shapes_of_laws(stack, c, changes) if c.size else none for c in stack.channels])
+    return _side_by_side(stack, [shapes_of_laws(stack, c, errors) if c.size else none for c in stack.channels])
 
 
 def _change(model: Model, effect: Effect, stack: Stack) -> np.ndarray:
-    """What one effect of a model does beside the others, SI; none where one of both has no answer (n,)."""
-    return np.nan_to_num(readings(model, stack) - readings(model.without(effect.name()), stack))
+    """What one effect of a model does beside the others, SI; NaN where one of both has no answer (n,)."""
+    return readings(model, stack) - readings(model.without(effect.name()), stack)
 
 
 def _side_by_side(stack: Stack, shapes: Sequence[np.ndarray]) -> np.ndarray:

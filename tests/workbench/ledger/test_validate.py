@@ -249,6 +249,20 @@ def test_without_calibrations_the_band_is_that_of_what_is_known(truth):
     assert found.sd == pytest.approx(expected, rel=1e-6) and found.calibration.size == 0
 
 
+class Rule(Hardening):
+    """A rule of thumb, good to a fifth."""
+
+    model_error = 0.2
+
+
+def test_the_band_holds_what_the_law_of_an_effect_may_be_wrong_by(truth):
+    known, rule = (replace(truth.known, effects=(kind(2e5),)) for kind in (Hardening, Rule))
+    before, found = (predicted(one, (), (truth.table,)) for one in (known, rule))
+    wrong = 0.2 * 2e5 * truth.table.conditions["displacement"] ** 3
+    assert found.sd == pytest.approx(np.hypot(before.sd, wrong), rel=1e-6)
+    assert np.array_equal(found.whitened, before.whitened), "the error over the noise alone is as it was"
+
+
 def test_the_uncertainty_of_a_condition_counts_once(truth):
     """u^2 = noise^2 + (dF/dx u_x)^2"""
     table = replace(truth.table, condition_random={"displacement": np.full(15, 2e-4)})
