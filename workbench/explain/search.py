@@ -12,6 +12,7 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from effects.base import Effect
+from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
@@ -160,7 +161,8 @@ def _leads_on(search: Search, names: Set) -> bool:
 
 def _best_first(search: Search, heap: list[Promise], progress: Progress, most: int = FITS) -> None:
     """No set is fitted that promises less than the best one, an unknown function beside what leads among them: of a
-    machine that has what no effect is, dozens explain a little more than others."""
+    machine that has what no effect is, dozens explain a little more than others. One that promises plainly more than
+    what leads is fitted all the same: of three effects the first two leave more than such a function does."""
     while heap and len(search.fitted) <= most:
         promise = heappop(heap)
         if promise.every in search.fitted or label_of(promise.every) in search.failed:
@@ -174,8 +176,9 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
         if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
             progress("an unknown function")
             weigh(search, search.ranked[0])
-        best = max(search.log_posterior(search.ranked[0]), search.best_beside)
-        if -promise.order < best - REACH and len(search.fitted) > LEAST_FITS:
+        leading = search.log_posterior(search.ranked[0])
+        least = min(max(leading, search.best_beside) - REACH, leading + PLAIN)
+        if -promise.order < least and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)

@@ -844,19 +844,36 @@ def expanded(bench):
 
 
 def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, monkeypatch):
-    """A wave that none of the others can imitate, each of which promises much."""
+    """A wave that none of the others can imitate, the first of which promises much, the others a little."""
     bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x)))
     search = searching(bench, {frozenset(): null_of(bench)})
     search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     monkeypatch.setattr(search_module, "PATIENCE", 2)
+    little = search.log_posterior(frozenset()) + 5.0
     heap = [
         Promise(-order, f"wave{k}", frozenset((f"wave{k}",)), (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
-        for k, order in ((2, 9e3), (3, -1e3), (4, -1e3), (5, -1e3), (6, -1e3))
+        for k, order in ((2, 9e3), *((k, little) for k in (3, 4, 5, 6)))
     ]
     search.guessed = {promise.every: -promise.order for promise in heap}
     search_module._best_first(search, heap, lambda words: None)
     assert search.is_beaten and search.best_beside > search.log_posterior(search.ranked[0]) + 10
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
+
+
+@pytest.mark.parametrize(("ahead", "is_fitted"), [(5.0, False), (20.0, True)])
+def test_what_promises_plainly_more_than_what_leads_is_fitted_whatever_an_unknown_function_does(
+    tmp_path, ahead, is_fitted
+):
+    """Of three effects the first two leave more than an unknown function does; the third promises what they lack."""
+    bench = sure_of_noise(tmp_path)
+    others = {frozenset((f"wave{k}",)): null_of(bench) for k in (3, 4, 5)}
+    search = searching(bench, {frozenset(): null_of(bench), **others})
+    search.beside[frozenset()] = Beside(null_of(bench), search.log_evidence(frozenset()) + 500.0, (), ())
+    every, order = frozenset(("wave2",)), search.log_posterior(search.ranked[0]) + ahead
+    promise = Promise(-order, "wave2", every, (WAVES["wave2"](),), bench.null.x, np.zeros(1), 0.0)
+    search.guessed[every] = order - search.beliefs.log_prior(every)
+    search_module._best_first(search, [promise], lambda words: None)
+    assert search.is_beaten and (every in search.fitted) is is_fitted
 
 
 def test_nothing_ends_a_search_that_finds_what_is_there(tmp_path, monkeypatch):
