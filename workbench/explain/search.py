@@ -12,7 +12,7 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from effects.base import Effect
-from workbench.believed import PLAIN
+from workbench.believed import MOST, PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.beside import weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
@@ -162,7 +162,8 @@ def _leads_on(search: Search, names: Set) -> bool:
 def _best_first(search: Search, heap: list[Promise], progress: Progress, most: int = FITS) -> None:
     """No set is fitted that promises less than the best one, an unknown function beside what leads among them: of a
     machine that has what no effect is, dozens explain a little more than others. One that promises plainly more than
-    what leads is fitted all the same: of three effects the first two leave more than such a function does."""
+    what leads, and so much that a few alike would do as well as that function, is fitted all the same: of three effects
+    the first two leave more than it does."""
     while heap and len(search.fitted) <= most:
         promise = heappop(heap)
         if promise.every in search.fitted or label_of(promise.every) in search.failed:
@@ -177,8 +178,9 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
             progress("an unknown function")
             weigh(search, search.ranked[0])
         leading = search.log_posterior(search.ranked[0])
-        least = min(max(leading, search.best_beside) - REACH, leading + PLAIN)
-        if -promise.order < least and len(search.fitted) > LEAST_FITS:
+        best = max(leading, search.best_beside)
+        steps_on = leading + max(PLAIN, (best - leading) / MOST)
+        if -promise.order < min(best - REACH, steps_on) and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)

@@ -860,16 +860,18 @@ def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, mo
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
 
 
-@pytest.mark.parametrize(("ahead", "is_fitted"), [(5.0, False), (20.0, True)])
-def test_what_promises_plainly_more_than_what_leads_is_fitted_whatever_an_unknown_function_does(
-    tmp_path, ahead, is_fitted
-):
+@pytest.mark.parametrize(
+    ("ahead", "behind", "is_fitted"), [(5.0, 15.0, False), (12.0, 30.0, True), (12.0, 90.0, False), (30.0, 90.0, True)]
+)
+def test_what_promises_a_good_part_of_what_an_unknown_function_explains_is_fitted(tmp_path, ahead, behind, is_fitted):
     """Of three effects the first two leave more than an unknown function does; the third promises what they lack."""
     bench = sure_of_noise(tmp_path)
     others = {frozenset((f"wave{k}",)): null_of(bench) for k in (3, 4, 5)}
     search = searching(bench, {frozenset(): null_of(bench), **others})
-    search.beside[frozenset()] = Beside(null_of(bench), search.log_evidence(frozenset()) + 500.0, (), ())
-    every, order = frozenset(("wave2",)), search.log_posterior(search.ranked[0]) + ahead
+    leading = search.log_posterior(search.ranked[0])
+    above = leading + behind - search.beliefs.log_prior(frozenset()) - search.beliefs.log_unknown
+    search.beside[frozenset()] = Beside(null_of(bench), above, (), ())
+    every, order = frozenset(("wave2",)), leading + ahead
     promise = Promise(-order, "wave2", every, (WAVES["wave2"](),), bench.null.x, np.zeros(1), 0.0)
     search.guessed[every] = order - search.beliefs.log_prior(every)
     search_module._best_first(search, [promise], lambda words: None)
