@@ -14,8 +14,7 @@ import numpy as np
 
 from drivetrain.finding import Finding
 from drivetrain.output import Output, amount
-from electrical.dq import Values
-from units import MILLIMETRE
+from units import MILLIMETRE, Values
 
 CAPABILITY_SLACK = 1e-6  # relative; a capability this close below its requirement is met
 

@@ -160,10 +160,7 @@ def _leads_on(search: Search, names: Set) -> bool:
 
 
 def _best_first(search: Search, heap: list[Promise], progress: Progress, most: int = FITS) -> None:
-    """No set is fitted that promises less than the best one, an unknown function beside what leads among them: of a
-    machine that has what no effect is, dozens explain a little more than others. One that promises plainly more than
-    what leads, and so much that a few alike would do as well as that function, is fitted all the same: of three effects
-    the first two leave more than it does."""
+    """Fits what promises most, until nothing promises enough."""
     while heap and len(search.fitted) <= most:
         promise = heappop(heap)
         if promise.every in search.fitted or label_of(promise.every) in search.failed:
@@ -177,15 +174,22 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
         if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
             progress("an unknown function")
             weigh(search, search.ranked[0])
-        leading = search.log_posterior(search.ranked[0])
-        best = max(leading, search.best_beside)
-        steps_on = leading + max(PLAIN, (best - leading) / MOST)
-        if -promise.order < min(best - REACH, steps_on) and len(search.fitted) > LEAST_FITS:
+        if -promise.order < _enough(search) and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
         progress("fitting " + promise.label)
         if fit_set(search, promise) and _leads_on(search, promise.every):
             expand(search, search.fitted[promise.every], heap)
+
+
+def _enough(search: Search) -> float:
+    """ln posterior that a set must promise to be fitted [nats]: that of the best one, an unknown function beside what
+    leads among them, as of a machine that has what no effect is dozens explain a little more than others. Or plainly
+    more than what leads, and so much that a few alike would do as well as that function: of three effects the first two
+    leave more than it does."""
+    leading = search.log_posterior(search.ranked[0])
+    best = max(leading, search.best_beside)
+    return min(best - REACH, leading + max(PLAIN, (best - leading) / MOST))
 
 
 def _smaller(search: Search, promise: Promise, heap: list[Promise]) -> Promise | None:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from effects.base import Effect
 from workbench.data.stack import Channel, Stack
 from workbench.likelihood.conditions import readings
 from workbench.likelihood.unknown import smooth
@@ -41,7 +40,10 @@ def left_open_by_base(model: Model, stack: Stack) -> np.ndarray:
 def errors_of_laws(model: Model, stack: Stack) -> list[np.ndarray]:
     """One standard deviation of what the law of each effect of a model, of those that are not exact, is wrong by, SI
     (n,) each: its relative error times what the effect does beside the others; zero where there is no answer."""
-    return [e.law_error * np.nan_to_num(_change(model, e, stack)) for e in model.effects if e.law_error > 0]
+    wrong = [effect for effect in model.effects if effect.law_error > 0]
+    whole = readings(model, stack) if wrong else np.zeros(0)
+    changes = (whole - readings(model.without(effect.name()), stack) for effect in wrong)
+    return [effect.law_error * np.nan_to_num(change) for effect, change in zip(wrong, changes)]
 
 
 def shapes_of_laws(stack: Stack, channel: Channel, errors: Sequence[np.ndarray]) -> np.ndarray:
@@ -60,11 +62,6 @@ def _of_laws(stack: Stack, errors: Sequence[np.ndarray]) -> np.ndarray:
         return np.zeros((stack.size, 0))
     none = np.zeros((0, 0))
     return _side_by_side(stack, [shapes_of_laws(stack, c, errors) if c.size else none for c in stack.channels])
-
-
-def _change(model: Model, effect: Effect, stack: Stack) -> np.ndarray:
-    """What one effect of a model does beside the others, SI; NaN where one of both has no answer (n,)."""
-    return readings(model, stack) - readings(model.without(effect.name()), stack)
 
 
 def _side_by_side(stack: Stack, shapes: Sequence[np.ndarray]) -> np.ndarray:

@@ -133,7 +133,7 @@ def variance_of_readings(stack: Stack, white: Whitener, channels: Sequence[Chann
 def _unknown(stack: Stack, channel: Channel, found: ChannelNoise, white: Whitener) -> LawError:
     """What every scan of a channel may be off by as a whole, and what the model leaves open in it."""
     raw = np.hstack([_of_scans(stack, channel, found), stack.left_open[channel.rows]])
-    return law_error(channel.rows, Whitener(white.sigma[channel.rows], white.rho[channel.rows])(raw))
+    return law_error(channel.rows, white.of(np.arange(stack.size)[channel.rows])(raw))
 
 
 def _of_scans(stack: Stack, channel: Channel, found: ChannelNoise) -> np.ndarray:
