@@ -37,7 +37,7 @@ from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
 FIRST_FITS = 8  # after which what leads is asked for the first time which readings are wild
-PATIENCE = 8  # fits of an expansion, after which an unknown function is weighed: those of other models take no time
+PATIENCE = 8  # fits of an expansion for each time that an unknown function is weighed: those of others take no time
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion, and what leads then
@@ -171,7 +171,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
         if (smaller := _smaller(search, promise, heap)) is not None:
             heappush(heap, promise)
             promise = smaller
-        if search.bench.model.base.is_expansion and len(search.fitted) % PATIENCE == 0:
+        if search.bench.model.base.is_expansion and len(search.fitted) // PATIENCE > len(search.beside):
             progress("an unknown function")
             weigh(search, search.ranked[0])
         if -promise.order < _enough(search) and len(search.fitted) > LEAST_FITS:

@@ -860,6 +860,21 @@ def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, mo
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
 
 
+@pytest.mark.parametrize(("patience", "is_weighed"), [(3, True), (4, True), (5, False)])
+def test_fits_made_elsewhere_count_until_an_unknown_function_is_weighed(tmp_path, monkeypatch, patience, is_weighed):
+    """Four fits, the last of them beyond three; what is promised is not worth a fifth."""
+    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x)))
+    four = [frozenset(), *(frozenset((f"wave{k}",)) for k in (3, 4, 5))]
+    search = searching(bench, dict.fromkeys(four, null_of(bench)))
+    search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    monkeypatch.setattr(search_module, "PATIENCE", patience)
+    every = frozenset(("wave2",))
+    promise = Promise(9e9, "wave2", every, (WAVES["wave2"](),), bench.null.x, np.zeros(1), 0.0)
+    search.guessed[every] = -9e9
+    search_module._best_first(search, [promise], lambda words: None)
+    assert len(search.fitted) == 4 and bool(search.beside) is is_weighed
+
+
 @pytest.mark.parametrize(
     ("ahead", "behind", "is_fitted"), [(5.0, 15.0, False), (12.0, 30.0, True), (12.0, 90.0, False), (30.0, 90.0, True)]
 )
