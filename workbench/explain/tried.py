@@ -106,7 +106,7 @@ class Search:
     origins: the fitted sets beside which that was guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
-    elsewhere: signatures beside fits of large effects, with d readings / d x there (n, m)
+    elsewhere: signatures beside fits of large effects
     """
 
     bench: Bench
@@ -122,7 +122,7 @@ class Search:
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
-    elsewhere: list[tuple[np.ndarray, Signatures]] = field(default_factory=list)
+    elsewhere: list[Signatures] = field(default_factory=list)
 
     def drop(self, names: Set, why: str) -> None:
         """Takes back a set that was fitted and cannot be."""
@@ -174,13 +174,13 @@ class Search:
         if self.bench.model.base.is_expansion:
             return self.signatures
         fit, white = hypothesis.fit, self.bench.fit.white
-        known = [(self.bench.centre.slopes, self.signatures), *self.elsewhere]
-        moved = [float(np.linalg.norm(white(fit.slopes - slopes), axis=0).max(initial=0.0)) for slopes, _ in known]
+        known = [self.signatures, *self.elsewhere]
+        moved = [float(np.linalg.norm(white(fit.slopes - s.slopes), axis=0).max(initial=0.0)) for s in known]
         if min(moved) > MOVED:
-            here = self.signatures.beside(hypothesis.problem.predictor, fit.x, fit.at_maximum)
-            self.elsewhere.append((fit.slopes, here))
+            here = self.signatures.beside(hypothesis.problem.predictor, fit.x, fit.at_maximum, fit.slopes)
+            self.elsewhere.append(here)
             return here
-        return known[int(np.argmin(moved))][1]
+        return known[int(np.argmin(moved))]
 
     def log_evidence_beside(self, names: Set) -> float:
         """Of a set beside an unknown function, all its forms together [nats]. An unknown function makes good what an
@@ -424,7 +424,7 @@ def _guesses_beside(search: Search, have: Set, added: Additions) -> dict[Set, tu
 
 def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
     """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
-    signatures = search.signatures_beside(hypothesis)
-    names = Names(signatures.catalogue(background, hypothesis.problem.white, hypothesis.names))
+    slopes, white = hypothesis.fit.slopes, hypothesis.problem.white
+    names = Names(search.signatures_beside(hypothesis).catalogue_at(slopes, background, white, hypothesis.names))
     gains = Gains(hypothesis.problem, hypothesis.fit, at_zero(hypothesis), names.catalogue)
     return Additions(search, hypothesis, names, gains)

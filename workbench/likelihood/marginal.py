@@ -109,18 +109,50 @@ class Terms:
 
 
 @dataclass(frozen=True, eq=False)
+class Carried:
+    """What tolerances do more where an explanation is looked for than where its terms were made. Of what an effect does
+    there, the part that tolerances could do is taken as they do it here: or the difference of the two, times all that
+    tolerances were pulled by, would explain whatever it is like.
+
+    change: of what tolerances do, whitened (n, r);  shares: of tolerances in the columns of all terms (r, Q)
+    """
+
+    change: np.ndarray
+    shares: np.ndarray
+
+    @classmethod
+    def nowhere(cls, terms: Terms) -> Carried:
+        """Where they were made."""
+        return cls(np.empty((terms.rows, 0)), np.empty((0, terms.columns.shape[1])))
+
+    def products(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """E and F of what is added to products of the columns with one another, a^T F + e^T A for places with shares a
+        of all shares A (r, Q) each: E = change^T columns, F = E + change^T change A."""
+        before = self.change.T @ columns
+        return before, before + (self.change.T @ self.change) @ self.shares
+
+
+@dataclass(frozen=True, eq=False)
 class Catalogue:
     """The terms that an explanation may be made of, beside a background (n, m) that is in every one.
 
     laws: errors of laws that are integrated out besides, one of a row at most. The background feels them already, the
-    terms do not yet: what that changes in their products is of low rank
+    terms do not yet
     without: effects whose terms are left out
+    elsewhere: what is changed in the terms to stand beside the background, None where they were made beside it
+
+    What laws and another place change in the products of the terms is of low rank.
     """
 
     background: np.ndarray
     whole: Terms
     laws: tuple[LawError, ...] = ()
     without: frozenset[str] = frozenset()
+    elsewhere: Carried | None = None
+
+    @cached_property
+    def carried(self) -> Carried:
+        return self.elsewhere or Carried.nowhere(self.whole)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -159,13 +191,24 @@ class Catalogue:
     @cached_property
     def _taken(self) -> np.ndarray:
         """What the laws take, and the background (q, Q)."""
-        laws = [law.taken(self.whole.columns[law.rows]).take(self._kept, axis=1) for law in self.laws]
+        laws = [self._taken_by(law).take(self._kept, axis=1) for law in self.laws]
         return np.vstack([*laws, self._behind])
+
+    def _taken_by(self, law: LawError) -> np.ndarray:
+        """What a law takes of the columns of all terms (q, Q)."""
+        carried = self.carried
+        return law.taken(self.whole.columns[law.rows]) + law.taken(carried.change[law.rows]) @ carried.shares
+
+    @cached_property
+    def _carried(self) -> tuple[np.ndarray, np.ndarray]:
+        """E and F of ``Carried.products``."""
+        return self.carried.products(self.whole.columns)
 
     def products(self, places: np.ndarray) -> np.ndarray:
         """Of the terms' columns at these places with all of them, laws and background integrated out (k, Q)."""
-        own = self.whole.products(self._kept[places]).take(self._kept, axis=1)
-        return own - self._taken[:, places].T @ self._taken
+        kept, shares, (before, after) = self._kept[places], self.carried.shares, self._carried
+        own = self.whole.products(kept) + shares[:, kept].T @ after + before[:, kept].T @ shares
+        return own.take(self._kept, axis=1) - self._taken[:, places].T @ self._taken
 
     @cached_property
     def blocks(self) -> dict[int, np.ndarray]:
@@ -174,8 +217,10 @@ class Catalogue:
 
     def _blocks(self, which: np.ndarray, size: int) -> np.ndarray:
         places = self.first[which][:, None] + np.arange(1 + size)
-        taken = self._taken[:, places].transpose(1, 2, 0)
         own = np.stack([self.whole.own[self._numbers[t]] for t in which])
+        shares, before, after = (of[:, self._kept[places]] for of in (self.carried.shares, *self._carried))
+        own = own + shares.transpose(1, 2, 0) @ after.swapaxes(0, 1) + before.transpose(1, 2, 0) @ shares.swapaxes(0, 1)
+        taken = self._taken[:, places].transpose(1, 2, 0)
         return own - taken @ taken.transpose(0, 2, 1)
 
     def _on(self, whitened: np.ndarray) -> np.ndarray:
@@ -183,7 +228,8 @@ class Catalogue:
         felt = whitened.copy()
         for law in self.laws:
             felt[law.rows] = law.apply(felt[law.rows])
-        return (self.whole.columns.T @ felt)[self._kept]
+        products = self.whole.columns.T @ felt + self.carried.shares.T @ (self.carried.change.T @ felt)
+        return products[self._kept]
 
     def readings(self, residuals: np.ndarray) -> list[Readings]:
         """Of whitened residuals (n, R), the background integrated out."""
@@ -211,7 +257,8 @@ class Catalogue:
     def felt(self, number: int) -> np.ndarray:
         """Whitened shift of the term of a number and its columns, the errors of laws integrated out (n, 1 + k)."""
         term = self.terms[number]
-        out = np.column_stack([term.shift, term.columns])
+        own = self._kept[self.first[number] : self.first[number + 1]]
+        out = np.column_stack([term.shift, term.columns]) + self.carried.change @ self.carried.shares[:, own]
         for law in self.laws:
             out[law.rows] = law.apply(out[law.rows])
         return out

@@ -20,7 +20,7 @@ from effects.parameter import parameters_of
 from workbench.believed import TAILS
 from workbench.errors import WorkbenchError
 from workbench.likelihood.bench import Bench
-from workbench.likelihood.marginal import Catalogue, Term, Terms
+from workbench.likelihood.marginal import Carried, Catalogue, Term, Terms
 from workbench.likelihood.predictor import Predictor
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener
@@ -173,11 +173,13 @@ class Signatures:
     """Of all effects that do something to the readings.
 
     failed: why others could not be had, by name;  white: without the errors of the effects' own laws
+    slopes: d readings / d x where they were made, SI (n, m)
     """
 
     found: Mapping[str, tuple[Signature, ...]]
     failed: Mapping[str, str]
     white: Whitener
+    slopes: np.ndarray
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -195,8 +197,17 @@ class Signatures:
         terms = (term for s, k, count in every for term in s.terms(self.white, k, -log(count)))
         return Terms.in_one(terms, len(self.white.sigma), sum(s.term_columns for s, _, _ in every))
 
-    def beside(self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect]) -> Signatures:
-        """The same at nuisances x (m,) and beside effects that are there, of these each beside the others."""
+    @cached_property
+    def _shares(self) -> np.ndarray:
+        """Of tolerances in the columns of all terms (m, Q): what they would be pulled by to do the same."""
+        could = self.white(self.slopes)
+        return np.linalg.solve(np.eye(could.shape[1]) + could.T @ could, could.T @ self.terms.columns)
+
+    def beside(
+        self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect], slopes: np.ndarray
+    ) -> Signatures:
+        """The same at nuisances x (m,), with d readings / d x (n, m), and beside effects that are there, of these each
+        beside the others."""
         without = cache(lambda others: predictor.predict(x, others))
 
         def again(before: Signature) -> Signature:
@@ -206,11 +217,18 @@ class Signatures:
             except (WorkbenchError, ArithmeticError, ValueError):  # the model has no answer there: as it was
                 return before
 
-        return replace(self, found={name: tuple(map(again, forms)) for name, forms in self.found.items()})
+        return replace(self, found={n: tuple(map(again, forms)) for n, forms in self.found.items()}, slopes=slopes)
 
-    def catalogue(self, background: np.ndarray, white: Whitener, without: Iterable[str] = ()) -> Catalogue:
-        """The catalogue beside a background that was whitened so (n, m), of all effects but some."""
-        return Catalogue(background, self.terms, white.beyond(self.white), frozenset(without))
+    def catalogue(self, background: np.ndarray, white: Whitener) -> Catalogue:
+        """The catalogue where they were made, beside a background that was whitened so (n, m)."""
+        return Catalogue(background, self.terms, white.beyond(self.white))
+
+    def catalogue_at(
+        self, slopes: np.ndarray, background: np.ndarray, white: Whitener, without: Iterable[str]
+    ) -> Catalogue:
+        """The same of all effects but some, where d readings / d x, SI (n, m), is another."""
+        carried = Carried(self.white(slopes - self.slopes), self._shares)
+        return Catalogue(background, self.terms, white.beyond(self.white), frozenset(without), carried)
 
 
 def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = lambda words: None) -> Signatures:
@@ -229,7 +247,7 @@ def signatures_of(bench: Bench, effects: Iterable[Effect], progress: Progress = 
     seen = {n: tuple(v) for n, v in found.items() if any(_is_seen(bench, s) for s in v)}
     failed = {n: why for n, why in failed.items() if n not in found}  # another form of it has an answer
     failed |= {n: "it changes nothing in these data" for n in found if n not in seen}
-    return Signatures(seen, failed, bench.fit.white)
+    return Signatures(seen, failed, bench.fit.white, bench.centre.slopes)
 
 
 def _is_seen(bench: Bench, signature: Signature) -> bool:

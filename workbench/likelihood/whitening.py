@@ -28,14 +28,13 @@ class LawError:
         return 0.5 * float(np.log1p(self.size**2).sum())
 
     @cached_property
-    def _taken(self) -> np.ndarray:
-        """Share that is taken of what lies along every direction (q,)."""
-        return 1 - 1 / np.sqrt(1 + self.size**2)
+    def _shrunk(self) -> np.ndarray:
+        """The directions, each times the share that is taken of what lies along it (n_c, q)."""
+        return self.directions * (1 - 1 / np.sqrt(1 + self.size**2))
 
     def apply(self, z: np.ndarray) -> np.ndarray:
         """(1 + F F^T)^(-1/2) z of the rows of the channel (n_c,) or (n_c, m), F = directions * size."""
-        along = self.directions.T @ z
-        return z - self.directions @ (along.T * self._taken).T
+        return z - self._shrunk @ (self.directions.T @ z)
 
     def taken(self, z: np.ndarray) -> np.ndarray:
         """What ``apply`` takes of the products of rows of the channel (n_c, m) with one another, as the products of

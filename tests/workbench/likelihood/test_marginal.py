@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from workbench.likelihood.gains import Gains
-from workbench.likelihood.marginal import Catalogue, Term, Terms
+from workbench.likelihood.marginal import Carried, Catalogue, Term, Terms
 from workbench.likelihood.whitening import law_error
 
 ROWS = 13
@@ -101,3 +101,25 @@ def test_what_feels_the_errors_of_laws_is_as_if_it_were_whitened_with_them():
         assert np.allclose(one.on, same.on, atol=1e-10) and one.square == same.square
     without = Catalogue(catalogue.background, Terms(tuple(left), ROWS))
     assert np.abs(found.products(every) - without.products(every)).max() > 0.5
+
+
+def test_terms_of_another_place_are_as_if_they_were_made_beside_the_background():
+    """Their columns with the share of tolerances in each changed, an error of a law besides, and a term left out."""
+    catalogue, residuals = problem(4)
+    random = np.random.default_rng(4)
+    carried = Carried(random.standard_normal((ROWS, 2)), random.standard_normal((2, catalogue.first[-1])))
+    moved = carried.change @ carried.shares
+    there = tuple(
+        replace(t, shift=t.shift + moved[:, k], columns=t.columns + moved[:, k + 1 : k + 1 + t.columns.shape[1]])
+        for t, k in zip(catalogue.terms, catalogue.first)
+    )
+    laws = tuple(law_error(rows, random.standard_normal((rows.stop - rows.start, 3))) for rows in CHANNELS)
+    other = Catalogue(catalogue.background, Terms(there, ROWS), laws, frozenset(("e2",)))
+    found = Catalogue(catalogue.background, catalogue.whole, laws, frozenset(("e2",)), carried)
+    every = np.arange(other.first[-1])
+    assert np.allclose(found.products(every), other.products(every), atol=1e-10)
+    assert all(np.allclose(found.blocks[k], other.blocks[k], atol=1e-10) for k in other.blocks)
+    assert np.allclose(found.readings(residuals)[0].on, other.readings(residuals)[0].on, atol=1e-10)
+    assert np.allclose(found.felt(2), other.felt(2), atol=1e-12)
+    bare = Catalogue(catalogue.background, catalogue.whole, laws, frozenset(("e2",)))
+    assert np.abs(found.products(every) - bare.products(every)).max() > 0.5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from math import lcm
 
 import numpy as np
@@ -25,7 +25,7 @@ from workbench.data.table import Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.machine.answers import Answers, load_angles
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
-from workbench.models.machine.drag import USUAL_SHEET, _region_waves, _torques, iron_torques
+from workbench.models.machine.drag import USUAL_SHEET, Swing, _torques, iron_torques, yoke_wave
 from workbench.models.machine.kinds import KINDS, dq_machine, loaded_states
 
 SPEED = np.array([-150.0, 20.0, 80.0, 300.0])
@@ -65,19 +65,23 @@ def test_iron_of_a_sinusoidal_flux_has_the_loss_of_the_sheet():
     """1.2 T at 5 pole pairs and 100 rad/s, in 0.3 kg, against the law in its own frequency and peak."""
     wave = np.zeros(20, dtype=complex)
     wave[5] = 1.2j
-    hysteresis, eddy, excess = _torques(USUAL_SHEET, 0.3, wave, 5)
+    hysteresis, eddy, excess = _torques(USUAL_SHEET, 0.3, Swing.of(wave), 5)
     power = 100.0 * (hysteresis + eddy * 100.0 + excess * 10.0)
     assert_allclose(power, 0.3 * USUAL_SHEET.specific_loss(5 * 100.0 / (2 * np.pi), 1.2), rtol=1e-4)
 
 
 def test_flux_of_a_tooth_comes_from_the_yoke_on_its_both_sides():
     design = IronLoss(factor=1.0).on_design(drawn())
-    answers = Answers(surrogate(), design)
-    tooth, yoke = _region_waves(answers)
-    orders, pitch = np.arange(len(tooth)), 2 * np.pi / 12
-    apart = yoke - yoke * np.exp(1j * orders * pitch)
-    assert_allclose(3.3 * apart[5], 5.5 * tooth[5], rtol=1e-9)  # mm: flux through both widths
-    assert 1.0 < np.abs(tooth[5]) < 2.0
+    tooth, pitch = Answers(surrogate(), design).tooth_wave(0), 2 * np.pi / 12
+    yoke = yoke_wave(tooth, pitch)
+    apart = yoke - yoke * np.exp(1j * np.arange(len(tooth)) * pitch)
+    assert_allclose(apart[5], tooth[5], rtol=1e-9)
+    assert 1.0 < np.abs(tooth[5]) / drawn().length / 5.5e-3 < 2.0  # T in a tooth
+
+
+def test_a_swing_of_another_size_is_that_of_the_larger_flux():
+    wave = surrogate().no_load[1]
+    assert_allclose(astuple(Swing.of(wave).times(1.7)), astuple(Swing.of(1.7 * wave)), rtol=1e-12)
 
 
 def test_two_regions_lose_what_all_elements_lose():

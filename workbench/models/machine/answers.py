@@ -93,13 +93,16 @@ class Answers:
         return self.design.length * self.kept * self.spectrum[1:] * back
 
     def tooth_wave(self, tooth: int) -> np.ndarray:
-        """Complex amplitudes of the flux of the magnets through a tooth [Wb] (orders,).
+        """Complex amplitudes of the flux of the magnets through a tooth [Wb] (orders,), its shape as drawn."""
+        return self.tooth_flux * self.surrogate.no_load[1 + tooth]
 
-        Its shape as drawn, its size in the proportion of the fundamental of the phases.
-        """
+    @cached_property
+    def tooth_flux(self) -> float:
+        """Flux of the magnets through a tooth over that of the drawing per metre [m], in the proportion of the
+        fundamental of the phases."""
         drawn = self.surrogate.nominal
         now, then = (self._fundamental(design) for design in (replace(self.in_field, turns=drawn.turns), drawn))
-        return self.design.length * self.kept * self.surrogate.no_load[1 + tooth] * (now / then)
+        return self.design.length * self.kept * (now / then)
 
     def _fundamental(self, design: MachineAsBuilt) -> float:
         return float(np.abs(self.surrogate.spectrum(design)[1:, self.design.machine.pole_pairs]).mean())
@@ -149,7 +152,7 @@ def _half_rate(angle: bytes) -> float:
 
 def with_parts_of(drawn: MachineAsBuilt, design: MachineAsBuilt, names: Sequence[str]) -> MachineAsBuilt:
     """The design with what has these names as drawn."""
-    return replace(design, **{name: getattr(drawn, name) for name in names})
+    return replace(design, **{name: getattr(drawn, name) for name in names}) if names else design
 
 
 def load_angles(design: MachineAsBuilt) -> np.ndarray:

@@ -13,12 +13,15 @@ with 12 slots and 10 poles these are within 2 % (hysteresis), 6 % (eddies) and 4
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 
 import numpy as np
 
 from effects.base import Columns
 from effects.machine_design import MachineAsBuilt
+from geometry.machine import Machine
 from materials.iron_loss import EXCESS_OF_SINE, LAWS, IronLossLaw
 from units import MU_0
 from workbench.errors import WorkbenchError
@@ -53,9 +56,13 @@ def iron_torques(answers: Answers) -> tuple[float, float, float]:
     law, size = (d.iron_loss, d.iron_loss_factor) if declared else (USUAL_SHEET, _undeclared(d))
     if not size:
         return 0.0, 0.0, 0.0
-    regions = zip(_masses(d, law.density), _region_waves(answers))
+    m = d.cross_section
+    tooth, yoke = _swings(answers.surrogate.no_load[1].tobytes(), m.slot_pitch)
+    flux = answers.tooth_flux / d.length / d.stacking_factor
+    swings = tooth.times(flux / m.tooth_width), yoke.times(flux / m.back_iron_width)
+    regions = zip(_masses(m, d.length * d.stacking_factor * law.density), swings)
     hysteresis, eddy, excess = (
-        size * sum(terms) for terms in zip(*(_torques(law, mass, wave, d.machine.pole_pairs) for mass, wave in regions))
+        size * sum(terms) for terms in zip(*(_torques(law, mass, one, d.machine.pole_pairs) for mass, one in regions))
     )
     return hysteresis, eddy, excess
 
@@ -64,35 +71,55 @@ def _undeclared(design: MachineAsBuilt) -> float:
     return design.iron_loss_factor * design.undeclared_iron_loss
 
 
-def _region_waves(answers: Answers) -> tuple[np.ndarray, np.ndarray]:
-    """Flux density in tooth and yoke as complex amplitudes over the revolution [T] (orders,).
+@dataclass(frozen=True)
+class Swing:
+    """What a sheet feels of a flux density B over a revolution.
 
-    The flux of a tooth is the difference of that of the yoke to its both sides, each as the one before a pitch later.
+    peak: half of peak to peak [T];  square: mean of (dB/d angle)^2 [T^2];  power: mean of |dB/d angle|^1.5 [T^1.5]
     """
-    d = answers.design
-    m = d.cross_section
-    flux = answers.tooth_wave(0) / d.length / d.stacking_factor
-    between = 1.0 - np.exp(1j * np.arange(len(flux)) * m.slot_pitch)
+
+    peak: float
+    square: float
+    power: float
+
+    @classmethod
+    def of(cls, wave: np.ndarray) -> Swing:
+        """Of complex amplitudes [T] (orders,)."""
+        values, rates = _over_a_turn(wave), _over_a_turn(1j * np.arange(len(wave)) * wave)
+        return cls(float(np.ptp(values)) / 2, float((rates**2).mean()), float((np.abs(rates) ** 1.5).mean()))
+
+    def times(self, factor: float) -> Swing:
+        """The same of a flux density ``factor`` times as large."""
+        return Swing(factor * self.peak, factor**2 * self.square, factor**1.5 * self.power)
+
+
+@lru_cache(maxsize=32)
+def _swings(flux: bytes, slot_pitch: float) -> tuple[Swing, Swing]:
+    """Of the flux through a tooth, given as the bytes of its amplitudes, and through the yoke: fits change its size
+    alone."""
+    tooth = np.frombuffer(flux, dtype=complex)
+    return Swing.of(tooth), Swing.of(yoke_wave(tooth, slot_pitch))
+
+
+def yoke_wave(tooth: np.ndarray, slot_pitch: float) -> np.ndarray:
+    """Complex amplitudes of the flux through the yoke, of that through a tooth (orders,): the difference of that of the
+    yoke to its both sides, each as the one before a pitch later."""
+    between = 1.0 - np.exp(1j * np.arange(len(tooth)) * slot_pitch)
     passes = np.abs(between) > 1e-9  # orders that are multiples of the slots stay in the gap
-    yoke = np.where(passes, flux / np.where(passes, between, 1.0), 0.0)
-    return flux / m.tooth_width, yoke / m.back_iron_width
+    return np.where(passes, tooth / np.where(passes, between, 1.0), 0.0)
 
 
-def _masses(design: MachineAsBuilt, density: float) -> tuple[float, float]:
-    """Of all teeth and of the yoke [kg]."""
-    m, depth = design.cross_section, design.length * design.stacking_factor * density
+def _masses(m: Machine, depth: float) -> tuple[float, float]:
+    """Of all teeth and of the yoke [kg]; depth: mass behind a square metre of the cross-section [kg/m^2]."""
     teeth = m.slots * m.tooth_width * (m.slot_bottom_radius - m.stator_inner_radius)
     return teeth * depth, pi * (m.stator_outer_radius**2 - m.slot_bottom_radius**2) * depth
 
 
-def _torques(law: IronLossLaw, mass: float, wave: np.ndarray, pole_pairs: int) -> tuple[float, float, float]:
+def _torques(law: IronLossLaw, mass: float, swing: Swing, pole_pairs: int) -> tuple[float, float, float]:
     """Hysteresis, eddy and excess terms of a region, see the module."""
-    values, rates = _over_a_turn(wave), _over_a_turn(1j * np.arange(len(wave)) * wave)
-    peak = float(np.ptp(values)) / 2
-    hysteresis = law.hysteresis * pole_pairs * peak**law.exponent / (2 * pi)
-    eddy = law.eddy / (2 * pi**2) * float((rates**2).mean()) * (1 + law.saturation * peak**2)
-    excess = law.excess / EXCESS_OF_SINE * float((np.abs(rates) ** 1.5).mean())
-    return mass * hysteresis, mass * eddy, mass * excess
+    hysteresis = law.hysteresis * pole_pairs * swing.peak**law.exponent / (2 * pi)
+    eddy = law.eddy / (2 * pi**2) * swing.square * (1 + law.saturation * swing.peak**2)
+    return mass * hysteresis, mass * eddy, mass * law.excess / EXCESS_OF_SINE * swing.power
 
 
 def _over_a_turn(wave: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from units import DEGREE
 from workbench.data.table import Table
 from workbench.errors import WorkbenchError
 from workbench.models.by_fundamental import PHASES, Drag, Found, by_its_fundamental, by_phase, phase_currents
-from workbench.models.machine.answers import BRAKES, RESISTANCES, Answers, load_angles, with_parts_of
+from workbench.models.machine.answers import BRAKES, RESISTANCES, Answers, load_angles
 from workbench.models.machine.drag import lost_torque
 from workbench.models.machine.field import LoadedState
 from workbench.models.machine.surrogate import Surrogate
@@ -117,17 +117,13 @@ def _mean_resistance(answers: Answers, at: Columns) -> np.ndarray:
     return answers.resistances(at).mean(axis=1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Summand:
     """What adds up to a reading. answer: from the machine and the conditions;  unseen: what of a design has no say in
     it: designs that differ in nothing else have one answer, which is worked out once"""
 
     answer: Callable[[Answers, Columns], Found]
     unseen: tuple[str, ...] = ()
-
-    def seen(self, design: MachineAsBuilt, drawn: MachineAsBuilt) -> MachineAsBuilt:
-        """The design with what has no say as drawn."""
-        return with_parts_of(drawn, design, self.unseen) if self.unseen else design
 
 
 _UNSEEN_BY_FLUX = (*BRAKES, *RESISTANCES, "cogging_of_mesh")

@@ -38,7 +38,7 @@ from workbench.data.table import Campaign, Table, Tolerance
 from workbench.errors import WorkbenchError
 from workbench.models.base import BaseModel, Option
 from workbench.models.device import names
-from workbench.models.machine.answers import Answers
+from workbench.models.machine.answers import Answers, with_parts_of
 from workbench.models.machine.build import MeshPlan, SurrogateBuilder
 from workbench.models.machine.device import machine_of_device, own_tolerances, with_tolerance
 from workbench.models.machine.field import MachineField
@@ -103,8 +103,14 @@ class MachineBench(BaseModel):
             raise WorkbenchError("the machine bench answers after prepare: use prepared(design, tables)")
         if kind not in KINDS:
             raise WorkbenchError(f"the machine bench has no measurement kind {kind}: use one of {', '.join(KINDS)}")
-        asked, drawn = _Asked(conditions), self.surrogate.nominal
-        return added_up([self._remembered(summand.seen(design, drawn), summand, asked) for summand in KINDS[kind]])
+        asked = _Asked(conditions)
+        return added_up([self._remembered(self._seen(design, one.unseen), one, asked) for one in KINDS[kind]])
+
+    @cached_property
+    def _seen(self) -> Callable[[MachineAsBuilt, tuple[str, ...]], MachineAsBuilt]:
+        """A design with what has no say in an answer as drawn; tables ask for one design in turn."""
+        drawn = self.surrogate.nominal
+        return lru_cache(maxsize=_REMEMBERED)(lambda design, unseen: with_parts_of(drawn, design, unseen))
 
     @cached_property
     def _remembered(self) -> Callable[..., Mapping[str, np.ndarray]]:

@@ -7,8 +7,9 @@ from functools import lru_cache
 import numpy as np
 
 ORDERS = 240  # that are kept
+_DIGITS = 12  # of an angle [rad] that count
 _TABLE = 4096  # angles of a revolution that are interpolated between by cubics; 68 to a period of order 60
-_FEW = 64  # angles, up to which all orders are summed at each of them in less time than the table takes
+_FEW = 360  # different angles, up to which all orders are summed at each in less time than the table takes
 
 
 def coefficients(samples: np.ndarray, most: int = ORDERS) -> np.ndarray:
@@ -19,36 +20,52 @@ def coefficients(samples: np.ndarray, most: int = ORDERS) -> np.ndarray:
 
 
 def evaluated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Values (rows, n) at angles [rad] (n,) of functions over the revolution."""
-    return _summed(spectrum, angle) if len(angle) <= _FEW else _interpolated(spectrum, angle)
+    """Values (rows, n) at angles [rad] (n,) of functions over the revolution.
+
+    What the angles past the first one ask for is kept by the bytes of their array: every fit asks for the same few
+    tables, and its zero of the encoder turns the functions instead.
+    """
+    if not len(angle):
+        return np.zeros((len(spectrum), 0))
+    turned = spectrum * np.exp(1j * np.arange(spectrum.shape[1]) * angle[0])
+    past = (np.round(angle - angle[0], _DIGITS) + 0.0).tobytes()  # no minus zero, which has other bytes
+    distinct, places = _distinct(past)
+    return _summed(turned, past).take(places, axis=1) if len(distinct) <= _FEW else _interpolated(turned, past)
 
 
-def _summed(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """By the orders themselves."""
-    return (spectrum @ _turning(np.asarray(angle, dtype=float).tobytes(), spectrum.shape[1])).real
+@lru_cache(maxsize=32)
+def _distinct(angle: bytes) -> tuple[np.ndarray, np.ndarray]:
+    """Angles that differ (k,) and the place of each among them (n,): repeats are read at the same angles."""
+    return np.unique(np.frombuffer(angle), return_inverse=True)
+
+
+def _summed(spectrum: np.ndarray, angle: bytes) -> np.ndarray:
+    """By the orders themselves, at angles that differ (rows, k)."""
+    return np.ascontiguousarray(spectrum).view(float) @ _turning(angle, spectrum.shape[1])
 
 
 @lru_cache(maxsize=32)
 def _turning(angle: bytes, orders: int) -> np.ndarray:
-    """exp(i m angle) (orders, n), every order turned by one angle more than the one before; of angles given as the
-    bytes of their array: every fit asks for the same few tables."""
-    turning = np.tile(np.exp(1j * np.frombuffer(angle)), (orders, 1))
+    """What the real and the imaginary part of every order are worth at angles that differ, cos(m angle) and
+    -sin(m angle) in turn (2 orders, k), every order turned by one angle more than the one before."""
+    turning = np.tile(np.exp(1j * _distinct(angle)[0]), (orders, 1))
     turning[0] = 1.0
-    return np.cumprod(turning, axis=0)
+    turning = np.cumprod(turning, axis=0)
+    return np.stack([turning.real, -turning.imag], axis=1).reshape(2 * orders, -1)
 
 
-def _interpolated(spectrum: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def _interpolated(spectrum: np.ndarray, angle: bytes) -> np.ndarray:
     """By cubics between _TABLE angles."""
     full = spectrum * (_TABLE / 2)
     full[:, 0] *= 2
     table = np.fft.irfft(full, _TABLE, axis=1)
-    places, weights = _between(np.asarray(angle, dtype=float).tobytes())
+    places, weights = _between(angle)
     return np.einsum("kn,rkn->rn", weights, table.take(places, axis=1))
 
 
 @lru_cache(maxsize=32)
 def _between(angle: bytes) -> tuple[np.ndarray, np.ndarray]:
-    """Places in the table and weights of the values there (4, n) each, of angles given as the bytes of their array."""
+    """Places in the table and weights of the values there (4, n) each."""
     place = np.mod(np.frombuffer(angle), 2 * np.pi) * _TABLE / (2 * np.pi)
     first = np.floor(place).astype(int)
     t = place - first
