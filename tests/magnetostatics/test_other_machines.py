@@ -77,6 +77,7 @@ def test_two_routes_to_the_torque(name):
 
 ROUGH = MeshDensity(gap_edges=192, longest_gap_edge=10.0, gap_layers=2, across_iron=0.5)
 ROUGHER = dict.fromkeys(("outrunner", "Halbach", "consequent", "surface"), replace(ROUGH, gap_edges=144))
+ROUGHER |= {"spoke": replace(ROUGH, gap_edges=96)}
 
 
 @pytest.mark.slow
@@ -90,7 +91,7 @@ def test_order_of_convergence(name):
     with h^2.
     """
     rough = ROUGHER.get(name, ROUGH)
-    model = model_of(NAMED[name], rough, settings=NewtonSettings(tolerance=1e-4))  # errors to two digits
+    model = model_of(NAMED[name], rough, settings=NewtonSettings(tolerance=3e-4))  # errors to two digits
     edge = 2 * np.pi / rough.edges_around(NAMED[name])  # the rotor stands on nodes of every mesh
     points = [currents(model, k * edge, AMPERE_TURNS[name], 0.5, 1.0) for k in (1, 3)]
     found = [[torques_and_linkages(one) for one in level] for level in on_halved_triangles(model, points, 3)]

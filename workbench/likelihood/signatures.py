@@ -227,7 +227,9 @@ class Signatures:
         self, slopes: np.ndarray, background: np.ndarray, white: Whitener, without: Iterable[str]
     ) -> Catalogue:
         """The same of all effects but some, where d readings / d x, SI (n, m), is another."""
-        carried = Carried(self.white(slopes - self.slopes), self._shares)
+        change = self.white(slopes - self.slopes)
+        moved = change.any(axis=0)  # shapes of the meshes' error stay
+        carried = Carried(change[:, moved], self._shares[moved])
         return Catalogue(background, self.terms, white.beyond(self.white), frozenset(without), carried)
 
 

@@ -41,7 +41,7 @@ from workbench.explain.tried import Promise, Search, expand, fit_set
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, linearised, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
-from workbench.likelihood.signatures import grid, signature, signatures_of
+from workbench.likelihood.signatures import Signatures, grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener
@@ -509,6 +509,20 @@ def test_beside_a_large_effect_others_do_what_they_do_there(bench):
     assert search.signatures_beside(beside(1.1)) is there, "near enough"
     search.bench = expanded(bench)
     assert search.signatures_beside(beside(1.0)) is signatures, "an expansion is compared about its drawing"
+
+
+def test_what_a_tolerance_could_do_is_done_as_the_tolerance_does_it_at_a_fit():
+    """One effect does what a tolerance does, half of another is beyond tolerances: at a fit where the tolerance does
+    1.5 times as much, so does that part of both."""
+    tolerance, beyond = 100.0 * np.eye(40)[:, :1], 100.0 * np.eye(40)[:, 1]
+    changes = {"alike": tolerance[:, 0], "half": tolerance[:, 0] + beyond}
+    found = {n: (signature(Bump(), lambda effect, c=c: effect.size * c),) for n, c in changes.items()}
+    signatures = Signatures(found, {}, Whitener(np.ones(40), np.zeros(40)), tolerance)
+    catalogue = signatures.catalogue_at(1.5 * tolerance, np.zeros((40, 0)), signatures.white, ())
+    for number in (0, len(catalogue.terms) // 2):  # the first place of either
+        there, before = catalogue.felt(number), signatures.catalogue(np.zeros((40, 0)), signatures.white).felt(number)
+        assert there[0] == pytest.approx(1.5 * before[0], rel=1e-3)
+        assert np.array_equal(there[1:], before[1:])
 
 
 # ---- grids -----------------------------------------------------------------------------------------------------------
