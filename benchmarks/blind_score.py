@@ -30,7 +30,7 @@ import numpy as np
 
 from benchmarks.blind_campaigns import ANSWERS, BENCHES, GROUPS, hashes, wanted, write_campaigns
 from benchmarks.blind_figure import confusion_figure, reliability_figure
-from benchmarks.blind_metrics import Metric, by_kind, least_error, score, statements
+from benchmarks.blind_metrics import SLOWEST, Metric, by_kind, least_error, score, statements
 from benchmarks.this_machine import machine_name
 from pipeline.checkpoint import Checkpoint
 from pipeline.pools import Interrupted, PooledWorkers
@@ -243,7 +243,8 @@ def _summary(cases: Sequence[Mapping], sets: Mapping[str, Sequence[Metric]], rec
         "chi2 >= 20 beyond tolerances, instruments, scatter of mounting and the other hidden effects; a truth outside "
         "the library when it keeps as much beside the best effect of the bench. Groups, pairs and partial verdicts "
         "count as naming; winding temperature and contact resistance are one law and count as one. All cases are in "
-        "the calibration.\n\n"
+        f"the calibration. Quick enough is {SLOWEST['damper']:g} s, for a machine whose fields are kept "
+        f"{SLOWEST['machine']:g} s: those that were solved anew count, too.\n\n"
         f"{table_of(sets)}\n\n"
         f"Someone whose probabilities are right would show a calibration error of "
         f"{least_error(stated, np.random.default_rng(1)):.3f} on so many statements.\n\n"

@@ -152,6 +152,7 @@ class Catalogue:
 
     @cached_property
     def carried(self) -> Carried:
+        """What is changed, of no columns where nothing is."""
         return self.elsewhere or Carried.nowhere(self.whole)
 
     @cached_property
