@@ -66,7 +66,7 @@ class MachineAsBuilt(BuiltMachine):
     skew: angle between the two ends of the machine, even along its length [rad]
     segment_angles: of a rotor in two, and in three segments along its length, each turned against its neighbour [rad]
     rotor_turn: angle by which the pattern of all magnets sits too far on, against the zero of the encoder [rad]
-    radial_share: how far the magnetisation has turned from parallel (0) to radial (1) [1]
+    radial_share: by which the magnetisation has turned on from the drawn one towards radial: 1 from parallel ones [1]
     shorted_turns, shorted_coil: turns that are closed on themselves, and the coil that they belong to
     undeclared_iron_loss: loss of a stack without a declared law over that of a usual sheet [1]
     cogging_of_mesh: what a mesh makes of cogging over what it should be [1]; no property of the machine

@@ -13,7 +13,8 @@ from effects.prior import Normal
 
 @dataclass(frozen=True)
 class MagnetisationPattern(DesignEffect):
-    """The magnets are magnetised ``share`` of the way from parallel to radial, or beyond."""
+    """The magnets are magnetised ``share`` of the way from parallel to radial beyond the drawing, or short of it: at
+    every point the direction is turned by that share of the point's angle from the middle of the magnet."""
 
     title = "direction of magnetisation"
     looks_like = "third harmonic of the voltage and locked-rotor torque change"

@@ -89,7 +89,7 @@ class Signature:
         apart[0, ..., 1:] = np.where(both, steps, apart[0, ..., 1:])
         apart[1, ..., :-1] = np.where(both, steps, apart[1, ..., :-1])
         lengths = np.linalg.norm(column, axis=0)
-        weights = np.moveaxis(apart, -1, 1 + axis).reshape(2, -1) / np.where(lengths > 0, lengths, 1e-300)
+        weights = np.moveaxis(apart, -1, 1 + axis).reshape(2, -1) / np.maximum(lengths, 1e-200)
         return np.minimum(weights, MOST_WEIGHT) * np.array([[-1.0], [1.0]])
 
     def nearest(

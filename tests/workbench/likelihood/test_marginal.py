@@ -77,6 +77,17 @@ def test_linear_algebra_ends_at_the_weights_of_ridge_regression():
     assert -found.least - found.spread == pytest.approx(marginal, abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_columns_a_hundred_million_deviations_long_leave_no_less_than_nothing(seed):
+    """Beside others that do the same, so that all but round-off is taken from them."""
+    catalogue, residuals = problem(seed)
+    one, two, *others = catalogue.terms
+    long = replace(one, columns=1e8 * one.columns)
+    again = replace(two, columns=np.column_stack([long.columns, long.columns * (1 + 1e-9)]))
+    whole = Terms((long, again, *others), ROWS)
+    assert np.isfinite(replace(catalogue, whole=whole).gains((0,), catalogue.readings(residuals))).all()
+
+
 def test_a_background_of_nothing_is_no_hindrance():
     catalogue, residuals = problem(1)
     bare = Catalogue(np.zeros((ROWS, 0)), catalogue.whole)

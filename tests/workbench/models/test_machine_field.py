@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from geometry.magnetisation import PATTERNS
 from tests.workbench.models.machine_case import COARSE, MIDDLE, PLAN, drawn, field
 from workbench.models.machine.expansion import no_load_slopes
 from workbench.models.machine.field import LoadedState, MachineField, idle, read
@@ -128,6 +129,22 @@ def test_derivative_for_a_shift_is_that_of_a_solution_there(breaks):
             ahead, back = (read(model.solve(idle(2 * np.pi * n / fields.edges))) for model in models)
             slope = found[f"{breaks}_shift[{index}]"]
             assert_allclose(((ahead - back) / (2 * step))[1:], slope[n, 1:], atol=3e-3 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS)
+def test_a_magnetisation_is_turned_on_from_the_drawn_one(pattern):
+    design = drawn().with_machine(magnetisation=pattern)
+    mine = MachineField(design, COARSE)
+    there, moved = (mine.no_load(replace(design, radial_share=share))[:, 1:] for share in (0.0, 1e-5))
+    assert np.abs(moved - there).max() < 1e-5 * np.abs(there).max()
+
+
+def test_radial_magnets_turned_back_are_parallel_ones():
+    parallel, radial = (drawn().with_machine(magnetisation=PATTERNS[name]) for name in ("parallel", "radial"))
+    mine = MachineField(radial, COARSE)
+    there, back = mine.no_load(parallel), mine.no_load(replace(radial, radial_share=-1.0))
+    assert_allclose(back, there, atol=1e-6 * np.abs(there).max())
+    assert np.abs(mine.no_load(radial) - there).max() > 1e-2 * np.abs(there).max()
 
 
 def test_positive_current_makes_outward_flux_in_its_own_coils():

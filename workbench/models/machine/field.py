@@ -49,14 +49,16 @@ class LoadedState:
 
 
 @dataclass(frozen=True)
-class PartlyRadial(Magnetisation):
-    """Magnetised between parallel (share 0) and radial (share 1), or beyond: direction turned in proportion."""
+class TurnedToRadial(Magnetisation):
+    """Magnetised as drawn, each point turned by a share of its angle from the centre line: of parallel magnets share 1
+    makes radial ones, of radial ones share -1 parallel ones."""
 
+    drawn: Magnetisation
     share: float
 
     def direction_angle(self, position_angle, centre_angle, pitch):
         off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
-        return centre_angle + self.share * off
+        return self.drawn.direction_angle(position_angle, centre_angle, pitch) + self.share * off
 
 
 class MachineField:
@@ -282,4 +284,5 @@ def _all_alike(materials: MachineMaterials) -> MachineMaterials:
 
 
 def _magnetisation(design: MachineAsBuilt) -> Magnetisation:
-    return PartlyRadial(design.radial_share) if design.radial_share else design.machine.magnetisation
+    drawn, share = design.machine.magnetisation, design.radial_share
+    return TurnedToRadial(drawn, share) if share else drawn
