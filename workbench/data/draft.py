@@ -16,7 +16,7 @@ import numpy as np
 from disk import write_atomically
 from workbench.data.column_units import FACTORS
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
-from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, likely_kind, likely_model
+from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, is_driven, likely_kind, likely_model
 from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw, used_twice
@@ -227,10 +227,16 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     if quantity == "direction":
         return f'{heading} = {{ {named}role = "group" }}'
     unit = _text(guess.unit or "?")
-    if not KINDS[sheet.kind].is_response(quantity):
+    if not _is_answer(quantity, sheet):
         return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}{asked}'
     size, note = _noise(guess, sheet)
     return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size} }}{note}{asked}'
+
+
+def _is_answer(quantity: str, sheet: _Sheet) -> bool:
+    """Whether a column is a response; where a drive turns the open machine, its voltage is one, too."""
+    opened = sheet.kind == "no_load" and is_driven(sheet.columns)
+    return KINDS[sheet.kind].is_response(quantity) or (opened and quantity == "v_ll")
 
 
 def _name(guess: Guess) -> tuple[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from typing import Final
 
@@ -53,7 +53,10 @@ _RATIOS: Final[dict[str, tuple[set[str], ...]]] = {
     "efficiency": ({"efficiency"}, {"eta"}, {"wirkungsgrad"}),
     "power_factor": ({"power", "factor"}, {"pf"}, {"cos"}, {"cosphi"}, {"leistungsfaktor"}),
 }
-_SHAFT: Final = {"mech", "mechanical", "mechanisch", "mechanische", "shaft", "welle"}  # that power follows from torque
+_SHAFT: Final = {"mech", "mechanical", "mechanisch", "mechanische", "shaft", "welle"}
+_SHAFT_POWER: Final = "power of the shaft"  # follows from torque, and beside none is that of a drive
+_LINE_VOLTAGES: Final = {"v_ab", "v_bc", "v_ca"}
+_PHASE_VOLTAGES: Final = {"v_a", "v_b", "v_c"}
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _SCALED: Final = re.compile(r"^(?:m|k|u|M|c)(?=[A-Z]|ohm|Ohm|m_per_s|m$|s$)")
 
@@ -77,7 +80,9 @@ def guesses(raw: RawTable) -> list[Guess]:
             quantity = ""
         unit = "s" if raw.holds_times(place) else heading.unit or _usual_unit(quantity, heading)
         found.append(Guess(place, heading, quantity, unit))
-    return _of_a_line(_shunted(found))
+    for settled in (_shunted, _of_a_line, _of_lines, _of_a_damper, _of_a_drive):
+        found = settled(found)
+    return found
 
 
 def _usual_unit(quantity: str, heading: Heading) -> str:
@@ -90,15 +95,47 @@ def _shunted(found: list[Guess]) -> list[Guess]:
     """A resistance beside a force is that of a shunt."""
     if not any(g.quantity == "force" for g in found) or any(g.quantity == "shunt" for g in found):
         return found
-    return [Guess(g.place, g.heading, "shunt", g.unit) if g.quantity == "resistance" else g for g in found]
+    return [replace(g, quantity="shunt") if g.quantity == "resistance" else g for g in found]
 
 
 def _of_a_line(found: list[Guess]) -> list[Guess]:
     """One current of three beside a speed or a torque, and no angle: a meter's RMS."""
-    quantities = {g.quantity for g in found}
-    if "angle_mech" in quantities or not {"speed", "torque"} & quantities or len(quantities & _LINES) != 1:
+    return _alone(found, _LINES, {"speed", "torque"}, "current")
+
+
+def _of_lines(found: list[Guess]) -> list[Guess]:
+    """One voltage between lines likewise, where none is of a phase."""
+    if _PHASE_VOLTAGES & {g.quantity for g in found}:
         return found
-    return [Guess(g.place, g.heading, "current", g.unit) if g.quantity in _LINES else g for g in found]
+    return _alone(found, _LINE_VOLTAGES, {"speed", "torque"}, "v_ll")
+
+
+def _of_a_damper(found: list[Guess]) -> list[Guess]:
+    """One voltage beside a velocity: a damper has one circuit."""
+    return _alone(found, _PHASE_VOLTAGES, {"velocity"}, "voltage")
+
+
+def _alone(found: list[Guess], names: set[str], beside: set[str], quantity: str) -> list[Guess]:
+    """One of these names beside one of others, and no angle, is another quantity."""
+    there = {g.quantity for g in found}
+    if "angle_mech" in there or not beside & there or len(names & there) != 1:
+        return found
+    return [replace(g, quantity=quantity) if g.quantity in names else g for g in found]
+
+
+def _of_a_drive(found: list[Guess]) -> list[Guess]:
+    """Power of the shaft, which is left out where torque or the power of the terminals is read."""
+    known = {"torque", "power"} & {g.quantity for g in found}
+    return [replace(g, quantity="" if known else "power") if g.quantity == _SHAFT_POWER else g for g in found]
+
+
+def is_driven(columns: Sequence[Guess]) -> bool:
+    """Whether the power is that of a drive at the shaft."""
+    return any(g.quantity == "power" and _of_shaft(g.heading) for g in columns)
+
+
+def _of_shaft(heading: Heading) -> bool:
+    return bool(_SHAFT & set(_words(heading.name)))
 
 
 def _words(text: str) -> list[str]:
@@ -111,8 +148,8 @@ def _quantity(heading: Heading) -> str:
     words = _words(heading.name)
     if (ratio := next((name for name, asked in _RATIOS.items() if any(a <= set(words) for a in asked)), "")) != "":
         return ratio
-    if "power" in (_UNITS.get(_base(heading.unit), ("",))[0], *(_WORDS.get(w) for w in words)) and _SHAFT & set(words):
-        return ""
+    if "power" in (_UNITS.get(_base(heading.unit), ("",))[0], *(_WORDS.get(w) for w in words)) and _of_shaft(heading):
+        return _SHAFT_POWER
     for book, names in _BOOKS.items():
         if heading.unit in ("", "1") and set(words) & set(names):
             return book
@@ -131,7 +168,7 @@ def _temperature(words: Sequence[str]) -> str:
     if any(w.startswith(("magnet", "rotor")) for w in words):
         return "magnet_T"
     coil = ("winding", "wicklung", "coil", "spule", "copper", "kupfer", "stator")
-    return "winding_T" if any(w.startswith(coil) for w in words) else ""
+    return "winding_T" if "cu" in words or any(w.startswith(coil) for w in words) else ""
 
 
 def _by_unit(unit: str, words: Sequence[str]) -> str:
@@ -156,10 +193,11 @@ def _by_unit(unit: str, words: Sequence[str]) -> str:
 
 
 def _lines_of(prefix: str, words: Sequence[str]) -> str:
-    """bc of L_vw and of "Induktivitaet wv"; a voltage Uv is that of a phase, U_uv is not."""
+    """bc of L_vw and of "Induktivitaet wv"; a voltage Uv is that of a phase, U_uv and Uuv are not."""
     if prefix in ("l", "r"):
         return _EITHER_WAY.get(words[-1], "") if words else ""
-    return _LINE_PAIRS.get(words[-1], "") if prefix == "v" and words[:-1] in (["u"], ["v"]) else ""
+    between = "".join(words)
+    return _LINE_PAIRS.get(between[1:], "") if prefix == "v" and between[:1] in ("u", "v") else ""
 
 
 def _base(unit: str) -> str:
@@ -177,7 +215,10 @@ def likely_kind(quantities: Sequence[str]) -> str:
 
 
 def _cover(kind: Kind, quantities: Sequence[str]) -> tuple[int, float]:
-    """Columns that are a response or an axis, and the shares of the kind's own responses and axes that are there."""
+    """Columns that are a response or an axis, and the shares of the kind's own responses and axes that are there;
+    nothing where the kind needs an axis that is not."""
+    if not set(kind.needs) <= set(quantities):
+        return 0, 0.0
     answers = [q for q in quantities if kind.is_response(q)]
     asked = [q for q in quantities if any(fnmatch(q, axis) for axis in kind.axes)]
     if not answers or not asked:

@@ -12,12 +12,14 @@ from workbench.errors import WorkbenchError
 class Kind:
     """responses: patterns of response columns, of which a table has any;  axes: patterns of its natural conditions
     cost: of measuring once more;  says: what was done and what the columns mean, for a manual
+    needs: axes without which it was another kind
     """
 
     responses: tuple[str, ...]
     axes: tuple[str, ...] = ()
     cost: float = 1.0
     says: str = ""
+    needs: tuple[str, ...] = ()
 
     def is_response(self, column: str) -> bool:
         return any(fnmatch(column, pattern) for pattern in self.responses)
@@ -110,6 +112,7 @@ KINDS: dict[str, Kind] = {
         ("current", "power"),
         ("torque", "v_ll", "speed"),
         says="Fed by a stiff sine v_ll, RMS between lines. current: RMS of a line; power: electrical, into it.",
+        needs=("v_ll",),
     ),
     "dyno_map": Kind(
         _METERS,

@@ -149,7 +149,7 @@ class TableEntry(Section):
         None, description="sign between cells; default: found out"
     )
     encoding: Text | None = Field(None, description="of the text; default: found out")
-    order: Literal["row"] = Field("row", description="rows stand in the order of acquisition")
+    order: Literal["row"] = Field("row", description='"row", the only one: rows stand as they were acquired')
     instrument: Note = None
     source: Note = None
     comment: Note = None

@@ -414,7 +414,7 @@ def leading(d: Diagnosis) -> Ranked | None:
 def _none_of_these(d: Diagnosis) -> str:
     if _by_sealed_rows(d):
         return "Something is missing: the fitted rows do not show it, but rows that no fit has seen disagree."
-    return f"Something is missing that is none of the {len(d.ranking)} effects tried{_where(d)}."
+    return f"Something is missing that is none of the {len(d.ranking)} effects tried{_beside_likely(d)}{_where(d)}."
 
 
 def _by_sealed_rows(d: Diagnosis) -> bool:
@@ -436,12 +436,23 @@ def _cannot_tell(d: Diagnosis) -> str:
 
 def _likeliest(d: Diagnosis) -> str:
     """The effect that is likelier there than not, and what it lacks for its name to be said."""
+    said = _likely(d)
+    return f": likeliest is {said}" if said else ""
+
+
+def _beside_likely(d: Diagnosis) -> str:
+    """Something unknown need not be alone."""
+    said = _likely(d)
+    return f", alone or beside {said}" if said else ""
+
+
+def _likely(d: Diagnosis) -> str:
     leader = leading(d)
     if leader is None or not LIKELY <= leader.probability < d.sure:
         return ""
     return (
-        f": likeliest is {plain(leader.name)} with {probability_text(leader.probability)}, and a name is said from "
-        f"{probability_text(d.sure)} on"
+        f"{plain(leader.name)} (there with {probability_text(leader.probability)}; a name is said from "
+        f"{probability_text(d.sure)} on)"
     )
 
 
@@ -455,7 +466,10 @@ def meaning(d: Diagnosis) -> str:
     verb = "is" if len(d.names) == 1 else "are"
     there = f"that {listed(map(plain, d.names))} {verb} there, alone or with others"
     what = {
-        "nothing_missing": lambda: f"that nothing is missing which is expected to show by odds of {odds_text(PLAIN)}",
+        "nothing_missing": lambda: (
+            f"that nothing is missing which these data would show by odds of {odds_text(PLAIN)}; that nothing at all "
+            f"is missing has {probability_text(d.p_nothing_missing)}"
+        ),
         "effect": lambda: there,
         "group": lambda: "that at least one of these effects is there",
         "pair": lambda: there,

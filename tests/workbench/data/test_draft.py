@@ -86,6 +86,9 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
         ("Messung,v [m/s],Kraft [N]", ["repeat", "velocity", "force"], "damping_velocity"),
         ("x [°mech.],T [Nm],iU_mes [A],iV_mes [A],ia [A]", ["angle_mech", "torque", "i_a", "i_b", ""], "locked_rotor"),
         ("U_mes [V],Drehzahl", ["voltage", "speed"], "back_emf"),
+        ("n (rpm),M_Nm,I1 [A],P_el [W],T_Cu [°C]", ["speed", "torque", "current", "power", "winding_T"], "dyno_map"),
+        ("n (rpm),U12 [V],P_mech [W]", ["speed", "v_ll", "power"], "no_load"),
+        ("v [mm/s],U1 [V]", ["velocity", "voltage"], "back_emf"),
         ("phi [°],L_uv [mH],Lvw [mH],L_wu [mH]", ["angle_mech", "l_ab", "l_?", "l_ca"], "inductance"),
         ("phi [°],Induktivität cb [µH],L_d [mH]", ["angle_mech", "l_bc", ""], "inductance"),
         ("U_uv [V],Uv [V],R_wv [mOhm],n [rpm]", ["v_ab", "v_b", "r_bc", "speed"], "back_emf"),
@@ -97,6 +100,14 @@ def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
     found = guesses(table_of_text(f"{text}\n{row}\n", "f.csv"))
     assert [guess.quantity for guess in found] == quantities
     assert likely_kind(quantities) == kind
+
+
+@pytest.mark.parametrize("power, role", [("P_mech", "response"), ("P_el", "condition")])
+def test_the_voltage_of_a_machine_that_is_driven_open_is_an_answer(tmp_path, power, role):
+    path = tmp_path / "no load.csv"
+    path.write_text(f"n [rpm],U12 [V],{power} [W]\n" + "".join(f"{k}00,{k}.1,{k}\n" for k in range(1, 9)))
+    said = next(line for line in draft_of([path]).splitlines() if line.startswith('"U12'))
+    assert f'name = "v_ll", unit = "V", role = "{role}"' in said
 
 
 @pytest.mark.parametrize("heading", ["inductance [mH]", "Induktivität / mH", "L in mH"])

@@ -192,7 +192,7 @@ def test_every_verdict_is_a_plain_sentence(diagnosis):
         "pair": "Two effects are missing together: coulomb friction and stribeck",
         "several": "Three effects are missing together: coulomb friction, stribeck and force offset",
         "partial": "Coulomb friction explains a part",
-        "none_of_these": "none of the 6 effects tried; look at force_velocity.force",
+        "none_of_these": "none of the 6 effects tried, alone or beside coulomb friction",
         "cannot_tell": "cannot tell",
         "nothing_missing": "Nothing is missing",
         "convention": "No effect is named until this is settled",
@@ -231,13 +231,17 @@ def test_cannot_tell_is_of_what_its_probability_is_of(diagnosis):
     assert verdict_sentence(loud).startswith("Something is missing") and "that something is missing" in meaning(loud)
 
 
-def test_what_is_likely_and_not_sure_enough_for_its_name_is_told_beside_cannot_tell(diagnosis):
+def test_what_is_likely_and_not_sure_enough_for_its_name_is_told_all_the_same(diagnosis):
     first = replace(diagnosis.ranking[0], probability=0.888)
     found = replace(of(diagnosis, "cannot_tell"), names=(), ranking=(first,), sure=0.97, probability=0.99)
-    said = f"cannot tell what: likeliest is {first.name.replace('_', ' ')} with 89 %, and a name is said from 97 % on."
-    assert said.lower() in verdict_sentence(found).lower()
+    said = f"{first.name.replace('_', ' ')} (there with 89 %; a name is said from 97 % on)"
+    assert f"cannot tell what: likeliest is {said}." in verdict_sentence(found)
+    strange = verdict_sentence(replace(found, verdict="none_of_these"))
+    assert f"none of the 1 effects tried, alone or beside {said}; look at" in strange
     for other in (0.3, 0.98):
-        assert "likeliest" not in verdict_sentence(replace(found, ranking=(replace(first, probability=other),)))
+        unlikely = replace(found, ranking=(replace(first, probability=other),))
+        for verdict in ("cannot_tell", "none_of_these"):
+            assert "there with" not in verdict_sentence(replace(unlikely, verdict=verdict))
 
 
 def test_what_remains_beside_names_is_said_as_what_it_is(diagnosis):
