@@ -63,7 +63,7 @@ def errors(builder: SurrogateBuilder, surrogate: Surrogate, design: MachineAsBui
 
 def main(cache: Path | None) -> None:
     drawn = machine_of_device(DEVICE)
-    builder = SurrogateBuilder(drawn, MeshPlan(MESH, MESH, MESH), cache)
+    builder = SurrogateBuilder(drawn, MeshPlan(MESH, MESH, MESH, MESH), cache)
     surrogate = builder.build(STATES)
     for name, cls in package_effects().items():
         if not (cls.__module__.startswith("effects.machine.") and cls.can_act_on(drawn)):

@@ -1,7 +1,7 @@
 """Truths of the machine bench by NGSolve: ``python -m benchmarks.ngsolve_truths [--tune] [--score]``.
 
-Every machine takes about a minute; what is solved is kept in benchmarks/virtual_benches/solved/ as one small file each
-(.npz, and .json that says what the machine is), so that the score is run again without field solutions.
+Every machine takes one to three minutes; what is solved is kept in benchmarks/virtual_benches/solved/ as one small file
+each (.npz, and .json that says what the machine is), so that the score is run again without field solutions.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ def _solve(machine: Solved, work: Path) -> None:
 def keep(machine: Solved, arrays: dict[str, np.ndarray]) -> None:
     """One truth as files of the project."""
     (TRUTHS / f"{machine.name}.json").write_text(json.dumps(machine.as_plain()) + "\n", encoding="utf-8")
-    rounded = {name: _rounded(values) for name, values in arrays.items()}
+    rounded = {name: _rounded(arrays[name]) for name in ("no_load", "loaded")}
     np.savez_compressed(TRUTHS / f"{machine.name}.npz", **rounded)
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:
     """Few digits, so that the files are small and the same on every machine."""
-    size = np.max(np.abs(values), axis=-1, keepdims=True) if values.ndim else np.abs(values)
+    size = np.max(np.abs(values), axis=-1, keepdims=True)
     step = 10.0 ** (np.ceil(np.log10(np.where(size > 0, size, 1.0))) - DIGITS)
     return np.round(values / step) * step
 

@@ -23,7 +23,8 @@ from workbench.models.machine.surrogate import Surrogate
 
 MESH = MeshDensity(gap_edges=480, gap_layers=3, across_iron=3.0)
 PLAN = MeshPlan(
-    base=MeshDensity(gap_edges=960, gap_layers=4, across_iron=4.0),
+    idle_base=MeshDensity(gap_edges=960, gap_layers=4, across_iron=4.0),
+    loaded_base=MeshDensity(gap_edges=960, gap_layers=4, across_iron=4.0),
     idle=MeshDensity(gap_edges=420, gap_layers=3, across_iron=3.0),  # seven angles in a period of cogging
     loaded=MeshDensity(gap_edges=240, gap_layers=3),
 )

@@ -465,7 +465,7 @@ def elsewhere(machine: Solved, folder: Path = SOLVED) -> Iterator[np.ndarray]:
     drawing, built = DRAWINGS[machine.drawing], machine.built
     with np.load(folder / f"{machine.name}.npz") as arrays:
         whole = revolution(drawing, built, arrays["no_load"])
-    pole, slot = drawing.edges // drawing.poles, drawing.edges // drawing.slots
+    pole, slot = drawing.idle_edges // drawing.poles, drawing.idle_edges // drawing.slots
     if not built.rotor_is_regular:
         signs = lambda k: np.append(1.0, np.full(drawing.slots, (-1.0) ** k))[:, None]  # noqa: E731
         moved = [signs(k) * np.roll(whole, -k * pole, axis=1) for k in range(drawing.poles)]

@@ -6,8 +6,8 @@ meshed by Netgen, the rotor turns by whole edges of the circle in the middle of 
 stress tensor while a weight turns the rotor, and Newton's tangent is NGSolve's.
 
 A file holds, per metre of length and per turn, torque and the flux of every coil outwards through its tooth:
-``no_load`` (1 + coils, window) at successive edges of the sliding circle, ``loaded`` (1 + coils, states), of the torque
-what the currents add to that of the magnets alone.
+``no_load`` (1 + coils, window) at successive edges of a fine sliding circle, ``loaded`` (1 + coils, states), of the
+torque what the currents add to that of the magnets alone.
 """
 
 from __future__ import annotations
@@ -371,7 +371,7 @@ class Solver:
     """Solutions of one machine, each started from the one before."""
 
     def __init__(self, m: dict):
-        self.m, self.radius = m, m["rotor_radius"] + m["drawn_airgap"] / 2
+        self.m, self.radius = {**m, "areas": {}}, m["rotor_radius"] + m["drawn_airgap"] / 2
         self.fixed = Half(stator(m), self.radius, m["edges"])
         self.rotors: dict[float, Half] = {}
         self.last: dict[tuple[float, int], np.ndarray] = {}
@@ -404,9 +404,8 @@ class Solver:
 def solved(m: dict) -> dict[str, np.ndarray]:
     """The arrays of one machine."""
     began = time.process_time()
-    m["areas"] = {}
-    solver, none = Solver(m), np.zeros(m["slots"])
-    idle = [solver.sample(k, 0.0, none, IDLE) for k in range(m["window"])]
+    fine, solver, none = Solver({**m, "edges": m["idle_edges"]}), Solver(m), np.zeros(m["slots"])
+    idle = [fine.sample(k, 0.0, none, IDLE) for k in range(m["window"])]
     by_angle = sorted(range(len(m["states"])), key=lambda k: (m["states"][k]["steps"], m["states"][k]["ampere_turns"]))
     loaded = np.zeros((len(m["states"]), 1 + m["slots"]))
     for k in by_angle:

@@ -20,11 +20,12 @@ MU_0 = 4e-7 * pi
 HIGHEST = 4.0  # T, end of the table of the steel; beyond it the last line goes on
 SAMPLES = 4000  # of the curve, from which the points of the table are taken
 LINES = 3e-4  # relative error of the straight lines between them
+IDLE_EDGES = 2  # times as many edges of the sliding circle without current: twelve or ten places in a period of cogging
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """One kind of machine as drawn. device: the table of a campaign;  edges: of the sliding circle
+    """One kind of machine as drawn. device: the table of a campaign;  edges: of the sliding circle, with current
 
     locked_angles, locked_currents, linkage_angle, linkage_currents: states with current, in degrees and amperes, the
     angles whole edges of the sliding circle
@@ -47,6 +48,11 @@ class Drawing:
     @property
     def poles(self) -> int:
         return int(self.device["poles"])
+
+    @property
+    def idle_edges(self) -> int:
+        """Of the sliding circle without current: cogging asks for a finer mesh of the gap, and for more angles."""
+        return IDLE_EDGES * self.edges
 
     def length(self, key: str) -> float:
         """A length of the drawing [m]."""
@@ -117,14 +123,14 @@ class AsBuilt:
 
 
 def window(drawing: Drawing, built: AsBuilt) -> int:
-    """Edges that the rotor has to turn by until the symmetry of the machine gives the rest of the revolution."""
+    """Edges without current that the rotor has to turn by until the symmetry of the machine gives the rest."""
     parts = {
         (True, True): lcm(drawing.slots, drawing.poles),
         (True, False): drawing.slots,
         (False, True): drawing.poles,
         (False, False): 1,
     }[built.stator_is_regular, built.rotor_is_regular]
-    return drawing.edges // parts
+    return drawing.idle_edges // parts
 
 
 def coil_turns(drawing: Drawing, built: AsBuilt) -> np.ndarray:
@@ -143,6 +149,7 @@ def description(drawing: Drawing, built: AsBuilt, no_load: bool = True) -> dict:
         "slots": n,
         "poles": p,
         "edges": drawing.edges,
+        "idle_edges": drawing.idle_edges,
         "window": window(drawing, built) if no_load else 0,
         "stator_radius": drawing.length("stator_outer_radius"),
         "rotor_radius": drawing.length("rotor_outer_radius"),
@@ -330,7 +337,7 @@ class Truth:
 
 def revolution(drawing: Drawing, built: AsBuilt, samples: np.ndarray) -> np.ndarray:
     """Samples (1 + coils, window) over the whole revolution (1 + coils, edges), by the symmetry of the machine."""
-    n, known = drawing.edges, {k: samples[:, k] for k in range(samples.shape[1])}
+    n, known = drawing.idle_edges, {k: samples[:, k] for k in range(samples.shape[1])}
     slot, pole = n // drawing.slots, n // drawing.poles
     moves = [(slot, _next_coil)] if built.stator_is_regular else []
     moves += [(pole, _other_sign)] if built.rotor_is_regular else []
@@ -372,7 +379,7 @@ def truth_of(drawing: Drawing, built: AsBuilt, arrays: Mapping[str, np.ndarray])
 
 def spectrum_of(drawing: Drawing, built: AsBuilt, samples: np.ndarray) -> np.ndarray:
     """Of torque and phases (4, orders) from samples of the whole revolution (1 + coils, edges), skewed."""
-    spectrum = np.fft.rfft(phases_of(drawing, built, samples), axis=1) / drawing.edges
+    spectrum = np.fft.rfft(phases_of(drawing, built, samples), axis=1) / drawing.idle_edges
     spectrum[:, 1:] *= 2
     order = np.arange(spectrum.shape[1])
     return (spectrum * np.sinc(order * built.skew / (2 * np.pi)))[:, :-1]

@@ -26,7 +26,7 @@ from workbench.models.machine.model import MachineBench
 from workbench.models.model import Model
 
 GRID = Grid(6.0, 4.5, (6.0, 30.0, 54.0), (60.0,), 69.0, (-60.0, 60.0))
-# What is added to the fine base comes from coarse meshes; the leading effects are solved again at their size.
+# What is added to the fine bases comes from coarse meshes; the leading effects are solved again at their size.
 PLAN = MeshPlan(
     idle=MeshDensity(gap_edges=180, longest_gap_edge=2.5, gap_layers=1, across_iron=1.0),
     loaded=MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.0),

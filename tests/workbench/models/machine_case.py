@@ -20,7 +20,7 @@ from workbench.models.machine.surrogate import Surrogate
 
 COARSE = MeshDensity(gap_edges=120, longest_gap_edge=2.5, gap_layers=1, across_iron=1.5)
 MIDDLE = MeshDensity(gap_edges=240, gap_layers=1, across_iron=1.5)
-PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE)
+PLAN = MeshPlan(MIDDLE, MIDDLE, MIDDLE, MIDDLE)
 SOLVED = Path(gettempdir()) / f"machine-case-{os.environ.get('PYTEST_XDIST_TESTRUNUID', os.getpid())}"
 atexit.register(shutil.rmtree, SOLVED, ignore_errors=True)  # until then all processes of a run share what is solved
 LOADED = LoadedState(0.1, (40.0, -20.0, -20.0))

@@ -28,12 +28,12 @@ from workbench.data.table import Response, Table
 from workbench.models.machine.spectra import half_rate
 from workbench.models.machine.surrogate import Surrogate
 
-# Share of the difference between the two meshes that the finer one still lacks. 12 slots, 10 poles, fine meshes of 720
-# edges against coarse ones of 480 without current and 240 with it: 1440 edges differ from the fine ones by r = 0.43
-# (voltage; 0.62 of 9 slots and 8 poles), 0.12 (loaded torque), 0.35 (flux linkage) of what the coarse ones do. Going on
-# like that, r + r^2 + ... = r/(1 - r) = 0.75 (1.6), 0.14, 0.54 is still to come. Cogging scatters by a per cent from
-# mesh to mesh (r = 0.8), which is a tolerance of its own (``device._COGGING_OF_MESH``).
-LEFT = 0.8
+# Share of the difference between the two meshes that the finer one still lacks. Without current, 1,080 edges against
+# 480: 2,160 (of 9 slots and 8 poles 1,728) edges differ from the fine ones by r = 0.20 (0.19) in voltage and by 0.27
+# (0.33) in cogging of what the coarse ones do; with it, 720 against 240: 1,440 by 0.12 in torque and 0.35 in flux
+# linkage. Going on like that, r + r^2 + ... = r/(1 - r) = 0.25, 0.37 (0.49), 0.14 and 0.54 is still to come. How
+# cogging scatters from mesh to mesh besides is a tolerance of its own (``device._COGGING_OF_MESH``).
+LEFT = 0.5
 NEAR = 0.8  # of the highest order or frequency: filters against aliasing fall off from there
 LEAST = 2e-4  # of the largest order of the voltage: smaller ones cannot be told from none
 ROUND_OFF = 1e-9  # of the same: orders that the symmetry of the drawing forbids have 3e-15, the least of others 3e-7

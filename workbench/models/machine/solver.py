@@ -30,7 +30,7 @@ class Solver:
         if kind is None or kind == self._kind:
             return
         self._kind = kind
-        for field in (self.fields.base, self.fields.idle, self.fields.loaded):
+        for field in self.fields.all:
             field.forget_meshes()
         if kind == _NO_LOAD_WHOLE:
             self._solve_drawing()
