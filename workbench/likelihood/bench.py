@@ -138,7 +138,7 @@ def bench_of(
     drawn = _problem(predictor, stack, noise, chosen)
     fit, null = _where_it_can_be(drawn, refitted(drawn, first))
     held_out = _held_out(fit.predictor, stack, noise, chosen)
-    remarks = campaign.complaints + _thinning(campaign.tables, tables) + _untested(tables)
+    remarks = campaign.complaints + _thinning(campaign.tables, tables) + _untested(campaign, tables)
     white = whitener(stack, noise)
     return Bench(fit.predictor.model, campaign, stack, noise, white, fit, held_out, null, remarks)
 
@@ -263,10 +263,11 @@ def _thinning(tables: Sequence[Table], used: Sequence[Table]) -> tuple[str, ...]
     )
 
 
-def _untested(tables: Sequence[Table]) -> tuple[str, ...]:
+def _untested(campaign: Campaign, tables: Sequence[Table]) -> tuple[str, ...]:
     if any(table.held_out.any() for table in tables):
         return ()
-    return ("no row is sealed: prediction beyond the conditions of the fit was not tested",)
+    why = " (no condition but an angle has settings enough)" if campaign.holdout == BY_REGION else ""
+    return (f"no row is sealed{why}: prediction beyond the conditions of the fit was not tested",)
 
 
 def _wildness(noise: Noise) -> tuple[str, ...]:

@@ -417,7 +417,7 @@ def _next(d: Diagnosis) -> tuple[Section, ...]:
         return ()
     best = max(d.next_measurements, key=lambda m: m.gain_nats / m.cost)
     if best.gain_nats < NO_GAIN:
-        said = "No measurement that was weighed is expected to change the odds by 1 %."
+        said = "No measurement that was weighed is expected to change the odds by 10 %."
         return (Section("What to measure next", (said,)),)
     gain = f"expected to change the odds by {factor_text(best.gain_nats)} at cost {amount(best.cost)}"
     said = f"Best: {best.words or plain(best.kind)}, {gain}."

@@ -47,7 +47,7 @@ ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
 IMPROBABLE = 0.05  # probability of "nothing is missing" below which something is
 POOR = 2.0  # chi2/n of fitted rows above which an effect does not explain them
-NO_GAIN = 0.01  # nats, 1 % of the odds, below which a measurement is not worth its cost
+NO_GAIN = 0.1  # nats, 10 % of the odds, below which a measurement is not worth its cost
 NEGLIGIBLE = 1e-3  # probability that is not worth a word
 ALARMING_PART = 1.5  # odd or even part over what noise alone gives
 

@@ -952,6 +952,25 @@ def test_a_search_that_ended_goes_on_where_the_exact_model_is_not_beaten(tmp_pat
     assert done == ["effects", "exact", "effects", "exact"]
 
 
+def test_what_an_exact_model_brings_to_the_lead_in_the_end_is_weighed_beside_an_unknown_function(tmp_path, monkeypatch):
+    """What led by an expansion falls behind; what leads now was no leader when unknown functions were weighed."""
+    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 0.4 * np.cos(600 * x) + 2.0 * np.sin(900 * x)))
+    exactly = []
+
+    def fallen(search, progress):
+        """An exact model gives all but one wave nothing but a loss."""
+        exactly.append(search.ranked[0])
+        for names in search.fitted.keys() - {frozenset(("wave2",))}:
+            search.fitted[names] = replace(search.fitted[names], log_evidence=-1e6)
+
+    monkeypatch.setattr(search_module, "_until_exact", lambda *asked: None)
+    monkeypatch.setattr(search_module, "weigh_unknown", lambda *asked: None)
+    monkeypatch.setattr(search_module, "_exactly", fallen)
+    search = searched(bench, WAVES)
+    assert search.ranked[0] == {"wave2"} and len(exactly) == 2
+    assert search.is_beaten, "by an unknown function beside it"
+
+
 def test_neighbours_of_a_set_that_leads_by_an_exact_model_only_are_looked_at(tmp_path, monkeypatch):
     bench = sure_of_noise(tmp_path)
     first, then = frozenset(), frozenset(("wave2",))
