@@ -256,15 +256,18 @@ def _toml(path: Path) -> dict[str, Any]:
 # ---- sentences -----------------------------------------------------------------------------------------------------
 
 Location = tuple[str | int, ...]
+MOST_SAID: Final = 3  # things that are wrong at once: more are no sentence
 _OF_NAMED: Final[dict[str, type[Section]]] = {"tolerance": ToleranceEntry, "systematic": SystematicEntry}
 
 
 def _sentence(errors: list[ErrorDetails]) -> str:
-    """The first thing that is wrong; an unknown key before the missing one that it probably was."""
-    first = min(errors, key=lambda error: error["type"] != "extra_forbidden")
-    more = len(errors) - 1
-    end = f" (and {more} more {'thing is' if more == 1 else 'things are'} wrong)" if more else ""
-    return f"{_place(first['loc'])}{_said(first)}{end}."
+    """The first things that are wrong; unknown keys before the missing ones that they probably were."""
+    ordered = sorted(errors, key=lambda error: error["type"] != "extra_forbidden")
+    first, *others = dict.fromkeys(f"{_place(error['loc'])}{_said(error)}" for error in ordered)
+    said = "".join(f" Also, {words}." for words in others[: MOST_SAID - 1])
+    more = len(others) + 1 - MOST_SAID
+    end = f" (And {more} more {'thing is' if more == 1 else 'things are'} wrong.)" if more > 0 else ""
+    return f"{first}.{said}{end}"
 
 
 def _place(loc: Location) -> str:

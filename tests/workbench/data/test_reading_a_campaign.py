@@ -136,9 +136,12 @@ def test_what_is_wrong_is_said_in_one_sentence(tmp_path, old, new, says):
     assert says in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_what_else_is_wrong_is_counted(tmp_path):
+def test_what_else_is_wrong_is_said_and_then_counted(tmp_path):
     wrong = DECLARED.replace("sigma = 0.02", "sigma = -1").replace("repeats = 2", "repeats = 0")
-    with pytest.raises(WorkbenchError, match=r"\(and 1 more thing is wrong\)"):
+    with pytest.raises(WorkbenchError, match=r"repeats = 0 is not .*Also, .*\[tolerance\] gap: sigma = -1.*\.$"):
+        read_campaign(declared(tmp_path, wrong))
+    wrong = wrong.replace("repeats = 0", "repeats = 0\ncolour = 1\nsize = 2")
+    with pytest.raises(WorkbenchError, match=r"colour.*size.*repeats = 0.*\(And 1 more thing is wrong\.\)"):
         read_campaign(declared(tmp_path, wrong))
 
 
