@@ -50,8 +50,27 @@ class HalbachMagnetisation(Magnetisation):
 
     def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
         """Angles [rad], of the shape of position_angle [rad], any shape."""
-        off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
+        off = _from_centre(position_angle, centre_angle)
         return centre_angle + off - pi / pitch * off
+
+
+@dataclass(frozen=True)
+class TurnedToRadial(Magnetisation):
+    """Magnetised as drawn, each point turned by a share of its angle from the centre line: of parallel magnets share 1
+    makes radial ones, of radial ones share -1 parallel ones."""
+
+    drawn: Magnetisation
+    share: float
+
+    def direction_angle(self, position_angle: np.ndarray, centre_angle: float, pitch: float) -> np.ndarray:
+        """Angles [rad], of the shape of position_angle [rad], any shape."""
+        off = _from_centre(position_angle, centre_angle)
+        return self.drawn.direction_angle(position_angle, centre_angle, pitch) + self.share * off
+
+
+def _from_centre(position_angle: np.ndarray, centre_angle: float) -> np.ndarray:
+    """Angle from the centre line [rad], -pi to pi."""
+    return np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
 
 
 PARALLEL = ParallelMagnetisation()

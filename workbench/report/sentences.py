@@ -414,7 +414,8 @@ def leading(d: Diagnosis) -> Ranked | None:
 def _none_of_these(d: Diagnosis) -> str:
     if _by_sealed_rows(d):
         return "Something is missing: the fitted rows do not show it, but rows that no fit has seen disagree."
-    return f"Something is missing that is none of the {len(d.ranking)} effects tried{_beside_likely(d)}{_where(d)}."
+    beside = _likely(d, ", alone or beside ")
+    return f"Something is missing that is none of the {len(d.ranking)} effects tried{beside}{_where(d)}."
 
 
 def _by_sealed_rows(d: Diagnosis) -> bool:
@@ -431,27 +432,16 @@ def _where(d: Diagnosis) -> str:
 def _cannot_tell(d: Diagnosis) -> str:
     if _of_nothing(d):
         return "These data cannot tell whether something is missing."
-    return f"Something is missing, but these data cannot tell what{_likeliest(d)}."
+    return f"Something is missing, but these data cannot tell what{_likely(d, ': likeliest is ')}."
 
 
-def _likeliest(d: Diagnosis) -> str:
-    """The effect that is likelier there than not, and what it lacks for its name to be said."""
-    said = _likely(d)
-    return f": likeliest is {said}" if said else ""
-
-
-def _beside_likely(d: Diagnosis) -> str:
-    """Something unknown need not be alone."""
-    said = _likely(d)
-    return f", alone or beside {said}" if said else ""
-
-
-def _likely(d: Diagnosis) -> str:
+def _likely(d: Diagnosis, before: str) -> str:
+    """The effect that is likelier there than not, and what it lacks for its name to be said; empty where none is."""
     leader = leading(d)
     if leader is None or not LIKELY <= leader.probability < d.sure:
         return ""
     return (
-        f"{plain(leader.name)} (there with {probability_text(leader.probability)}; a name is said from "
+        f"{before}{plain(leader.name)} (there with {probability_text(leader.probability)}; a name is said from "
         f"{probability_text(d.sure)} on)"
     )
 

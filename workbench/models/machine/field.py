@@ -18,7 +18,7 @@ from geometry.cross_section import CrossSection, mesh_cross_section
 from geometry.defects import DynamicEccentricity, MagnetPosition, SlotOpening, StaticEccentricity
 from geometry.half_cell import MeshDensity
 from geometry.machine import Machine
-from geometry.magnetisation import Magnetisation
+from geometry.magnetisation import Magnetisation, TurnedToRadial
 from geometry.morph import Defect, Morpher
 from geometry.winding import WindingLayout, star_of_slots
 from magnetostatics.currents import CoilCurrents, PhaseCurrents
@@ -46,19 +46,6 @@ class LoadedState:
     def turned(self, turn: float) -> LoadedState:
         """The same currents with the rotor turned on [rad]."""
         return LoadedState(self.angle + turn, self.currents)
-
-
-@dataclass(frozen=True)
-class TurnedToRadial(Magnetisation):
-    """Magnetised as drawn, each point turned by a share of its angle from the centre line: of parallel magnets share 1
-    makes radial ones, of radial ones share -1 parallel ones."""
-
-    drawn: Magnetisation
-    share: float
-
-    def direction_angle(self, position_angle, centre_angle, pitch):
-        off = np.mod(position_angle - centre_angle + pi, 2 * pi) - pi
-        return self.drawn.direction_angle(position_angle, centre_angle, pitch) + self.share * off
 
 
 class MachineField:
