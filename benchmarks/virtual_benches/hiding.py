@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from benchmarks.virtual_benches.case import GROUPS, VISIBLE, Answer, Bench, Series
-from benchmarks.virtual_benches.instruments import Noise, readings, room_temperature, scan_shapes, with_gaps
+from benchmarks.virtual_benches.instruments import Noise, readings, room_temperature, scan_shapes, white, with_gaps
 
 FREE = 1e4  # prior size of a free effect, in units of one standard deviation of all data
 PLAUSIBLE = 0.3  # share of a column of readings by which a truth outside the library may change it
@@ -147,7 +147,7 @@ class _Judge:
         drifts = self.catalogue.drifts(state)
         for responses, u in zip(tables, self.declared):
             parts += [_drifted(responses[name], drifts.get(name, 0.0)) / u[name] * weight for name in responses]
-        return np.concatenate([white(part, self.noise.correlation) for part in parts])
+        return np.concatenate([white(part, self.noise) for part in parts])
 
     @property
     def weight(self) -> float:
@@ -166,7 +166,7 @@ class _Judge:
             shapes = scan_shapes(u) / u[:, None] * self.noise.remount / self.noise.scale
             for shape in shapes.T:
                 column = np.zeros(n)
-                column[row : row + len(u)] = white(shape, self.noise.correlation)
+                column[row : row + len(u)] = white(shape, self.noise)
                 columns.append(column)
             row += len(u)
         return np.stack(columns, axis=1)
@@ -232,7 +232,7 @@ def _drawn(catalogue: Catalogue, group: str, seed: int, wanted: tuple[str, ...],
     scene = _Scene(judge, base, judge.sensitivities(base), tuple(kinds or catalogue.outside))
     truth, answer = scene.outside(seed, wanted, rng) if group == "outside" else scene.inside(group, seed, wanted, rng)
     fitted = float(max(setup.repeats - 1, 1))
-    about = {"declared": noise.scale, "remount": noise.remount, "correlation": noise.correlation, "fitted": fitted}
+    about = noise.told | {"fitted": fitted}
     return _Drawn(scene, truth, replace(answer, about=about), rng)
 
 
@@ -377,11 +377,6 @@ def measured(catalogue, setup: Setup, truth, noise: Noise, name: str, rng) -> Be
         read = with_gaps(read, rng) if noise.logs and layout is setup.layouts[0] else read
         series.append(Series(layout.file, layout.kind, repeat, conditions, read, layout.u_random))
     return Bench(name, setup.device, setup.tolerance, setup.systematic, tuple(series))
-
-
-def white(scan: np.ndarray, correlation: float) -> np.ndarray:
-    """One scan whose neighbours have noise of that correlation, as independent rows of the same noise."""
-    return np.append(scan[:1], (scan[1:] - correlation * scan[:-1]) / np.sqrt(1 - correlation**2))
 
 
 def _drifted(values: np.ndarray, drift: float) -> np.ndarray:

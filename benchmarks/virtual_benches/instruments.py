@@ -3,15 +3,20 @@ scatter of mounting the device anew for every scan, and here and there a reading
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 DEGREES = 4.0  # of the t distribution of the noise
 WILD_SHARE = 0.005  # of the readings
 WILD_SIZE = (6.0, 15.0)  # of a wild reading, in standard deviations
 MISDECLARED = 0.25  # share of benches whose declared uncertainty is off by up to a factor of two
 REMOUNTED = 0.75  # share of benches whose scans have an offset and a slope of their own
+FLOORED = 0.5  # share of benches whose readings have a part that wanders over many of them, and one that does not
+WANDERS = (0.5, 0.95)  # correlation of what wanders in them
+FLOOR = (0.2, 0.8)  # share of the variance that does not
 LOGGED = 0.5  # share of benches that log a temperature and miss readings
 MISSING = 3  # readings at most that are missing in a bench that misses some
 
@@ -20,7 +25,8 @@ MISSING = 3  # readings at most that are missing in a bench that misses some
 class Noise:
     """How noisy one bench is.
 
-    scale: true over declared size of the noise;  correlation: of a reading with the one before it
+    scale: true over declared size of the noise;  correlation: of what wanders in a reading with that of the one before
+    floor: share of the variance that does not wander
     step: of the converter, of the declared size;  drift: of the one scan that drifts, over its length, of the same
     remount: standard deviation of offset and of slope over its length of every scan, of the same
     logs: whether it logs the temperature of the room, with scatter, and misses single readings
@@ -32,6 +38,7 @@ class Noise:
     drift: float
     remount: float = 0.0
     logs: bool = False
+    floor: float = 0.0
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> Noise:
@@ -39,7 +46,12 @@ class Noise:
         scale = float(np.exp(rng.uniform(-np.log(most), np.log(most))))
         shape = float(rng.uniform(0.0, 0.5)), float(rng.uniform(0.05, 0.4)), float(rng.uniform(0.3, 1.0))
         remount = float(np.exp(rng.uniform(np.log(0.3), np.log(2.0)))) if rng.random() < REMOUNTED else 0.0
-        return cls(scale, *shape, remount, bool(rng.random() < LOGGED))
+        bench = cls(scale, *shape, remount, bool(rng.random() < LOGGED))
+        (own,) = rng.spawn(1)  # what is drawn after this stays what it is for benches without a floor
+        return bench._floored(own) if own.random() < FLOORED else bench
+
+    def _floored(self, rng: np.random.Generator) -> Noise:
+        return replace(self, correlation=float(rng.uniform(*WANDERS)), floor=float(rng.uniform(*FLOOR)))
 
     @classmethod
     def ideal(cls) -> Noise:
@@ -50,6 +62,11 @@ class Noise:
     def still(cls) -> Noise:
         """None at all."""
         return cls(0.0, 0.0, 0.0, 0.0)
+
+    @property
+    def told(self) -> dict[str, float]:
+        """What the answer of a campaign says of its noise."""
+        return {"declared": self.scale, "remount": self.remount, "correlation": self.correlation, "floor": self.floor}
 
     @property
     def is_ideal(self) -> bool:
@@ -111,11 +128,29 @@ def with_gaps(columns: dict[str, np.ndarray], rng: np.random.Generator) -> dict[
 
 
 def _correlated(n: int, noise: Noise, rng: np.random.Generator) -> np.ndarray:
-    """AR(1) with t-distributed innovations, of unit size (n,)."""
-    fresh = rng.standard_t(DEGREES, n) / np.sqrt(DEGREES / (DEGREES - 2.0))
+    """AR(1) with t-distributed innovations over a floor of the same distribution, of unit size together (n,)."""
+    fresh = _heavy(n, rng)
     rho, error = noise.correlation, np.empty(n)
     before = fresh[0]
     for k in range(n):
         before = fresh[k] if k == 0 else rho * before + np.sqrt(1 - rho**2) * fresh[k]
         error[k] = before
-    return error
+    return np.sqrt(1 - noise.floor) * error + np.sqrt(noise.floor) * _heavy(n, rng) if noise.floor else error
+
+
+def _heavy(n: int, rng: np.random.Generator) -> np.ndarray:
+    """Independent, t-distributed, of unit size (n,)."""
+    return rng.standard_t(DEGREES, n) / np.sqrt(DEGREES / (DEGREES - 2.0))
+
+
+def white(scan: np.ndarray, noise: Noise) -> np.ndarray:
+    """One scan as independent rows of the same noise (n,)."""
+    return solve_triangular(_root(len(scan), noise.correlation, noise.floor), scan, lower=True)
+
+
+@lru_cache(maxsize=16)
+def _root(n: int, correlation: float, floor: float) -> np.ndarray:
+    """Of the covariance of a scan (n, n)."""
+    lag = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    return np.linalg.cholesky((1 - floor) * correlation**lag + floor * np.eye(n))
+

@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.virtual_benches.case import GROUPS, Answer, Bench, Series
-from benchmarks.virtual_benches.hiding import FREE, OUTSIDE, SEVERAL, SMALL, Layout, Setup, log_uniform, measured, white
-from benchmarks.virtual_benches.instruments import Noise, scan_shapes
+from benchmarks.virtual_benches.hiding import FREE, OUTSIDE, SEVERAL, SMALL, Layout, Setup, log_uniform, measured
+from benchmarks.virtual_benches.instruments import Noise, scan_shapes, white
 from benchmarks.virtual_benches.machine_hidden import MOVED, SYSTEMATIC, TOLERANCE, Solved, as_toleranced
 from benchmarks.virtual_benches.machine_tables import COPPER, SPEED, WINDING, table_layout, there_and_back
 from benchmarks.virtual_benches.truths import (
@@ -231,7 +231,7 @@ class Eye:
     def stacked(self, tables: Sequence[Mapping[str, np.ndarray]]) -> np.ndarray:
         """All responses over their uncertainty, freed of the correlation of their noise."""
         parts = [
-            white(values / layout.declared({name: values})[name] * self.weight, self.noise.correlation)
+            white(values / layout.declared({name: values})[name] * self.weight, self.noise)
             for layout, table in zip(layouts(self.drawing), tables)
             for name, values in table.items()
         ]
@@ -282,7 +282,7 @@ class Eye:
         for u in sizes if self.noise.remount else ():
             for shape in (scan_shapes(u) / u[:, None] * self.noise.remount / self.noise.scale).T:
                 column = np.zeros(n)
-                column[row : row + len(u)] = white(shape, self.noise.correlation)
+                column[row : row + len(u)] = white(shape, self.noise)
                 found.append(column)
             row += len(u)
         return found
@@ -324,8 +324,7 @@ def hide(group: str, seed: int, which: str) -> tuple[Bench, Answer]:
         seen[outside] = case.strange()
     reading = _Case(eye, machine, reading).with_a_small_one(which, outside, rng)
     bench = _written(eye, machine, reading, f"machine-{group}-{seed}", rng)
-    about = {"declared": noise.scale, "remount": noise.remount, "correlation": noise.correlation}
-    return bench, Answer("machine", group, seed, effects, outside, seen, ("bearing_friction",), about=about)
+    return bench, Answer("machine", group, seed, effects, outside, seen, ("bearing_friction",), about=noise.told)
 
 
 def _size(low: float, high: float, signed: bool, rng: np.random.Generator) -> float:

@@ -15,7 +15,7 @@ from benchmarks.virtual_benches.case import VISIBLE, Answer
 from benchmarks.virtual_benches.damper_bench import CATALOGUE as DAMPER
 from benchmarks.virtual_benches.dq_bench import CATALOGUE as DQ
 from benchmarks.virtual_benches.hiding import bare, hide
-from benchmarks.virtual_benches.instruments import Noise, readings, remounting
+from benchmarks.virtual_benches.instruments import Noise, _correlated, readings, remounting, white
 from effects.library import library
 from effects.parameter import parameters_of
 from workbench.data.campaign import read_campaign
@@ -141,6 +141,14 @@ def test_noise_has_its_size_correlation_and_wild_readings():
     assert np.corrcoef(read[:-1][both], read[1:][both])[0, 1] == pytest.approx(0.4, abs=0.04)
     assert np.mean(np.abs(read) > 7.5) > 0.004  # a normal law has none
     assert np.allclose(read / 0.1, np.round(read / 0.1))
+
+
+def test_a_noise_over_a_floor_has_the_covariance_that_it_is_freed_of():
+    """Scans of twelve rows, freed of their course, are independent and of size one."""
+    noise, n = Noise(1.0, 0.9, 1e-6, 0.0, floor=0.4), 12
+    rng = np.random.default_rng(2)
+    scans = np.array([white(_correlated(n, noise, rng), noise) for _ in range(20_000)])
+    assert np.allclose(np.cov(scans.T), np.eye(n), atol=0.08)  # four standard errors of t4 noise
 
 
 def test_every_scan_is_mounted_anew():

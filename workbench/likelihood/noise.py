@@ -5,7 +5,8 @@ The declared uncertainty gives the shape over the rows; its size is measured. Di
 reading minus model, so that conditions that were not set quite alike do no harm. The model has a vote, like each
 repeat, on which reading is the wild one: of two alone nobody could tell. Of a scan
 
-    z = (offset + slope (t - 1/2)) / u + AR(1) noise of size 1,   t: how far through the scan, 0 to 1
+    z = (offset + slope (t - 1/2)) / u + AR(1) noise and independent noise, of size 1 together
+    t: how far through the scan, 0 to 1
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ TAME_SHARE = 0.9749  # mean of min(d^2, WILD^2) of a standard normal d
 REPORTED = 4.5  # standard deviations of disagreement from which a reading is called wild
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
 MOST_STATIONS = 4000  # that are asked how large the noise of a channel is; so many know it to 1 %
+MOST_SHUFFLED = 250  # of them where repeats go through them in other orders: each then meets all others in the equations
+ORDERED = 50  # stations that neighbours in a scan are apart at most, where repeats go through them in one order
 MOST_SCANS = 80  # that are asked what a scan as a whole is off by; so many know it to 6 %
 RUN = 50  # neighbouring stations of a longer table that are kept together
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
@@ -32,7 +35,8 @@ SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told f
 
 @dataclass(frozen=True)
 class ChannelNoise:
-    """scale: measured over declared size;  rho: correlation of neighbours in a scan
+    """scale: measured over declared size;  rho: correlation from reading to reading of what wanders in a scan
+    floor: share of the variance that is independent
 
     dof: degrees of freedom of the scale;  pairs: differences used;  wild: readings found wild
     scans: standard deviation of offset and of slope of a scan as a whole, of the size of the noise
@@ -41,6 +45,7 @@ class ChannelNoise:
     channel: str
     scale: float
     rho: float
+    floor: float
     dof: float
     pairs: int
     wild: int
@@ -89,18 +94,25 @@ def _with_wild(channels: Sequence[ChannelNoise], within: Sequence[_Deviation]) -
 
 def _of_channel(name: str, repeated: Repeated, size: Size) -> ChannelNoise:
     dof = DECLARED_WEIGHT + repeated.free if repeated.free else DOF_WITHOUT_REPEATS
-    return ChannelNoise(name, size.scale, size.rho, float(dof), repeated.free, 0, size.scans)
+    return ChannelNoise(name, size.scale, size.rho, size.floor, float(dof), repeated.free, 0, size.scans)
 
 
 def _repeated(stack: Stack, channel: Channel, residual: np.ndarray) -> Repeated:
     """The readings of a channel that have partners, in the order they were taken; residual: over u (n,)"""
     table, u = stack.tables[channel.table], stack.u[channel.rows]
-    stations = _some(table)
-    place = np.full(channel.size, -1)
+    rows, place, next_to = _linked(table, _some(table))
+    if np.abs(np.diff(place, prepend=0)[next_to]).max(initial=0) > ORDERED:
+        rows, place, next_to = _linked(table, _some(table)[:MOST_SHUFFLED])
+    return Repeated(residual[channel.rows][rows], place, next_to, _shapes(table, u, rows))
+
+
+def _linked(table: Table, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rows of some stations (stations, repeats), the station of each, and whether it continues the scan of the one
+    before (rows,) each."""
+    place = np.full(table.rows, -1)
     place[stations] = np.arange(len(stations))[:, None]
     rows = np.flatnonzero(place >= 0)
-    next_to = follows(table)[rows] & (np.diff(rows, prepend=-2) == 1)
-    return Repeated(residual[channel.rows][rows], place[rows], next_to, _shapes(table, u, rows))
+    return rows, place[rows], follows(table)[rows] & (np.diff(rows, prepend=-2) == 1)
 
 
 def _some(table: Table) -> np.ndarray:
@@ -242,7 +254,8 @@ def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: 
     out = np.empty_like(z)
     for channel, found in zip(stack.channels, noise.channels):
         size = np.sqrt(found.dof / random.chisquare(found.dof, count))
-        more = random.normal(0.0, np.sqrt((1 - found.rho**2) / max(found.dof, 10.0)), count)
+        rho = found.rho * (1 - found.floor)
+        more = random.normal(0.0, np.sqrt((1 - rho**2) / max(found.dof, 10.0)), count)
         part = z[channel.rows]
         out[channel.rows] = size * (part + more * np.vstack([np.zeros((1, count)), part[:-1]])) / np.sqrt(1 + more**2)
     return out

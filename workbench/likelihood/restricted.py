@@ -1,12 +1,13 @@
 """Restricted likelihood of what repeats disagree by: the size and correlation of the noise of a channel, and what its
 scans are off by as a whole.
 
-    z = value of the station + s (AR(1) noise of correlation rho + tau (offset and slope of the scan)),   ~ N(0, 1)
+    z = value of the station + s (a + e + tau (offset and slope of the scan))
+    a: AR(1) noise of correlation rho and variance 1 - w;  e: independent noise of variance w;  tau: size of N(0, 1)
 
 all over the declared uncertainty. The values of the stations are free, so that no model is asked and what they take of
 the readings is no lack of noise (Patterson and Thompson, Biometrika 58 (1971), 545). The size s is integrated out, with
-the declared one counting for a few readings; rho and tau lie on a grid. Few repeats say little of them, so that those
-of a channel are drawn towards what the channels have in common.
+the declared one counting for a few readings; rho, the floor w and tau lie on a grid. Few repeats say little of them, so
+that those of a channel are drawn towards what the channels have in common.
 """
 
 from __future__ import annotations
@@ -15,15 +16,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg import cholesky_banded
+from scipy.linalg.lapack import dtbtrs
 
 DECLARED_WEIGHT = 4.0  # readings that the declared size counts for beside the repeats
 CORRELATIONS = np.linspace(-0.4, 0.95, 28)
 SPREADS = np.concatenate([[0.0], np.geomspace(0.1, 8.0, 14)])  # of offset and slope of a scan, of the size of the noise
+WANDERING = np.linspace(0.35, 0.95, 7)  # correlations that can be told from a floor beside them
+FLOORS = np.array([0.35, 0.6, 0.8])  # shares of independent noise beside one that wanders
+FLOORED = 0.5  # of benches whose noise wanders: with a floor as many as without
 ALIKE = 0.15  # standard deviation of the correlations of channels of one bench about what they have in common
+ALIKE_FLOORS = 0.25  # the same of their floors
 AS_LARGE = 0.3  # the same of the logarithm of their spreads
 SHARES = np.where(SPREADS > 0, 0.5 / np.count_nonzero(SPREADS), 0.5)  # of benches: with no spread as many as with one
 ODD = 0.05  # share of channels that have a spread where the others have none, or none where they have one
+
+
+def _courses() -> tuple[np.ndarray, np.ndarray]:
+    """How noise may go from reading to reading: correlation and floor (C, 2), and the share of benches of each (C,)."""
+    plain = [(rho, 0.0) for rho in CORRELATIONS]
+    floored = [(rho, floor) for rho in WANDERING for floor in FLOORS]
+    wanders = CORRELATIONS > WANDERING[0] - 1e-9
+    shares = np.where(wanders, 1 - FLOORED, 1.0)
+    of_floored = np.full(len(floored), FLOORED * wanders.sum() / len(floored))
+    return np.array(plain + floored), np.concatenate([shares, of_floored]) / len(CORRELATIONS)
+
+
+COURSES, COMMON = _courses()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,17 +66,19 @@ class Repeated:
 
 @dataclass(frozen=True)
 class Size:
-    """Of the noise of a channel. scale: over the declared one;  rho: correlation of neighbours;  scans: standard
-    deviation of offset and slope of the next scan, of the size of the noise"""
+    """Of the noise of a channel. scale: over the declared one;  rho: correlation from reading to reading of what
+    wanders;  floor: share of the variance that does not;  scans: standard deviation of offset and slope of the next
+    scan, of the size of the noise"""
 
     scale: float
     rho: float
+    floor: float
     scans: float
 
 
 @dataclass(frozen=True, eq=False)
 class _Likelihood:
-    """log_p: ln p of what repeats disagree by, the size integrated out (R, T) [nats];  variance: s^2 there (R, T)"""
+    """log_p: ln p of what repeats disagree by, the size integrated out (C, T) [nats];  variance: s^2 there (C, T)"""
 
     log_p: np.ndarray
     variance: np.ndarray
@@ -66,37 +87,41 @@ class _Likelihood:
 def sizes_of(channels: Sequence[Repeated]) -> list[Size]:
     """Sizes of the noise of channels of one bench; as declared where nothing was repeated."""
     if not any(channel.free for channel in channels):
-        return [Size(1.0, 0.0, 0.0) for _ in channels]
+        return [Size(1.0, 0.0, 0.0, 0.0) for _ in channels]
     found = [_likelihood(channel) for channel in channels]
     return [_mean(one.variance, posterior) for one, posterior in zip(found, _posteriors([f.log_p for f in found]))]
 
 
 def _mean(variance: np.ndarray, posterior: np.ndarray) -> Size:
-    """The scan that comes next has the mean of the variances that are possible."""
-    rho, spread = CORRELATIONS @ posterior.sum(axis=1), SPREADS**2 @ posterior.sum(axis=0)
-    return Size(float(np.sqrt(np.sum(variance * posterior))), float(rho), float(np.sqrt(spread)))
+    """The scan that comes next has the mean of the variances and of the covariances of neighbours that are possible."""
+    course, spread = posterior.sum(axis=1), SPREADS**2 @ posterior.sum(axis=0)
+    floor = float(course @ COURSES[:, 1])
+    neighbours = course @ (COURSES[:, 0] * (1 - COURSES[:, 1]))
+    scale, rho = np.sqrt(np.sum(variance * posterior)), neighbours / (1 - floor)
+    return Size(float(scale), float(rho), floor, float(np.sqrt(spread)))
 
 
 # ---- one channel -----------------------------------------------------------------------------------------------------
 
 
 def _likelihood(channel: Repeated) -> _Likelihood:
-    """Over all correlations and spreads; the same everywhere where nothing was repeated."""
+    """Over all courses and spreads; the same everywhere where nothing was repeated."""
     if not channel.free:
-        flat = np.ones((len(CORRELATIONS), len(SPREADS)))
+        flat = np.ones((len(COURSES), len(SPREADS)))
         return _Likelihood(0.0 * flat, flat)
     chains = _Chains.of(channel)
-    square, log_det = np.array([_at(chains, rho) for rho in CORRELATIONS]).transpose(1, 0, 2)
+    square, log_det = np.array([_at(chains, *course) for course in COURSES]).transpose(1, 0, 2)
     known = DECLARED_WEIGHT + channel.free
     return _Likelihood(-0.5 * (known * np.log(DECLARED_WEIGHT + square) + log_det), (DECLARED_WEIGHT + square) / known)
 
 
-def _at(chains: _Chains, rho: float) -> tuple[np.ndarray, np.ndarray]:
-    """Sum of squares and ln det of the restricted likelihood at a correlation, for every spread (T,), (T,)."""
-    products, on, band = (each.at(rho) for each in (chains.products, chains.on, chains.band))
+def _at(chains: _Chains, rho: float, floor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of squares and ln det of the restricted likelihood at a course, for every spread (T,), (T,)."""
+    products, on, band = chains.at(rho, floor)
     root = cholesky_banded(band, lower=True, check_finite=False)
-    products = products - on.T @ cho_solve_banded((root, True), on, check_finite=False)
-    log_det = 2 * np.log(root[0]).sum() + chains.following * np.log(1 - rho**2)
+    taken = dtbtrs(root, on, uplo="L")[0]
+    products = products - taken.T @ taken
+    log_det = 2 * np.log(root[0]).sum() + chains.following * np.log(1 - rho**2) + chains.rows * np.log(1 - floor)
     eigenvalues, turned = np.linalg.eigh(products[1:, 1:])
     along = np.square(turned.T @ products[1:, 0])
     more = 1 + np.outer(SPREADS**2, np.maximum(eigenvalues, 0.0))
@@ -122,49 +147,80 @@ class _Sum:
 
 @dataclass(frozen=True, eq=False)
 class _Chains:
-    """What a channel adds to the normal equations. products: of readings and shapes with one another (1 + q, 1 + q)
+    """What a channel adds to the normal equations of the values of its stations and of the independent part of every
+    reading, e = sqrt(w) f with f ~ N(0, 1): those of a station stand behind it, so that the equations are a band.
 
-    on: the same with the stations (S, 1 + q);  band: of the stations, lower band (b, S);  following: rows that do
+    products: of readings and shapes with one another (1 + q, 1 + q);  on: the same with the unknowns (U, 1 + q)
+    band: of the unknowns, lower band (b, U);  own: whether an unknown is the part of a reading (U,)
     """
 
     products: _Sum
     on: _Sum
     band: _Sum
+    own: np.ndarray
     following: int
+
+    @property
+    def rows(self) -> int:
+        return int(self.own.sum())
+
+    def at(self, rho: float, floor: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Products, those on the unknowns, and the band of the unknowns."""
+        weight = np.where(self.own, np.sqrt(floor), 1.0)
+        products, on, band = (each.at(rho) / (1 - floor) for each in (self.products, self.on, self.band))
+        for below, diagonal in enumerate(band):
+            diagonal[: len(weight) - below] *= weight[below:] * weight[: len(weight) - below]
+        band[0] += self.own
+        return products, on * weight[:, None], band
 
     @classmethod
     def of(cls, channel: Repeated) -> _Chains:
         row, start = np.flatnonzero(channel.follows), np.flatnonzero(~channel.follows)
-        pairs = (start, start), (row, row), (row - 1, row - 1), (row, row - 1)
-        columns = np.column_stack([channel.values, channel.shapes])
-        station = _numbered(channel.station)
-        count = int(station.max()) + 1
-        products = [columns[a].T @ columns[b] for a, b in pairs]
-        on = [_gathered(station[a], columns[b], count) for a, b in pairs]
-        products[3] = products[3] + products[3].T
-        on[3] += _gathered(station[row - 1], columns[row], count)
-        width = int(np.abs(np.diff(station))[channel.follows[1:]].max(initial=0)) + 1
-        band = [_banded(station[a], station[b], width, count) for a, b in pairs]
-        return cls(_Sum(*products), _Sum(*on), _Sum(*band), len(row))
+        before = row - 1
+        sums = ((start, start),), ((row, row),), ((before, before),), ((row, before), (before, row))
+        columns, unknowns = np.column_stack([channel.values, channel.shapes]), _unknowns(channel.station)
+        count = int(unknowns.max()) + 1
+        products = [sum(columns[a].T @ columns[b] for a, b in pairs) for pairs in sums]
+        on = [sum(_gathered(unknowns[a], columns[b], count) for a, b in pairs) for pairs in sums]
+        met = [np.hstack([_met(unknowns[a], unknowns[b]) for a, b in pairs]) for pairs in sums]
+        width = int(max(np.ptp(each, axis=0).max(initial=0) for each in met)) + 1
+        band = [_banded(each, width, count) for each in met]
+        own = np.isin(np.arange(count), unknowns[:, 1])
+        return cls(_Sum(*products), _Sum(*on), _Sum(*band), own, len(row))
 
 
-def _numbered(station: np.ndarray) -> np.ndarray:
-    """Stations numbered as they are met: neighbours in a scan are neighbours in the equations."""
+def _unknowns(station: np.ndarray) -> np.ndarray:
+    """Numbers of the value of its station and of its own independent part, of every reading (n, 2).
+
+    Stations are numbered as they are met: neighbours in a scan are neighbours in the equations.
+    """
     _, first, which = np.unique(station, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(first))[which]
+    met = np.argsort(np.argsort(first))[which]
+    readings = np.bincount(met)
+    value = np.cumsum(readings + 1) - readings - 1
+    own = np.empty(len(met), dtype=int)
+    own[np.argsort(met, kind="stable")] = np.setdiff1d(np.arange(len(met) + len(readings)), value)
+    return np.column_stack([value[met], own])
 
 
-def _gathered(station: np.ndarray, columns: np.ndarray, count: int) -> np.ndarray:
-    """Sums of the rows of every station (count, q)."""
+def _met(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Every unknown of a reading with every one of another (2, 4 n)."""
+    return np.array([np.repeat(one, 2, axis=1).ravel(), np.tile(other, 2).ravel()])
+
+
+def _gathered(unknowns: np.ndarray, columns: np.ndarray, count: int) -> np.ndarray:
+    """Sums of the rows of every unknown (count, q)."""
     out = np.zeros((count, columns.shape[1]))
-    np.add.at(out, station, columns)
+    for own in unknowns.T:
+        np.add.at(out, own, columns)
     return out
 
 
-def _banded(one: np.ndarray, other: np.ndarray, width: int, count: int) -> np.ndarray:
-    """How often two stations meet, as the lower band of a matrix (width, count)."""
+def _banded(met: np.ndarray, width: int, count: int) -> np.ndarray:
+    """How often unknowns meet, as the lower band of a matrix (width, count). met: pairs of their numbers (2, m)"""
     out = np.zeros((width, count))
-    np.add.at(out, (np.abs(one - other), np.minimum(one, other)), 1.0)
+    one, other = met[:, met[0] >= met[1]]
+    np.add.at(out, (one - other, other), 1.0)
     return out
 
 
@@ -172,27 +228,27 @@ def _banded(one: np.ndarray, other: np.ndarray, width: int, count: int) -> np.nd
 
 
 def _posteriors(log_p: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Of correlation and spread of every channel (R, T), which scatter about what all have in common."""
+    """Of course and spread of every channel (C, T), which scatter about what all have in common."""
     own = [np.exp(one - one.max()) for one in log_p]
-    correlation, spread = _scatter()
-    seen = [np.log(correlation.T @ one @ spread) for one in own]  # of what is common, by each channel
+    course, spread = _scatter()
+    seen = [np.log(course.T @ one @ spread) for one in own]  # of what is common, by each channel
     every = sum(seen)
     out = []
     for one, mine in zip(own, seen):
         others = every - mine
-        prior = correlation @ np.exp(others - others.max()) * SHARES @ spread.T
+        prior = course @ (COMMON[:, None] * np.exp(others - others.max()) * SHARES) @ spread.T
         out.append(one * prior / np.sum(one * prior))
     return out
 
 
 def _scatter() -> tuple[np.ndarray, np.ndarray]:
-    """Probability of a channel's correlation (R, R) and of its spread (T, T) where the common one is that of the
-    column."""
-    correlation = np.exp(-0.5 * np.square(np.subtract.outer(CORRELATIONS, CORRELATIONS) / ALIKE))
+    """Probability of a channel's course (C, C) and of its spread (T, T) where the common one is that of the column."""
+    rho, floor = (np.subtract.outer(values, values) for values in COURSES.T)
+    course = COMMON[:, None] * np.exp(-0.5 * (np.square(rho / ALIKE) + np.square(floor / ALIKE_FLOORS)))
     logs = np.log(SPREADS[1:])
     spread = np.full((len(SPREADS), len(SPREADS)), ODD / len(logs))
     among = np.exp(-0.5 * np.square(np.subtract.outer(logs, logs) / AS_LARGE))
     spread[1:, 1:] = (1 - ODD) * among / among.sum(axis=0)
     spread[0] = ODD
     spread[0, 0] = 1 - ODD
-    return correlation / correlation.sum(axis=0), spread
+    return course / course.sum(axis=0), spread

@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg.lapack import dtbtrs
 
 from workbench.data.repeats import follows
 from workbench.data.stack import Channel, Stack
 from workbench.likelihood.noise import ChannelNoise, Noise, scan_shapes
 
+AT_ONCE = 64  # columns that are freed of their course together: more of them would be copied at a time
 LEAST_ERROR = 0.03  # of a law, in standard deviations of a row, below which it is none: a hundred are 0.01 nats
 
 
@@ -60,25 +62,72 @@ def law_error(rows: slice, wrong: np.ndarray) -> LawError:
 
 
 @dataclass(frozen=True, eq=False)
+class Course:
+    """How noise of size one goes from row to row: a part that wanders, and a floor that does not.
+
+    rho: correlation of what wanders with the row before, 0 where there is none (n,)
+    floor: share of the variance that is independent (n,)
+    """
+
+    rho: np.ndarray
+    floor: np.ndarray
+
+    @classmethod
+    def independent(cls, rows: int) -> Course:
+        return cls(np.zeros(rows), np.zeros(rows))
+
+    def of(self, rows: np.ndarray) -> Course:
+        return Course(self.rho[rows], self.floor[rows])
+
+    @cached_property
+    def _innovations(self) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the innovation before and standard deviation of one, of every row (n,), (n,)."""
+        echo, variance = np.zeros((2, len(self.rho)))
+        missed = left = 0.0  # share of the innovation before that is no wandering; variance of it that is left
+        for k, (rho, floor) in enumerate(zip(self.rho.tolist(), self.floor.tolist())):
+            expected = rho**2 * left + (1 - rho**2) * (1 - floor)
+            variance[k] = expected + floor
+            echo[k] = rho * missed
+            missed = floor / variance[k]
+            left = expected * missed
+        return echo, np.sqrt(variance)
+
+    def take_from(self, z: np.ndarray) -> None:
+        """Make rows independent and of size one, in place: a library of shapes has 100 MB. z: (n,) or (n, m)"""
+        shape = (-1,) + (1,) * (z.ndim - 1)
+        echo, size = self._innovations
+        z[1:] -= self.rho.reshape(shape)[1:] * z[:-1]
+        if echo.any():
+            _add_echo(echo, z.reshape(len(z), -1))
+        z /= size.reshape(shape)
+
+
+def _add_echo(echo: np.ndarray, z: np.ndarray) -> None:
+    """z_k + echo_k z_(k-1), one row after the other, in place. z: (n, m)"""
+    band = np.vstack([np.ones(len(echo)), -np.append(echo[1:], 0.0)])
+    for first in range(0, z.shape[1], AT_ONCE):
+        some = slice(first, first + AT_ONCE)
+        z[:, some] = dtbtrs(band, z[:, some], uplo="L", diag="U")[0]
+
+
+@dataclass(frozen=True, eq=False)
 class Whitener:
     """Turns stacked residuals into independent ones of size one.
 
-    z = r / sigma, then (z_k - rho z_(k-1)) / sqrt(1 - rho^2) inside each scan
-    sigma: standard uncertainty of a row (n,);  rho: correlation with the row before, 0 where there is none (n,)
-    laws: errors of laws that are integrated out besides
+    z = r / sigma, then what the rows before it in the scan do not tell of a row, over its standard deviation:
+        e_k = z_k - rho z_(k-1) + c_k e_(k-1),   c_k = rho (1 - g_(k-1))
+    with the gain g of Kalman's filter (Trans. ASME D 82 (1960), 35) for what wanders; g = 1, c = 0 without a floor.
+    sigma: standard uncertainty of a row (n,);  laws: errors of laws that are integrated out besides
     """
 
     sigma: np.ndarray
-    rho: np.ndarray
+    course: Course
     laws: tuple[LawError, ...] = ()
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """residual (n,) or (n, m) -> whitened, same shape"""
-        shape = (-1,) + (1,) * (residual.ndim - 1)
-        z = residual / self.sigma.reshape(shape)
-        rho = self.rho.reshape(shape)
-        z[1:] -= rho[1:] * z[:-1]  # in place: a library of shapes has 100 MB
-        z /= np.sqrt(1 - rho**2)
+        z = np.divide(residual, self.sigma.reshape((-1,) + (1,) * (residual.ndim - 1)), order="C")
+        self.course.take_from(z)
         for law in self.laws:
             z[law.rows] = law.apply(z[law.rows])
         return z
@@ -90,7 +139,7 @@ class Whitener:
     def of(self, rows: np.ndarray) -> Whitener:
         """That of the rows of some channels alone, each whole (k,)."""
         own = (replace(law, rows=slice(first, first + _length(law.rows))) for law, first in self._among(rows))
-        return Whitener(self.sigma[rows], self.rho[rows], tuple(own))
+        return Whitener(self.sigma[rows], self.course.of(rows), tuple(own))
 
     def _among(self, rows: np.ndarray) -> Iterator[tuple[LawError, int]]:
         """Errors of laws of some of the rows, and the place of their first row among these."""
@@ -106,14 +155,24 @@ class Whitener:
         return self.laws[count:]
 
 
+def _add_echo(echo: np.ndarray, z: np.ndarray) -> None:
+    """z_k + echo_k z_(k-1), one row after the other, in place. z: (n,) or (n, m)"""
+    band = np.vstack([np.ones(len(echo)), -np.append(echo[1:], 0.0)])
+    columns = z.reshape(len(z), -1)
+    for first in range(0, columns.shape[1], AT_ONCE):
+        some = slice(first, first + AT_ONCE)
+        columns[:, some] = dtbtrs(band, columns[:, some], uplo="L", diag="U")[0]
+
+
 def whitener(stack: Stack, noise: Noise) -> Whitener:
     """The whitener of a stack; noise must have its channels and rows."""
-    sigma, rho = np.empty(stack.size), np.zeros(stack.size)
+    sigma, rho, floor = np.empty(stack.size), np.zeros(stack.size), np.zeros(stack.size)
     for channel, found in zip(stack.channels, noise.channels):
         rows = channel.rows
         sigma[rows] = stack.u[rows] * found.scale * noise.inflation[rows]
         rho[rows] = np.where(follows(stack.tables[channel.table]), found.rho, 0.0)
-    white = Whitener(sigma, rho)
+        floor[rows] = found.floor
+    white = Whitener(sigma, Course(rho, floor))
     laws = (_unknown(stack, channel, found, white) for channel, found in zip(stack.channels, noise.channels))
     return white.with_laws(laws)
 

@@ -44,7 +44,7 @@ from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import Signatures, grid, signature, signatures_of
 from workbench.likelihood.unknown import SIZES, seen, shapes_of
 from workbench.likelihood.unknown_laws import LAWS
-from workbench.likelihood.whitening import Whitener
+from workbench.likelihood.whitening import Course, Whitener
 from workbench.models.model import Model
 
 GAUSS = 1e9  # degrees of freedom at which the noise is known for sure
@@ -517,7 +517,7 @@ def test_what_a_tolerance_could_do_is_done_as_the_tolerance_does_it_at_a_fit():
     tolerance, beyond = 100.0 * np.eye(40)[:, :1], 100.0 * np.eye(40)[:, 1]
     changes = {"alike": tolerance[:, 0], "half": tolerance[:, 0] + beyond}
     found = {n: (signature(Bump(), lambda effect, c=c: effect.size * c),) for n, c in changes.items()}
-    signatures = Signatures(found, {}, Whitener(np.ones(40), np.zeros(40)), tolerance)
+    signatures = Signatures(found, {}, Whitener(np.ones(40), Course.independent(40)), tolerance)
     catalogue = signatures.catalogue_at(1.5 * tolerance, np.zeros((40, 0)), signatures.white, ())
     for number in (0, len(catalogue.terms) // 2):  # the first place of either
         there, before = catalogue.felt(number), signatures.catalogue(np.zeros((40, 0)), signatures.white).felt(number)
@@ -553,7 +553,7 @@ def test_tangents_do_not_reach_over_places_without_an_answer():
 def test_a_size_that_cannot_be_negative_is_not_promised_a_negative_one():
     """A friction on its logarithmic grid, held against readings that show less than none."""
     friction = signature(Bump(), lambda effect: np.full(40, np.exp(2 * effect.size)))
-    white = Whitener(np.ones(40), np.zeros(40))
+    white = Whitener(np.ones(40), Course.independent(40))
     catalogue = Catalogue(np.zeros((40, 0)), Terms(tuple(friction.terms(white, 0, 0.0)), 40))
     gains = catalogue.gains((), catalogue.readings(-3.0 * np.ones((40, 1))))
     assert gains.max() < 0

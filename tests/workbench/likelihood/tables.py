@@ -4,7 +4,7 @@ import numpy as np
 
 from workbench.data.stack import stacked
 from workbench.data.table import Response, Table
-from workbench.likelihood.whitening import Whitener
+from workbench.likelihood.whitening import Course, Whitener
 
 
 def table(values, u, repeat=None, scan=None, kind="generic", file="t.csv", **conditions):
@@ -20,4 +20,4 @@ def table(values, u, repeat=None, scan=None, kind="generic", file="t.csv", **con
 def whitened(*tables):
     """A stack and the whitener of independent noise of the declared size."""
     stack = stacked(tables)
-    return stack, Whitener(stack.u, np.zeros(stack.size))
+    return stack, Whitener(stack.u, Course.independent(stack.size))

@@ -12,7 +12,7 @@ from effects.parameter import parameter
 from effects.prior import Normal
 from workbench.data.stack import Channel, Stack
 from workbench.likelihood.fit import INEXACT, Problem, fitted, prior_cost
-from workbench.likelihood.whitening import Whitener
+from workbench.likelihood.whitening import Course, Whitener
 
 ROWS = 40
 PLACES = np.linspace(-1.0, 1.0, ROWS)
@@ -41,7 +41,8 @@ def problem(formula, true):
     predictor = Readings(formula)
     channels = (Channel("table.reading", 0, "reading", slice(0, ROWS), "1", 1.0),)
     stack = predictor.stack = Stack((), channels, formula(*true), np.full(ROWS, 1e-2), np.zeros((ROWS, 0)))
-    return Problem(predictor, stack, Whitener(np.full(ROWS, 1e-2), np.zeros(ROWS)), np.array([20.0]), np.zeros(1))
+    white = Whitener(np.full(ROWS, 1e-2), Course.independent(ROWS))
+    return Problem(predictor, stack, white, np.array([20.0]), np.zeros(1))
 
 
 def fit(formula, true):

@@ -11,8 +11,8 @@ from workbench.data.campaign import read_campaign
 from workbench.data.repeats import matched_rows
 from workbench.data.stack import part_of, rows_of, stacked, thinned
 from workbench.likelihood.bench import bench_of
-from workbench.likelihood.noise import ChannelNoise, Noise, measured_noise
-from workbench.likelihood.whitening import LawError, Whitener, whitener
+from workbench.likelihood.noise import MOST_SHUFFLED, ChannelNoise, Noise, measured_noise
+from workbench.likelihood.whitening import Course, LawError, Whitener, whitener
 from workbench.models.model import Model
 
 
@@ -56,10 +56,12 @@ def test_coarse_steps_of_a_converter_do_not_make_noise_vanish(tmp_path):
     assert bench(folder).noise.channels[0].scale == pytest.approx(np.hypot(0.8, 0.1 / np.sqrt(12) / 0.05), rel=0.1)
 
 
-def test_whitening_makes_ar1_noise_white_exactly():
+@pytest.mark.parametrize("floor", [0.0, 0.4, 0.9])
+def test_whitening_makes_wandering_noise_white_exactly(floor):
     n, rho, sigma = 6, 0.6, np.linspace(1, 3, 6)
-    white = Whitener(sigma, np.r_[0.0, np.full(n - 1, rho)])
-    covariance = np.outer(sigma, sigma) * rho ** np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    white = Whitener(sigma, Course(np.r_[0.0, np.full(n - 1, rho)], np.full(n, floor)))
+    wanders = rho ** np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    covariance = np.outer(sigma, sigma) * ((1 - floor) * wanders + floor * np.eye(n))
     operator = white(np.eye(n))
     assert np.allclose(operator @ covariance @ operator.T, np.eye(n), atol=1e-12)
 
@@ -143,11 +145,24 @@ def test_neighbours_that_go_together_are_no_remounting(rho):
     assert found.scans < 0.15
 
 
+def test_of_repeats_in_random_order_some_are_asked():
+    """Three times 2,000 places, each time in another order: all at once are a dense matrix of all places."""
+    random, n = np.random.default_rng(4), 2000
+    error = random.standard_normal((3, n))
+    for k in range(1, n):
+        error[:, k] = 0.5 * error[:, k - 1] + np.sqrt(0.75) * error[:, k]
+    number, place = np.repeat((0, 1, 2), n), np.concatenate([random.permutation(n) for _ in range(3)]) / n
+    found = noise_of(stacked([table({"force": 0.2 * error.ravel()}, 0.2, number, number, displacement=place)])).channels[0]
+    assert found.pairs == 2 * MOST_SHUFFLED
+    assert found.scale == pytest.approx(1.0, rel=0.15)  # three standard errors of 500 correlated differences
+    assert found.rho * (1 - found.floor) == pytest.approx(0.5, abs=0.15)
+
+
 def test_whitening_knows_that_scans_are_off_as_a_whole():
     """Two scans, covariance by hand: independent noise, one reading wild, and an offset and a slope for each."""
     stack = scans(repeats=2, rows=7)
     wild = np.where(np.arange(14) == 3, 5.0, 1.0)
-    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0, 0.8),), wild)
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 0.0, 20.0, 7, 0, 0.8),), wild)
     operator = whitener(stack, noise)(np.eye(14))
     t = np.linspace(-0.5, 0.5, 7)
     one = 0.8**2 * (1 + np.outer(t, t) / np.mean(t**2))
@@ -159,7 +174,7 @@ def test_whitening_knows_what_the_model_leaves_open():
     """One scan, covariance by hand: independent noise, and a wave of which the model says nothing."""
     stack = scans(repeats=1, rows=9)
     wave = 0.7 * np.cos(np.linspace(0, 3, 9))[:, None]
-    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 20.0, 7, 0),), np.ones(9))
+    noise = Noise((ChannelNoise("t.force", 1.5, 0.0, 0.0, 20.0, 7, 0),), np.ones(9))
     operator = whitener(replace(stack, left_open=wave), noise)
     covariance = 0.3**2 * np.eye(9) + wave @ wave.T
     assert np.allclose(operator(np.eye(9)) @ covariance @ operator(np.eye(9)).T, np.eye(9), atol=1e-10)
@@ -219,7 +234,7 @@ def test_the_model_votes_which_of_two_readings_is_the_wild_one():
 
 def test_two_wild_readings_of_three_do_not_become_physics():
     errors = np.random.default_rng(2).standard_normal((3, 60))
-    errors[1:, 20] = 4.5, 8.0
+    errors[1:, 20] = 4.5, 8.5
     stack = readings_of(errors)
     assert noise_of(stack).inflation.reshape(3, 60)[2, 20] > 2
 

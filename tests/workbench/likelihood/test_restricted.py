@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from workbench.likelihood.restricted import (
-    CORRELATIONS,
+    COURSES,
     DECLARED_WEIGHT,
     SPREADS,
     Repeated,
@@ -20,12 +20,13 @@ def shapes(repeats, rows):
     return np.kron(np.eye(repeats), line / np.sqrt(np.mean(line**2, axis=0)))
 
 
-def channel(repeats, rows, rho=0.0, off=0.0, seed=0, shuffled=False):
-    """AR(1) noise of size one about stations of any value, every repeat a scan that is off by an offset and a slope."""
+def channel(repeats, rows, rho=0.0, off=0.0, seed=0, shuffled=False, floor=0.0):
+    """Noise of size one about stations of any value, every repeat a scan that is off by an offset and a slope."""
     random = np.random.default_rng(seed)
     fresh = random.standard_normal((repeats, rows))
     for k in range(1, rows):
         fresh[:, k] = rho * fresh[:, k - 1] + np.sqrt(1 - rho**2) * fresh[:, k]
+    fresh = np.sqrt(1 - floor) * fresh + np.sqrt(floor) * random.standard_normal(fresh.shape)
     form = shapes(repeats, rows)
     values = fresh.ravel() + off * form @ random.standard_normal(2 * repeats)
     order = [random.permutation(rows) if shuffled else np.arange(rows) for _ in range(repeats)]
@@ -35,14 +36,15 @@ def channel(repeats, rows, rho=0.0, off=0.0, seed=0, shuffled=False):
 
 
 @pytest.mark.parametrize("shuffled", [False, True])
-@pytest.mark.parametrize("r, t", [(3, 0), (8, 6), (20, 11)])
-def test_it_is_that_of_dense_matrices(shuffled, r, t):
+@pytest.mark.parametrize("c, t", [(3, 0), (8, 6), (20, 11), (30, 0), (38, 6), (48, 11)])
+def test_it_is_that_of_dense_matrices(shuffled, c, t):
     """ln p with the values of the stations projected out, by covariance and inverse, one row of a scan lost."""
     one = channel(3, 12, 0.4, 1.0, shuffled=shuffled)
     follows = one.follows & (np.arange(36) != 17)
     one = Repeated(one.values, one.station, follows, one.shapes)
     chain, lag = np.cumsum(~follows), np.abs(np.subtract.outer(np.arange(36), np.arange(36)))
-    covariance = np.where(chain[:, None] == chain, CORRELATIONS[r] ** lag, 0.0)
+    rho, floor = COURSES[c]
+    covariance = np.where(chain[:, None] == chain, (1 - floor) * rho**lag, 0.0) + floor * np.eye(36)
     covariance = covariance + SPREADS[t] ** 2 * one.shapes @ one.shapes.T
     inverse, places = np.linalg.inv(covariance), np.eye(12)[one.station]
     within = places.T @ inverse @ places
@@ -50,8 +52,8 @@ def test_it_is_that_of_dense_matrices(shuffled, r, t):
     square = DECLARED_WEIGHT + one.values @ left @ one.values
     log_det = np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(within)[1]
     found = _likelihood(one)
-    assert found.log_p[r, t] == pytest.approx(-0.5 * ((DECLARED_WEIGHT + 24) * np.log(square) + log_det), abs=1e-6)
-    assert found.variance[r, t] == pytest.approx(square / (DECLARED_WEIGHT + 24), rel=1e-8)
+    assert found.log_p[c, t] == pytest.approx(-0.5 * ((DECLARED_WEIGHT + 24) * np.log(square) + log_det), abs=1e-6)
+    assert found.variance[c, t] == pytest.approx(square / (DECLARED_WEIGHT + 24), rel=1e-8)
 
 
 def test_short_scans_tell_the_correlation_without_bias():
@@ -59,6 +61,19 @@ def test_short_scans_tell_the_correlation_without_bias():
     benches = [[channel(3, 10, 0.45, 1.5, seed * 8 + k) for k in range(8)] for seed in range(60)]
     found = [one.rho for bench in benches for one in sizes_of(bench)]
     assert np.mean(found) == pytest.approx(0.45, abs=0.04)  # three standard errors of 60 benches
+
+
+def test_what_wanders_is_told_from_its_floor():
+    """As one AR(1) noise the same readings would have a correlation of 0.4 to 0.5, and nothing left after four."""
+    found = sizes_of([channel(3, 400, 0.85, 0.0, seed, floor=0.5) for seed in range(4)])
+    assert np.mean([one.rho for one in found]) == pytest.approx(0.85, abs=0.05)
+    assert np.mean([one.floor for one in found]) == pytest.approx(0.5, abs=0.08)
+
+
+def test_noise_that_wanders_as_a_whole_has_no_floor():
+    found = sizes_of([channel(3, 400, 0.85, 0.0, seed) for seed in range(4)])
+    assert np.mean([one.rho for one in found]) == pytest.approx(0.85, abs=0.04)
+    assert max(one.floor for one in found) < 0.05
 
 
 def test_a_spread_that_few_scans_hardly_show_is_not_taken_for_none():
@@ -76,4 +91,4 @@ def test_a_channel_without_repeats_takes_what_the_others_have_in_common():
 
 
 def test_where_nothing_was_repeated_all_is_as_declared():
-    assert sizes_of([channel(1, 20), channel(1, 5)]) == [Size(1.0, 0.0, 0.0)] * 2
+    assert sizes_of([channel(1, 20), channel(1, 5)]) == [Size(1.0, 0.0, 0.0, 0.0)] * 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from workbench.likelihood.whitening import Whitener, law_error
+from workbench.likelihood.whitening import Course, Whitener, law_error
 
 SIZES = (7, 5, 9)
 
@@ -20,8 +20,9 @@ def white():
     random, (first, _, last) = np.random.default_rng(3), channels()
     rho = random.uniform(0.0, 0.8, sum(SIZES))
     rho[[rows.start for rows in channels()]] = 0.0
+    floor = random.choice([0.0, 0.4], sum(SIZES))
     laws = [law_error(rows, random.standard_normal((rows.stop - rows.start, 3))) for rows in (first, last, first)]
-    return Whitener(random.uniform(0.5, 2.0, sum(SIZES)), rho, tuple(laws))
+    return Whitener(random.uniform(0.5, 2.0, sum(SIZES)), Course(rho, floor), tuple(laws))
 
 
 @pytest.mark.parametrize("which", [(0,), (1,), (2,), (0, 2), (2, 0)])
@@ -36,9 +37,9 @@ def test_a_law_is_integrated_out(white):
     random, rows = np.random.default_rng(5), channels()[1]
     wrong = np.zeros((sum(SIZES), 3))
     wrong[rows] = random.standard_normal((rows.stop - rows.start, 3))
-    plain = Whitener(white.sigma, white.rho)
+    plain = Whitener(white.sigma, white.course)
     back = np.linalg.inv(plain(np.eye(sum(SIZES))))
-    with_law = Whitener(white.sigma, white.rho, (law_error(rows, plain(wrong)[rows]),))
+    with_law = Whitener(white.sigma, white.course, (law_error(rows, plain(wrong)[rows]),))
     half = with_law(back @ back.T + wrong @ wrong.T)
     assert_allclose(with_law(half.T), np.eye(sum(SIZES)), atol=1e-9)
 
@@ -51,5 +52,5 @@ def test_errors_of_laws_that_are_none_are_left_out(white):
     assert found.laws == (*white.laws, further)
     assert nothing.half_log_det == 0.0
     residual = np.random.default_rng(6).standard_normal(sum(SIZES))
-    everything = Whitener(white.sigma, white.rho, (*white.laws, nothing, further))
+    everything = Whitener(white.sigma, white.course, (*white.laws, nothing, further))
     assert_allclose(found(residual), everything(residual), rtol=1e-12)
