@@ -152,7 +152,8 @@ def test_of_repeats_in_random_order_some_are_asked():
     for k in range(1, n):
         error[:, k] = 0.5 * error[:, k - 1] + np.sqrt(0.75) * error[:, k]
     number, place = np.repeat((0, 1, 2), n), np.concatenate([random.permutation(n) for _ in range(3)]) / n
-    found = noise_of(stacked([table({"force": 0.2 * error.ravel()}, 0.2, number, number, displacement=place)])).channels[0]
+    stack = stacked([table({"force": 0.2 * error.ravel()}, 0.2, number, number, displacement=place)])
+    found = noise_of(stack).channels[0]
     assert found.pairs == 2 * MOST_SHUFFLED
     assert found.scale == pytest.approx(1.0, rel=0.15)  # three standard errors of 500 correlated differences
     assert found.rho * (1 - found.floor) == pytest.approx(0.5, abs=0.15)
