@@ -30,6 +30,7 @@ MOST_SHUFFLED = 250  # of them where repeats go through them in other orders: ea
 ORDERED = 50  # stations that neighbours in a scan are apart at most, where repeats go through them in one order
 MOST_SCANS = 80  # that are asked what a scan as a whole is off by; so many know it to 6 %
 RUN = 50  # neighbouring stations of a longer table that are kept together
+ROUNDS = 20  # in which the size of what is not cut is found
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
 
 
@@ -142,7 +143,7 @@ def _shapes(table: Table, u: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 def _within(stack: Stack, residual: np.ndarray) -> list[_Deviation]:
     """What repeats of every channel disagree by, less what a scan as a whole is off by. residual: over u (n,)"""
-    return [_within_scans(stack, c, residual, _deviation(stack, c, residual)) for c in stack.channels]
+    return [_within_scans(stack, c, residual, _deviation(stack, c, residual, np.zeros(c.size))) for c in stack.channels]
 
 
 def _wild_part(within: Sequence[_Deviation]) -> np.ndarray:
@@ -174,25 +175,26 @@ class _Deviation:
     growth: float
 
 
-def _deviation(stack: Stack, channel: Channel, residual: np.ndarray) -> _Deviation:
+def _deviation(stack: Stack, channel: Channel, residual: np.ndarray, vote: np.ndarray) -> _Deviation:
+    """vote: of the model on every row of the channel (n_c,)"""
     stations = matched_rows(stack.tables[channel.table])
     spread, middle, row = np.full((3, channel.size), np.nan)
     if stations is None:
         return _Deviation(spread, middle, row, 1.0)
     values = residual[channel.rows][stations]  # (stations, repeats)
     repeats = values.shape[1]
-    votes = np.column_stack([values, np.zeros(len(values))])
+    votes = np.column_stack([values, vote[stations].mean(axis=1)])
     growth = float(np.sqrt(repeats / (repeats - 1)))
     spread[stations] = (values - values.mean(axis=1, keepdims=True)) * growth
     middle[stations] = values - np.median(values, axis=1, keepdims=True)
     row[stations] = values - np.median(votes, axis=1, keepdims=True)
     lost = np.flatnonzero(np.bincount(stations.ravel(), minlength=channel.size) == 0)
     if 0 < len(lost) < stations.size:
-        row[lost] = _of_lost(stack.tables[channel.table], residual[channel.rows], lost)
+        row[lost] = _of_lost(stack.tables[channel.table], residual[channel.rows], vote, lost)
     return _Deviation(spread, middle, row, growth)
 
 
-def _of_lost(table: Table, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def _of_lost(table: Table, values: np.ndarray, vote: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """By how much readings of which another repeat has none are off the median of those that there are and of the
     model; where there are none, of their neighbours in the scan and of the model (rows,)."""
     near, next_to = near_rows(table, rows), np.append(follows(table), False)
@@ -200,33 +202,44 @@ def _of_lost(table: Table, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
     before = np.where(alone & next_to[rows], rows - 1, -1)
     after = np.where(alone & next_to[rows + 1], rows + 1, -1)
     asked = np.column_stack([near, before, after])
-    votes = np.column_stack([np.where(asked >= 0, values[asked], np.nan), np.zeros(len(rows))])
+    votes = np.column_stack([np.where(asked >= 0, values[asked], np.nan), vote[rows]])
     return values[rows] - np.nanmedian(votes, axis=1)
 
 
 def _within_scans(stack: Stack, channel: Channel, residual: np.ndarray, whole: _Deviation) -> _Deviation:
-    """The deviations less mean and slope of every scan that is long enough to have them."""
-    u, off, free = stack.u[channel.rows], np.zeros(channel.size), np.ones(channel.size)
+    """The deviations less mean and slope of every scan that is long enough to have them. What all repeats are off the
+    model by in the same way is no vote of the model for one of them."""
+    u, free = stack.u[channel.rows], np.ones(channel.size)
+    off, vote = np.zeros((2, channel.size))
+    common = residual[channel.rows] - whole.spread / whole.growth
     for rows in stack.tables[channel.table].scans:
         known = rows[np.isfinite(whole.spread[rows])]
         if len(known) < SHORTEST_SCAN:
             continue
         shapes = scan_shapes(u[rows])
-        values = np.clip(whole.spread[known], *_fence(whole.spread[known]))
-        weights = np.linalg.lstsq(shapes[np.searchsorted(rows, known)], values, rcond=None)[0]
-        off[rows] = shapes @ weights / whole.growth
+        among = shapes[np.searchsorted(rows, known)]
+        off[rows] = shapes @ _robust_weights(among, whole.spread[known]) / whole.growth
+        vote[rows] = shapes @ _robust_weights(among, common[known])
         free[known] = np.sqrt(len(known) / (len(known) - 2))
     left = residual.copy()
     left[channel.rows] -= off
-    found = _deviation(stack, channel, left)
+    found = _deviation(stack, channel, left, vote)
     return replace(found, spread=found.spread * free)
 
 
-def _fence(values: np.ndarray) -> tuple[float, float]:
-    """Where a wild reading is cut before a line is drawn through the others."""
-    middle = float(np.median(values))
-    reach = WILD * 1.4826 * float(np.median(np.abs(values - middle))) + 1e-300
-    return middle - reach, middle + reach
+def _robust_weights(shapes: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Of shapes (n, q) in values (n,), what is left cut at WILD times its size (Huber, Robust Statistics (1981), 7.8).
+
+    Where the uncertainty of a reading is small, an offset of a whole scan is many of it: it is what is left that tells
+    a wild reading.
+    """
+    inverse, found = np.linalg.pinv(shapes), np.zeros(len(values))
+    for _ in range(ROUNDS):
+        left = values - found
+        reach = WILD * 1.4826 * float(np.median(np.abs(left - np.median(left)))) + 1e-300
+        weights = inverse @ (found + np.clip(left, np.median(left) - reach, np.median(left) + reach))
+        found = shapes @ weights
+    return weights
 
 
 def scan_shapes(u: np.ndarray) -> np.ndarray:
@@ -242,7 +255,7 @@ def _size(deviation: _Deviation) -> float:
     if len(d) == 0:
         return 1.0
     size = np.sqrt(np.mean(d**2)) + 1e-12
-    for _ in range(20):
+    for _ in range(ROUNDS):
         size = np.sqrt(np.mean(np.minimum(d**2, (WILD * size) ** 2)) / TAME_SHARE) + 1e-12
     return float(size)
 
