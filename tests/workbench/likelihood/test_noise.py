@@ -240,6 +240,34 @@ def test_two_wild_readings_of_three_do_not_become_physics():
     assert noise_of(stack).inflation.reshape(3, 60)[2, 20] > 2
 
 
+def remounted(seed):
+    """Two scans of 60 readings, every fifth known five times as well, the first scan 3 units off as a whole."""
+    u = np.where(np.arange(60) % 5, 1.0, 0.2)
+    errors = u * np.random.default_rng(seed).standard_normal((2, 60))
+    errors[0] += 3.0
+    return errors, np.tile(u, 2)
+
+
+def in_two_scans(errors, u):
+    number, place = np.repeat(np.arange(2), 60), np.tile(np.linspace(0, 1, 60), 2)
+    return stacked([table({"force": errors.ravel()}, u, number, number, displacement=place)])
+
+
+def test_an_offset_that_is_many_uncertainties_of_some_readings_makes_none_of_them_wild():
+    found = noise_of(in_two_scans(*remounted(8)))
+    assert found.inflation.max() < 1.5 and found.channels[0].wild == 0
+
+
+@pytest.mark.parametrize("scan, wild", [(0, 2.5), (0, -2.5), (1, 2.5), (1, -2.5)])
+def test_the_model_votes_on_scans_less_what_both_are_off_by(scan, wild):
+    """Half of what the first is off by is common to both, 7 uncertainties of the readings that are known best."""
+    errors, u = remounted(9)
+    errors[scan, 20] += wild
+    found = noise_of(in_two_scans(errors, u)).inflation
+    assert np.argmax(found) == 60 * scan + 20 and found[60 * scan + 20] > 2
+    assert np.delete(found, 60 * scan + 20).max() < 1.5
+
+
 def test_what_all_repeats_show_is_not_wild():
     errors = np.random.default_rng(3).standard_normal((3, 60))
     errors[:, 20] += 10.0
