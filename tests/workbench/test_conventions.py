@@ -77,6 +77,18 @@ def test_what_an_effect_may_be_is_no_convention(right, tmp_path):
     assert settled(mistaken(weak, right["dq"], tmp_path / "weak")).are_right
 
 
+def test_a_wild_reading_of_the_drag_is_no_exchange(right, tmp_path):
+    """It gives power; speed for torque makes that a small speed of a large torque, which gives as little."""
+
+    def wild(frame):
+        torque = frame["torque_Nm"].to_numpy().copy()
+        torque[np.argmin(np.abs(frame["speed_rpm"]))] *= -2.0
+        return frame.assign(torque_Nm=torque)
+
+    folder = mistaken(Mistake("wild", (), ("drag.csv",), wild), right["dq"], tmp_path / "wild")
+    assert settled(folder).are_right
+
+
 @pytest.mark.parametrize("stated, is_right", [("v_ll_V = 1", True), ("speed_rpm = 1", False)])
 def test_a_factor_that_is_stated_is_not_doubted(stated, is_right, right, tmp_path):
     line = next(mistake for mistake in MISTAKES["dq"] if mistake.words == "phase for line voltage")

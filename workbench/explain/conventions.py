@@ -28,6 +28,7 @@ from workbench.data.conventions import (
     LeftOut,
     Offset,
     Scaled,
+    SwappedColumns,
     TemperatureScale,
     angle_factors,
     applied,
@@ -251,7 +252,8 @@ class _Reader:
         """Whether every channel that a reading improves is well met with it."""
         sized = any(isinstance(f, (Scaled, AngleUnit, Offset, TemperatureScale)) for f in reading.fixes)
         if self.table.kind == "drag" and reading.fixes:
-            return self._is_loud and max(reading.errors.values()) < POWER
+            exchanged = any(isinstance(f, SwappedColumns) for f in reading.fixes)  # their product is the same power
+            return self._is_loud and not exchanged and max(reading.errors.values()) < POWER
         most = EXPLAINED if sized else EXPLAINED_SIGN
         before = list(self.as_it_is.errors.values())
         return all(now <= most or now > BETTER * was for was, now in zip(before, reading.errors.values()))
