@@ -62,11 +62,11 @@ class ShuntHeating(StateEffect):
 
 def has_velocity(conditions: Columns) -> bool:
     """Whether the velocity of each row is known, and with it how much is lost in the circuit."""
-    return "velocity" in conditions or "frequency" in conditions
+    return "velocity" in conditions or {"frequency", "amplitude"} <= set(conditions)
 
 
 def rms_velocity(conditions: Columns) -> np.ndarray:
     """RMS velocity of each row [m/s]: of the sine, or the one that is held."""
-    if "frequency" in conditions:
+    if {"frequency", "amplitude"} <= set(conditions):
         return 2 * np.pi * conditions["frequency"] * conditions["amplitude"] / np.sqrt(2.0)
     return np.abs(conditions["velocity"])

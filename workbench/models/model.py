@@ -48,10 +48,11 @@ class Model:
         conditions = self._given(table, self.true_conditions(table))
         response = self.base.respond(design, kind, conditions)
         _require_answers(table, response | _between_lines(response, table))
+        told = self._given(table, {**conditions, **order})
         for effect in self._of(ResponseEffect):
-            response = dict(effect.on_response(response, {**conditions, **order}, kind, design))
+            response = dict(effect.on_response(response, told, kind, design))
         for effect in self._of(InstrumentEffect):
-            response = dict(effect.on_reading(response, {**conditions, **order}, kind))
+            response = dict(effect.on_reading(response, told, kind))
         return response | _between_lines(response, table)
 
     def true_conditions(self, table: Table) -> dict[str, np.ndarray]:

@@ -354,9 +354,7 @@ def verdict_sentence(d: Diagnosis) -> str:
     """The verdict of a diagnosis in plain words."""
     names = [plain(name) for name in d.names]
     return {
-        "nothing_missing": lambda: (
-            "Nothing is missing that these data would show plainly: the model with its tolerances explains them."
-        ),
+        "nothing_missing": lambda: _nothing_missing(d),
         "effect": lambda: f"What is missing is {names[0]}{_size(d)}.",
         "group": lambda: f"What is missing is one of {listed(names, 'or')}; these data cannot tell which.{_besides(d)}",
         "pair": lambda: f"Two effects are missing together: {listed(names)}.",
@@ -373,6 +371,13 @@ def _convention(names: list[str]) -> str:
 
 
 _COUNTS = {3: "Three", 4: "Four", 5: "Five", 6: "Six"}
+
+
+def _nothing_missing(d: Diagnosis) -> str:
+    plainly = "Nothing is missing that these data would show plainly"
+    if d.p_nothing_missing >= LIKELY:
+        return f"{plainly}: the model with its tolerances explains them."
+    return f"{plainly}; something smaller probably is{_likely(d, ': likeliest ')}."
 
 
 def _explains(names: list[str]) -> str:
@@ -529,7 +534,7 @@ def conclusions(d: Diagnosis) -> tuple[str, ...]:
 
 
 def _can_be_said(d: Diagnosis) -> tuple[str, ...]:
-    if d.p_nothing_missing > IMPROBABLE:
+    if d.p_nothing_missing > IMPROBABLE or d.verdict == "nothing_missing":
         return ()
     said = ["It can be concluded that the model with its tolerances does not explain these data."]
     best = min((r for r in d.ranking if r.parameters), key=lambda r: r.chi2_per_n_after, default=None)

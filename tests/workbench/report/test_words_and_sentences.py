@@ -231,6 +231,18 @@ def test_cannot_tell_is_of_what_its_probability_is_of(diagnosis):
     assert verdict_sentence(loud).startswith("Something is missing") and "that something is missing" in meaning(loud)
 
 
+def test_what_is_probably_there_but_too_small_to_show_is_no_contradiction(diagnosis):
+    first = replace(diagnosis.ranking[0], probability=0.52)
+    found = replace(
+        of(diagnosis, "nothing_missing"), names=(), ranking=(first,), sure=0.97, probability=0.6, p_nothing_missing=0.046
+    )
+    said = verdict_sentence(found)
+    assert "would show plainly; something smaller probably is: likeliest" in said and "there with 52 %" in said
+    assert "explains them" not in said and not any("does not explain" in line for line in conclusions(found))
+    quiet = replace(found, p_nothing_missing=0.9)
+    assert "the model with its tolerances explains them" in verdict_sentence(quiet)
+
+
 def test_what_is_likely_and_not_sure_enough_for_its_name_is_told_all_the_same(diagnosis):
     first = replace(diagnosis.ranking[0], probability=0.888)
     found = replace(of(diagnosis, "cannot_tell"), names=(), ranking=(first,), sure=0.97, probability=0.99)

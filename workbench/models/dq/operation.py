@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from math import sqrt
 
 import numpy as np
@@ -32,14 +33,26 @@ class Operation:
     def __init__(self, design: DqMachine, conditions: Columns):
         self.design, self.conditions = design, conditions
         self.rows = len(next(iter(conditions.values())))
-        self.speed = conditions.get("speed", np.zeros(self.rows))
-        self.omega = design.pole_pairs * self.speed
         self.resistance = design.resistance * self._warm(design.copper_coefficient, "winding_T")
         self.psi_m = design.psi_m * self._warm(design.remanence_coefficient, "magnet_T")
         self.resistance = self.resistance * conditions.get("resistance_factor", 1.0)
         self.psi_m = self.psi_m * conditions.get("flux_factor", 1.0)
+
+    @cached_property
+    def speed(self) -> np.ndarray:
+        """Mechanical [rad/s]."""
+        return self.conditions["speed"]
+
+    @cached_property
+    def omega(self) -> np.ndarray:
+        """Electrical [rad/s]."""
+        return self.design.pole_pairs * self.speed
+
+    @cached_property
+    def iron_conductance(self) -> np.ndarray:
+        """Beside the induced voltage [S]."""
         turning = np.maximum(np.abs(self.omega), _STILL)
-        self.iron_conductance = design.iron_conductance + design.iron_hysteresis / turning
+        return self.design.iron_conductance + self.design.iron_hysteresis / turning
 
     def _warm(self, coefficient: float, column: str) -> np.ndarray:
         if not coefficient or column not in self.conditions:
