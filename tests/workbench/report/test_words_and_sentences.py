@@ -234,7 +234,7 @@ def test_cannot_tell_is_of_what_its_probability_is_of(diagnosis):
 def test_what_is_probably_there_but_too_small_to_show_is_no_contradiction(diagnosis):
     first = replace(diagnosis.ranking[0], probability=0.52)
     found = replace(
-        of(diagnosis, "nothing_missing"), names=(), ranking=(first,), sure=0.97, probability=0.6, p_nothing_missing=0.046
+        of(diagnosis, "nothing_missing"), names=(), ranking=(first,), sure=0.97, probability=0.6, p_nothing_missing=0.05
     )
     said = verdict_sentence(found)
     assert "would show plainly; something smaller probably is: likeliest" in said and "there with 52 %" in said
