@@ -16,7 +16,6 @@ from math import log, log1p
 from pathlib import Path
 
 import numpy as np
-import scipy
 
 from effects.base import Effect
 from workbench.data.stack import Channel
@@ -34,7 +33,6 @@ from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import signatures_of
 from workbench.models.model import Model
 
-NOISE_BAND = 0.95  # share of models as good as they can be whose chi2/n stays inside what noise alone makes
 START, ACCEPTED, REFUSED = "start", "accepted", "refused"
 TOGETHER = " + "  # between effects of one step
 OF_CHANNELS = ("rms_error", "noise_floor", "units", "rms_error_percent")
@@ -167,14 +165,9 @@ def decide(before: Bench, after: Bench, odds: float) -> tuple[str, str]:
         words += "; these conditions have no regions, so that prediction beyond them was not tested"
     if odds <= 0:
         return REFUSED, words
-    if old.blocks and new.chi2_per_n > max(old.chi2_per_n, noise_alone(new.n)):
+    if old.blocks and new.chi2_per_n > max(old.chi2_per_n, new.without_fault):
         return REFUSED, f"{words}: it rises"
     return ACCEPTED, words
-
-
-def noise_alone(rows: int) -> float:
-    """chi2/n of so many rows that noise alone stays below with probability ``NOISE_BAND``."""
-    return float(scipy.stats.chi2.ppf(NOISE_BAND, rows)) / rows
 
 
 def _nats(odds: float) -> str:
