@@ -1,5 +1,6 @@
 """Ordinary mistakes of a laboratory are named as what they are, and a right campaign gets no convention."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -75,6 +76,16 @@ def test_what_an_effect_may_be_is_no_convention(right, tmp_path):
     """sqrt(3/2) would be line for phase and peak for RMS at once; a device that is off by a fifth is likelier."""
     weak = Mistake("a fifth less", ("unit_factor",), ("back_emf.csv",), scaled(("v_ll_V",), np.sqrt(2 / 3)))
     assert settled(mistaken(weak, right["dq"], tmp_path / "weak")).are_right
+
+
+def test_poles_that_are_declared_as_pole_pairs_are_thought_of(right, tmp_path):
+    device = (right["dq"] / "campaign.toml").read_text(encoding="utf-8")
+    pairs = int(re.search(r"pole_pairs = (\d+)", device)[1])
+    folder = mistaken(Mistake("nothing", (), (), lambda frame: frame), right["dq"], tmp_path / "poles")
+    (folder / "campaign.toml").write_text(device.replace(f"pole_pairs = {pairs}", f"pole_pairs = {2 * pairs}"))
+    assert settled(folder).advice[-1].endswith(f"[device] pole_pairs = {pairs}.")
+    line = next(m for m in MISTAKES["dq"] if m.words == "phase for line voltage")
+    assert not any("pole_pairs" in words for words in settled(mistaken(line, right["dq"], tmp_path / "line")).advice)
 
 
 def test_a_wild_reading_of_the_drag_is_no_exchange(right, tmp_path):

@@ -100,7 +100,7 @@ class Conventions:
 
     found: the fixes;  campaign: with them applied;  probability: that something is wrong with the conventions
     names: of what is wrong, from ``data.conventions.NAMES``, with the names of readings that are as simple and likely
-    sentences: for people;  fix: the text for campaign.toml;  checks: what needs no model
+    sentences: what it looks like, for people;  fix: the text for campaign.toml;  checks: what needs no model
     equivalents: other readings that the data cannot tell from the found one, simplest first
     """
 
@@ -117,6 +117,31 @@ class Conventions:
     def are_right(self) -> bool:
         """Whether nothing has to be settled."""
         return not self.found
+
+    @property
+    def advice(self) -> tuple[str, ...]:
+        """What to do before effects are looked for."""
+        said = ("Say so in campaign.toml and no effect is looked for before: the text is below.",)
+        if any(isinstance(found.fix, Scaled) for found in self.found):
+            said += ("Where the readings are right as they are, a factor of 1 says so, and it is not doubted again.",)
+        return said + self._of_poles
+
+    @property
+    def _of_poles(self) -> tuple[str, ...]:
+        """Voltages at a speed and torques at a current go with the pole pairs that are declared."""
+        pairs = pole_pairs(self.campaign)
+        ways = (tuple(found.fix for found in self.found), *self.equivalents)
+        factor = next((way[0].factor for way in ways if _goes_with_poles(way)), None)
+        if pairs is None or factor is None:
+            return ()
+        right = f"[device] pole_pairs = {pairs / factor:g}"
+        return (f"Poles for pole pairs look like this, too: then no factor is right, but {right}.",)
+
+
+def _goes_with_poles(fixes: tuple[Fix, ...]) -> bool:
+    """Whether voltages and torques are off by two, all the same way, and nothing else is."""
+    scaled = [fix for fix in fixes if isinstance(fix, Scaled) and {*map(quantity, fix.columns)} <= {"v", "torque"}]
+    return len(scaled) == len(fixes) > 0 and {fix.factor for fix in scaled} in ({0.5}, {2.0})
 
 
 def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: None) -> Conventions:
@@ -147,7 +172,7 @@ def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: floa
         complaints=conventions.campaign.complaints,
         checks=conventions.checks,
         fix=conventions.fix,
-        conventions=conventions.sentences,
+        conventions=(*conventions.sentences, *conventions.advice),
         provenance=dict(conventions.campaign.file_hashes),
     )
 
@@ -620,9 +645,6 @@ def _sentences(fixes: tuple[Fix, ...], others: list[_Whole]) -> tuple[str, ...]:
     if others:
         same = "; ".join(map(_words, others[:SAID]))
         said.append(f"These data cannot tell that from: {same}.")
-    said.append("Say so in campaign.toml and no effect is looked for before: the text is below.")
-    if any(isinstance(fix, Scaled) for fix in fixes):
-        said.append("Where the readings are right as they are, a factor of 1 says so, and it is not doubted again.")
     return tuple(said)
 
 

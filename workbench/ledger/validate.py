@@ -18,6 +18,7 @@ from workbench.data.kinds import KINDS
 from workbench.data.stack import Channel, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
+from workbench.explain.conventions import settle
 from workbench.findings import Axis, PredictedChannel, Pull, ValidatedChannel, Validation
 from workbench.ledger.applied import Known, Prediction, as_drawn, corrected, predicted, readings
 from workbench.ledger.learned import Learned, LearnedRange, Source, outside
@@ -45,8 +46,9 @@ def validate(
         WorkbenchError: the file has no fitted inputs, or the model cannot answer the tables.
     """
     source = _source(learned)
-    tables = tuple(thinned(table, MOST_ROWS) for table in campaign.tables)
     drawn = model_of_device(learned.device, f"the model file of {source.campaign}") if nominal is None else nominal
+    read_otherwise = _other_conventions(drawn, campaign, progress)
+    tables = tuple(thinned(table, MOST_ROWS) for table in campaign.tables)
     progress("preparing the model for these rows")
     drawn = replace(drawn, base=drawn.base.prepared(drawn.design, tables, progress))
     errors = _calibrations(campaign, library)
@@ -65,7 +67,7 @@ def validate(
         calibrations=tuple(map(_pull, errors, best.calibration)),
         base_calibrations=tuple(map(_pull, errors, base.calibration)),
         range_left=tuple(words for one in left for words in one.words),
-        complaints=_limits(learned, source, campaign, tables),
+        complaints=(*read_otherwise, *_limits(learned, source, campaign, tables)),
         provenance=dict(campaign.file_hashes),
     )
 
@@ -219,6 +221,14 @@ def _words(table: Table, name: str, beyond: np.ndarray, ranges: Sequence[Learned
 
 
 # ---- what limits the conclusions ------------------------------------------------------------------------------------
+
+
+def _other_conventions(drawn: Model, campaign: Campaign, progress: Callable[[str], None]) -> tuple[str, ...]:
+    """What the columns look like instead of what is said of them: a calibration would take it up without a word."""
+    settled = settle(drawn, campaign, progress)
+    if settled.are_right:
+        return ()
+    return (*settled.sentences, f"`airgap diagnose` of {campaign.id} prints the text for its campaign.toml.")
 
 
 def _limits(learned: Learned, source: Source, campaign: Campaign, used: Sequence[Table]) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from figures.report import KeyNumber, KeyNumbers, Part, Picture, Remark, Section
 from figures.style import BLACK, BLUE, ORANGE, new_figure, show_grid, styled
 from workbench.findings import PredictedChannel, Pull, ValidatedChannel, Validation
 from workbench.report.channels import below
-from workbench.report.sentences import ALARMING_P, ALARMING_PULL
+from workbench.report.sentences import ALARMING_P, ALARMING_PULL, GOAL
 from workbench.report.words import (
     amount,
     axis_label,
@@ -65,7 +65,7 @@ def validation_sentence(v: Validation) -> str:
     return (
         f"Without anything of the device being fitted to these {rows(v.corrected)} readings, chi²/n is "
         f"{chi2_text(chi2(v.corrected))} where the device as drawn gives {chi2_text(chi2(v.base))}"
-        f"{', with instruments further off than they are declared' if _far(v.base_calibrations) else ''}; "
+        f"{' though its instruments may be further off than they are declared' if _far(v.base_calibrations) else ''}; "
         f"{percent(share(v.corrected))} of the readings lie in the predicted 90 % band "
         f"(as drawn {percent(share(v.base))})."
     )
@@ -86,8 +86,13 @@ def _worse(v: Validation) -> list[str]:
     """Nothing where the device as drawn is right only with instruments that are wrong."""
     if _far(v.base_calibrations) and not _far(v.calibrations):
         return []
-    worse = [c.channel for c, drawn in zip(v.corrected, v.base) if c.rms_error > drawn.rms_error]
+    worse = [c.channel for c, drawn in zip(v.corrected, v.base) if _is_worse(c, drawn)]
     return [f"What was learned makes {listed(worse)} worse than the device as drawn."] if worse else []
+
+
+def _is_worse(c: ValidatedChannel, drawn: ValidatedChannel) -> bool:
+    """Of a channel that is not at its noise."""
+    return c.rms_error > drawn.rms_error and c.chi2_per_n > GOAL
 
 
 def _unanswered(v: Validation) -> list[str]:

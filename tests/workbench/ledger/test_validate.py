@@ -44,6 +44,18 @@ def test_other_data_of_the_device_are_predicted(learned, tmp_path):
     assert right.n == 120 and right.unit == "N" and right.outside_range == 0.0 and found.range_left == ()
 
 
+def test_columns_that_look_like_another_convention_are_said_to(learned, tmp_path):
+    """Forces in kN under N: a gain of the instrument would take it up."""
+    campaign = other(tmp_path / "kn")
+    (table,) = campaign.tables
+    force = table.responses["force"]
+    small = replace(table, responses={"force": replace(force, values=force.values / 1000)})
+    found = validate(learned, replace(campaign, tables=(small,)), LIBRARY, nominal=NOMINAL)
+    assert "force looks 1000 times too small" in found.complaints[0]
+    assert any("`airgap diagnose` of" in words for words in found.complaints)
+    assert not any("look" in words for words in validate(learned, campaign, LIBRARY, nominal=NOMINAL).complaints)
+
+
 def test_only_the_calibration_of_the_new_instruments_moves(learned, tmp_path):
     """A new zero of the force cell is found; a stiffness that has changed is not, and shows as an error."""
     shifted = validate(learned, other(tmp_path / "a", extra=lambda x: 3e5 * x**3 + 0.06), LIBRARY, nominal=NOMINAL)
