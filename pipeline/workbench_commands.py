@@ -133,6 +133,9 @@ def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path
     if options.model or saved.exists():
         learned = read_model(saved, effects)
         model = with_effects(learned, model, saved)
+        if model.effects and not options.model:
+            names = ", ".join(effect.name() for effect in model.effects)
+            print(f"{saved}: the model starts with what was learned before, {names}; without the file it is as drawn")
         if learned.source is not None and learned.source.campaign != campaign.id:
             print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)
     return campaign, effects, model, out

@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatch
 from pathlib import Path
 
@@ -16,17 +16,27 @@ import numpy as np
 from disk import write_atomically
 from workbench.data.column_units import FACTORS
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
-from workbench.data.guess import UNTOLD_INDUCTANCE, Guess, guesses, is_driven, likely_kind, likely_model
+from workbench.data.guess import (
+    UNTOLD_INDUCTANCE,
+    Guess,
+    guesses,
+    is_driven,
+    is_rms,
+    likely_kind,
+    likely_model,
+)
 from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw, used_twice
 from workbench.data.scatter import noise_of
-from workbench.data.schema import FILE, campaign_file
+from workbench.data.schema import FILE, ColumnEntry, TableEntry, campaign_file
 from workbench.errors import WorkbenchError
 
 _OF_THE_LARGEST = f"assumed: {100 * ZERO_DRIFT:g} % of the largest reading"
 _BOOKKEEPING = ("scan", "repeat", "holdout")
 _WHICH_INDUCTANCE = "name: l_a of a phase fed alone, l_bc (l_ab, l_ca) between two lines, l_m of B by A"
+_OF_AXES = ("i_d", "i_q", "v_d", "v_q")
+_OF_A_SINE = ("Ns_per_m",)  # units of a size that is not read
 _HEAD = """# A campaign: what was measured, and how well it is known. Fill in every "?"; see docs/campaign.md.
 [campaign]
 id = {id}  # names the folder of the results
@@ -39,21 +49,24 @@ _SYSTEMATIC = "[systematic]  # errors that all rows of an instrument share; bett
 
 @dataclass(frozen=True, eq=False)
 class _Sheet:
-    """A data file with what its columns probably are."""
+    """A data file with what its columns probably are. before: what another campaign says of the same headings"""
 
     raw: RawTable
     columns: tuple[Guess, ...]
     kind: str
+    before: Mapping[str, ColumnEntry] = field(default_factory=dict)
 
 
 def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
     """The text of a ``campaign.toml`` for some data files of one folder.
 
-    like: folder of a campaign of the same device, whose device, tolerances and instruments are taken over
+    like: folder of a campaign of the same device, whose device, tolerances, instruments and, under the same headings,
+        columns are taken over
     Raises:
         WorkbenchError: a file is not there, is no table, or lies in another folder.
     """
-    sheets = [_sheet(path) for path in paths]
+    tables = [] if like is None else campaign_file(like).table
+    sheets = [_as_before(_sheet(path), tables) for path in paths]
     folder = paths[0].resolve().parent
     if any(path.resolve().parent != folder for path in paths):
         raise WorkbenchError(f"all files of a campaign lie in one folder; put them beside {paths[0]}.")
@@ -107,6 +120,23 @@ def _sheet(path: Path) -> _Sheet:
             raise used_twice(path.name, count, heading)
     columns = tuple(guesses(raw))
     return _Sheet(raw, columns, likely_kind([guess.quantity for guess in columns]))
+
+
+def _as_before(sheet: _Sheet, tables: Sequence[TableEntry]) -> _Sheet:
+    """Read as the table of another campaign that has most of its headings; its kind, where it has two or more."""
+    headings = {guess.heading.written for guess in sheet.columns}
+    shared = [{h: entry for h, entry in (t.columns or {}).items() if h in headings} for t in tables]
+    most = max(shared, key=len, default={})
+    kind = tables[shared.index(most)].kind if len(most) > 1 else sheet.kind
+    columns = tuple(replace(guess, quantity=_known_as(guess, most)) for guess in sheet.columns)
+    return replace(sheet, columns=columns, kind=kind, before=most)
+
+
+def _known_as(guess: Guess, before: Mapping[str, ColumnEntry]) -> str:
+    entry = before.get(guess.heading.written)
+    if entry is None:
+        return guess.quantity
+    return entry.role if entry.role in _BOOKKEEPING else entry.name or guess.heading.name
 
 
 def _repeats(sheet: _Sheet) -> int:
@@ -215,12 +245,22 @@ def _unknown(unit: str) -> str:
     return "" if known else f": the unit {unit} is not known; those that are stand in docs/campaign.md"
 
 
+def _as_parts(guess: Guess) -> str:
+    sine = guess.heading.unit in _OF_A_SINE
+    return ": an impedance is read as re and im, |Z| cos(phi) and |Z| sin(phi)" if sine else ""
+
+
 def _line(guess: Guess, sheet: _Sheet) -> str:
     heading, quantity = _text(guess.heading.written), guess.quantity
     named, asked = _name(guess)
+    if guess.heading.written in sheet.before:
+        entry = sheet.before[guess.heading.written].model_dump(exclude_defaults=True, by_alias=True)
+        return f"{heading} = {_value(entry)}"
     if not quantity or quantity == "time":
-        return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit)}"
-    if quantity not in (*_BOOKKEEPING, "direction") and not sheet.raw.holds_numbers(guess.place):
+        return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit) or _as_parts(guess)}"
+    if quantity == "direction" and not sheet.raw.holds_numbers(guess.place):
+        return f"# {heading} = {{ ... }}  # not read: a direction is +1 or -1, counter-clockwise +1"
+    if quantity not in _BOOKKEEPING and not sheet.raw.holds_numbers(guess.place):
         return f"# {heading} = {{ ... }}  # not read: it holds no number"
     if quantity in _BOOKKEEPING:
         return f'{heading} = {{ role = "{quantity}" }}'
@@ -243,7 +283,9 @@ def _name(guess: Guess) -> tuple[str, str]:
     """The key that names a quantity, where its heading does not, and a comment on what is to be filled in."""
     if guess.quantity == UNTOLD_INDUCTANCE:
         return 'name = "?", ', f"  # {_WHICH_INDUCTANCE}"
-    return ("" if guess.quantity == guess.heading.name else f"name = {_text(guess.quantity)}, "), ""
+    peak = is_rms(guess.heading) and guess.quantity in _OF_AXES
+    note = "  # RMS: peak is meant, `airgap diagnose` says the text for [conventions]" if peak else ""
+    return ("" if guess.quantity == guess.heading.name else f"name = {_text(guess.quantity)}, "), note
 
 
 def _noise(guess: Guess, sheet: _Sheet) -> tuple[str, str]:

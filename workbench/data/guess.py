@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from typing import Final
 
+import numpy as np
+
 from workbench.data.kinds import KINDS, Kind
 from workbench.data.raw_table import Heading, RawTable
 
@@ -30,6 +32,8 @@ _BOOKS: Final = {
     "scan": ("scan", "sweep"),
     "direction": ("direction", "richtung", "drehrichtung"), "holdout": ("holdout",),
 }  # fmt: skip
+_NUMBERS: Final = {"nr", "no", "nummer", "number"}
+LEAST_ROWS: Final = 5  # of every repeat that a column without another name counts
 _OF_DQ: Final = ("dq", "dyno_map", "no_load")  # how the names of kinds begin that a dq model answers first
 # Words of a heading -> quantity, for headings without a unit that is known.
 _WORDS: Final = {
@@ -57,6 +61,8 @@ _SHAFT: Final = {"mech", "mechanical", "mechanisch", "mechanische", "shaft", "we
 _SHAFT_POWER: Final = "power of the shaft"  # follows from torque, and beside none is that of a drive
 _LINE_VOLTAGES: Final = {"v_ab", "v_bc", "v_ca"}
 _PHASE_VOLTAGES: Final = {"v_a", "v_b", "v_c"}
+_RMS: Final = {"rms", "eff", "effektiv"}
+_MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _SCALED: Final = re.compile(r"^(?:m|k|u|M|c)(?=[A-Z]|ohm|Ohm|m_per_s|m$|s$)")
 
@@ -79,16 +85,33 @@ def guesses(raw: RawTable) -> list[Guess]:
         if any(quantity == other.quantity for other in found):
             quantity = ""
         unit = "s" if raw.holds_times(place) else heading.unit or _usual_unit(quantity, heading)
-        found.append(Guess(place, heading, quantity, unit))
-    for settled in (_shunted, _of_a_line, _of_lines, _of_a_damper, _of_a_drive):
+        found.append(Guess(place, heading, quantity or _counted(raw, place), unit))
+    for settled in (_of_a_sine, _shunted, _of_a_line, _of_lines, _of_a_damper, _of_a_drive):
         found = settled(found)
     return found
+
+
+def _counted(raw: RawTable, place: int) -> str:
+    """Repeats, where a column called a number counts few and each of them has several rows."""
+    if not _NUMBERS & set(_words(raw.headings[place].name)) or not raw.holds_numbers(place):
+        return ""
+    values, rows = np.unique(raw.values(place), return_counts=True)
+    few = np.array_equal(values, np.arange(1, len(values) + 1)) and len(values) > 1
+    return "repeat" if few and rows.min() >= LEAST_ROWS else ""
 
 
 def _usual_unit(quantity: str, heading: Heading) -> str:
     if quantity in _RATIOS:
         return "1"
     return "degC" if quantity.endswith("_T") and _words(heading.name)[-1] == "c" else ""
+
+
+def _of_a_sine(found: list[Guess]) -> list[Guess]:
+    """Size and angle over a frequency are no damping and no place of a rotor: an impedance has re and im."""
+    there = {g.quantity for g in found}
+    if "frequency" not in there or "re" in there:
+        return found
+    return [replace(g, quantity="") if g.quantity in ("damping", "angle_mech") else g for g in found]
 
 
 def _shunted(found: list[Guess]) -> list[Guess]:
@@ -134,6 +157,11 @@ def is_driven(columns: Sequence[Guess]) -> bool:
     return any(g.quantity == "power" and _of_shaft(g.heading) for g in columns)
 
 
+def is_rms(heading: Heading) -> bool:
+    """Whether a heading says that its values are RMS."""
+    return bool(_RMS & set(_words(heading.name)))
+
+
 def _of_shaft(heading: Heading) -> bool:
     return bool(_SHAFT & set(_words(heading.name)))
 
@@ -173,6 +201,7 @@ def _temperature(words: Sequence[str]) -> str:
 
 def _by_unit(unit: str, words: Sequence[str]) -> str:
     plain, prefix = _UNITS.get(_base(unit), ("", ""))
+    words = [w for w in words if w not in _MEANS] or words
     last = words[-1] if words else ""
     if prefix and last in ("d", "q", "ud", "uq", "id", "iq", "vd", "vq") and prefix in "vi":
         return f"{prefix}_{last[-1]}"

@@ -225,7 +225,7 @@ def _span(edges: np.ndarray, cell: int, unit: str) -> str:
 
 def _orders(c: Comparison):
     if not c.orders:
-        return "No channel was measured over an angle.", None
+        return "No channel was measured over a whole turn.", None
     tests = sum(len(spectrum.orders) for spectrum in c.orders)
     worst = max(c.orders, key=lambda spectrum: np.max(spectrum.amplitude / spectrum.floor))
     above = np.flatnonzero(tests * _order_chance(worst) < ALARMING_P)

@@ -216,6 +216,62 @@ def test_a_device_is_taken_over_from_another_campaign(tmp_path):
     )  # fmt: skip
 
 
+def test_headings_that_another_campaign_knows_are_read_as_there(tmp_path):
+    """No word of a file tells that Nr counts repeats and P is a force in kN."""
+    for name in ("old", "new"):
+        (tmp_path / name).mkdir()
+        rows = "".join(f"{n};{0.1 * k};{n + k}\n" for n in (1, 2) for k in range(8))
+        (tmp_path / name / "p.csv").write_text("Nr;v [m/s];P\n" + rows, encoding="utf-8")
+    columns = (
+        '"Nr" = { role = "repeat" }\n"v [m/s]" = { name = "velocity", unit = "m_per_s", role = "condition" }\n'
+        '"P" = { name = "force", unit = "kN", role = "response", u_random = "0.1 + 0.01*abs(y)" }\n'
+    )
+    table = f'[[table]]\nfile = "p.csv"\nkind = "force_loop"\n[table.columns]\n{columns}'
+    (tmp_path / "old" / "campaign.toml").write_text(f'[campaign]\nid = "old"\nrepeats = 2\n{table}', encoding="utf-8")
+    write_draft([tmp_path / "new" / "p.csv"], like=tmp_path / "old")
+    old, new = (read_campaign(tmp_path / name) for name in ("old", "new"))
+    for one, other in zip(old.tables, new.tables):
+        assert one.kind == other.kind and list(one.responses) == list(other.responses) == ["force"]
+        np.testing.assert_array_equal(one.responses["force"].random, other.responses["force"].random)
+        np.testing.assert_array_equal(one.repeat, other.repeat)
+
+
+@pytest.mark.parametrize(
+    "rows, book", [([1] * 6 + [2] * 6, True), (list(range(1, 13)), False), ([1] * 12, False), ([1, 1, 2, 2] * 3, True)]
+)
+def test_a_number_that_few_rows_share_counts_repeats(tmp_path, rows, book):
+    text = "Nr;v [m/s];F [N]\n" + "".join(f"{n};{0.1 * k};{k}\n" for k, n in enumerate(rows))
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    target, _ = write_draft([tmp_path / "a.csv"])
+    assert ('"Nr" = { role = "repeat" }' in target.read_text(encoding="utf-8")) == book
+
+
+def test_sizes_and_angles_of_an_impedance_are_not_read_as_something_else(tmp_path):
+    rows = "".join(f"{f};100;10;0.5\n" for f in range(1, 15))
+    (tmp_path / "z.txt").write_text("Frequenz [Hz];|Z| [Ns/m];Phase [°];Shunt [Ohm]\n" + rows, encoding="utf-8")
+    target, _ = write_draft([tmp_path / "z.txt"])
+    text = target.read_text(encoding="utf-8")
+    columns = text[text.index("[table.columns]") :]
+    assert "not read: an impedance is read as re and im" in columns
+    assert "angle_mech" not in columns and "damping" not in columns
+
+
+def test_a_direction_in_words_is_said_to_be_a_sign(tmp_path):
+    rows = "".join(f"{k};{k};{way}\n" for way in ("CW", "CCW") for k in range(8))
+    (tmp_path / "c.csv").write_text("Winkel [°];M [mNm];Richtung\n" + rows, encoding="utf-8")
+    target, _ = write_draft([tmp_path / "c.csv"])
+    assert "not read: a direction is +1 or -1" in target.read_text(encoding="utf-8")
+
+
+def test_rms_values_of_the_axes_are_read_and_said_to_be(tmp_path):
+    rows = "".join(f"0;{k};500;1;{k};2\n" for k in range(14))
+    heads = "Id_rms [A];Iq_eff [A];n [1/min];Ud_rms [V];Uq_rms [V];M [Nm]\n"
+    (tmp_path / "p.txt").write_text(heads + rows, encoding="utf-8")
+    target, _ = write_draft([tmp_path / "p.txt"])
+    text = target.read_text(encoding="utf-8")
+    assert all(f'name = "{name}"' in text for name in ("i_d", "i_q", "v_d", "v_q")) and text.count("RMS: peak") == 4
+
+
 def test_a_draft_never_overwrites_and_needs_one_folder(tmp_path):
     path = german_file(tmp_path)
     write_draft([path])
