@@ -125,7 +125,9 @@ TOLERANCES: Final[dict[str, tuple[Spread, ...]]] = {
 }
 # Of instruments of which no certificate is at hand, by the quantities that they read.
 CALIBRATIONS: Final[dict[tuple[str, ...], Spread]] = {
-    ("force", "re", "im", "damping"): Spread("force_gain", 'sigma = 0.005, kind = "gain"', "assumed: load cell of class 0.5"),
+    ("force", "re", "im", "damping"): Spread(
+        "force_gain", 'sigma = 0.005, kind = "gain"', "assumed: load cell of class 0.5"
+    ),
     ("torque",): Spread("torque_gain", 'sigma = 0.005, kind = "gain"', "assumed: torque cell of class 0.5"),
     ("voltage", "v_*"): Spread("voltage_gain", 'sigma = 0.005, kind = "gain"', "assumed: recorder and probes"),
     ("current", "i_*"): Spread("current_gain", 'sigma = 0.005, kind = "gain"', "assumed: clamps of class 0.5"),
