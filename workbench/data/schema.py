@@ -337,7 +337,8 @@ def _missing(loc: Location) -> str:
 
 
 def _meaning(loc: Location) -> str:
-    return (_keys_at(loc[:-1]) or {}).get(str(loc[-1]), "it")
+    """For a sentence, not for a manual that goes on below."""
+    return (_keys_at(loc[:-1]) or {}).get(str(loc[-1]), "it").removesuffix(", see below")
 
 
 def _unknown(loc: Location) -> str:

@@ -38,7 +38,8 @@ def _copied_rows(table: Table, lines: np.ndarray) -> list[str]:
     if not copies.any():
         return []
     first = int(lines[np.flatnonzero(copies)[0]])
-    return [f"{int(copies.sum())} of {table.rows} rows are exact copies of an earlier row (first in line {first})"]
+    said = f"{int(copies.sum())} of {table.rows} rows are exact copies of an earlier row (first in line {first})"
+    return [f"{said}; they count as readings of their own: delete what was pasted twice"]
 
 
 def _copied_repeats(table: Table, lines: np.ndarray) -> list[str]:
