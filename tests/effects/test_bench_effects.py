@@ -47,6 +47,15 @@ DAMPER = Model(DamperModel(), Damper(60.0, 1.2, 2.0, 20.0))
 DQ = Model(DqModel(), DqMachine(4, 0.1, 3e-3, 4e-3, 0.5))
 
 
+def test_a_shunt_whose_stroke_is_not_known_stays_cold():
+    """A frequency without an amplitude says nothing of the current."""
+    damper = Damper(50.0, 1.0, 2.0, 5.0)
+    asked = {"frequency": np.array([2.0]), "shunt": np.array([1.0])}
+    heated = ShuntHeating(0.01)
+    assert heated.on_state(asked, "damping_shunt", damper)["shunt"] == 1.0
+    assert heated.on_state({**asked, "amplitude": np.array([0.05])}, "damping_shunt", damper)["shunt"] > 1.0
+
+
 # ---- what is declared ------------------------------------------------------------------------------------------------
 
 

@@ -11,17 +11,20 @@ from scipy.optimize import brentq
 from effects.dq_design import DqMachine
 from effects.electrical.copper_drift import CopperDrift
 from effects.electrical.cross_saturation import CrossSaturation
+from effects.electrical.drive_delay import DriveDelay
 from effects.electrical.iron_loss_resistance import IronLossResistance
 from effects.electrical.quadrature_saturation import QuadratureSaturation
 from effects.electrical.remanence_drift import RemanenceDrift
 from effects.mechanical.friction_torque import FrictionTorque
 from electrical.dq import DriveLimits, operating_map
 from electrical.synchronous_machine import SynchronousMachine
+from tests.workbench.likelihood import tables
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
 from workbench.models.dq.control import least_current
 from workbench.models.dq.model import BASE
 from workbench.models.dq.operation import Operation, newton
+from workbench.models.model import Model
 
 MEASUREMENTS = Path(__file__).resolve().parents[3] / "measurements"
 PLAIN = DqMachine(4, 0.1, 3e-3, 4e-3, 0.5)
@@ -117,6 +120,17 @@ def test_temperatures_act_where_they_are_measured():
     assert emf[1] / emf[0] == pytest.approx(1 - 0.11)
     resistance = BASE.respond(warm, "phase_resistance", {"winding_T": np.array([20.0, 120.0])})["resistance"]
     assert resistance == pytest.approx([0.5, 0.5 * 1.393])
+
+
+def test_a_speed_that_is_not_measured_is_asked_for():
+    """By the machine itself, and by an effect that turns its voltages; a resistance needs none."""
+    read = {"v_d": np.zeros(1), "v_q": np.zeros(1), "torque": np.zeros(1)}
+    at = tables.table(read, 0.1, kind="dq_operation", i_d=np.zeros(1), i_q=np.ones(1))
+    for model in (Model(BASE, PLAIN), Model(BASE, PLAIN) + DriveDelay(1e-4)):
+        with pytest.raises(WorkbenchError, match="needs the condition 'speed', the table has i_d, i_q; add it"):
+            model.answers(at)
+    cold = tables.table({"resistance": np.zeros(1)}, 0.1, kind="phase_resistance", winding_T=np.full(1, 20.0))
+    assert Model(BASE, PLAIN).answers(cold)["resistance"] == 0.5
 
 
 def test_no_steady_state_is_said():
