@@ -106,7 +106,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Writes the table."""
     parser = argparse.ArgumentParser(description="what the diagnosis makes of what a campaign holds")
     parser.add_argument("folder", type=Path, help="campaigns that benchmarks.blind_campaigns wrote")
-    parser.add_argument("--out", type=Path, default=RESULTS / "lumped" / "information_used.csv")
+    parser.add_argument("--out", type=Path, default=RESULTS / "information_used.csv")
     chosen = parser.parse_args(arguments)
     try:
         write_table(chosen.out, used(chosen.folder, Processes()))
