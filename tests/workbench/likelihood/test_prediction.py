@@ -104,7 +104,7 @@ def test_a_gain_below_the_base_rate_is_refused_and_chance_does_not_refuse():
         assert decide(before, after, -0.2)[0] == REFUSED
 
 
-@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("order", [1, 4])
 def test_a_model_without_a_fault_stays_below_its_level_in_nineteen_of_twenty(order):
     """Tolerances and noise drawn as they are declared."""
     random, shapes = np.random.default_rng(6), of_polynomial(order, readings(1)).predictor.slopes
