@@ -153,4 +153,3 @@ def _root(n: int, correlation: float, floor: float) -> np.ndarray:
     """Of the covariance of a scan (n, n)."""
     lag = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
     return np.linalg.cholesky((1 - floor) * correlation**lag + floor * np.eye(n))
-

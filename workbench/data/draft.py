@@ -36,7 +36,6 @@ _OF_THE_LARGEST = f"assumed: {100 * ZERO_DRIFT:g} % of the largest reading"
 _BOOKKEEPING = ("scan", "repeat", "holdout")
 _WHICH_INDUCTANCE = "name: l_a of a phase fed alone, l_bc (l_ab, l_ca) between two lines, l_m of B by A"
 _OF_AXES = ("i_d", "i_q", "v_d", "v_q")
-_OF_A_SINE = ("Ns_per_m",)  # units of a size that is not read
 _HEAD = """# A campaign: what was measured, and how well it is known. Fill in every "?"; see docs/campaign.md.
 [campaign]
 id = {id}  # names the folder of the results
@@ -235,7 +234,8 @@ def _text(value: str) -> str:
 
 
 def _table(name: str, sheet: _Sheet) -> str:
-    kind = f"kind = {_text(sheet.kind)}  # what was measured, a guess; the kinds stand in docs/campaign.md"
+    source = "as before" if sheet.before else "a guess"
+    kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
     lines = ["", "[[table]]", f"file = {_text(name)}", kind, "[table.columns]  # heading = what the column holds"]
     return "\n".join(lines + [_line(guess, sheet) for guess in sheet.columns if guess.heading.written]) + "\n"
 
@@ -245,8 +245,8 @@ def _unknown(unit: str) -> str:
     return "" if known else f": the unit {unit} is not known; those that are stand in docs/campaign.md"
 
 
-def _as_parts(guess: Guess) -> str:
-    sine = guess.heading.unit in _OF_A_SINE
+def _as_parts(guess: Guess, sheet: _Sheet) -> str:
+    sine = guess.heading.unit == "Ns_per_m" and any(other.quantity == "frequency" for other in sheet.columns)
     return ": an impedance is read as re and im, |Z| cos(phi) and |Z| sin(phi)" if sine else ""
 
 
@@ -257,7 +257,7 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
         entry = sheet.before[guess.heading.written].model_dump(exclude_defaults=True, by_alias=True)
         return f"{heading} = {_value(entry)}"
     if not quantity or quantity == "time":
-        return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit) or _as_parts(guess)}"
+        return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit) or _as_parts(guess, sheet)}"
     if quantity == "direction" and not sheet.raw.holds_numbers(guess.place):
         return f"# {heading} = {{ ... }}  # not read: a direction is +1 or -1, counter-clockwise +1"
     if quantity not in _BOOKKEEPING and not sheet.raw.holds_numbers(guess.place):

@@ -236,8 +236,9 @@ def _robust_weights(shapes: np.ndarray, values: np.ndarray) -> np.ndarray:
     inverse, found = np.linalg.pinv(shapes), np.zeros(len(values))
     for _ in range(ROUNDS):
         left = values - found
-        reach = WILD * 1.4826 * float(np.median(np.abs(left - np.median(left)))) + 1e-300
-        weights = inverse @ (found + np.clip(left, np.median(left) - reach, np.median(left) + reach))
+        middle = np.median(left)
+        reach = WILD * 1.4826 * np.median(np.abs(left - middle)) + 1e-300
+        weights = inverse @ (found + np.clip(left, middle - reach, middle + reach))
         found = shapes @ weights
     return weights
 
