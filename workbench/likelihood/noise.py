@@ -35,22 +35,16 @@ SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told f
 
 
 @dataclass(frozen=True)
-class ChannelNoise:
-    """scale: measured over declared size;  rho: correlation from reading to reading of what wanders in a scan
-    floor: share of the variance that is independent
+class ChannelNoise(Size):
+    """The noise of one channel, and what it is known by.
 
     dof: degrees of freedom of the scale;  pairs: differences used;  wild: readings found wild
-    scans: standard deviation of offset and of slope of a scan as a whole, of the size of the noise
     """
 
     channel: str
-    scale: float
-    rho: float
-    floor: float
     dof: float
     pairs: int
     wild: int
-    scans: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +89,7 @@ def _with_wild(channels: Sequence[ChannelNoise], within: Sequence[_Deviation]) -
 
 def _of_channel(name: str, repeated: Repeated, size: Size) -> ChannelNoise:
     dof = DECLARED_WEIGHT + repeated.free if repeated.free else DOF_WITHOUT_REPEATS
-    return ChannelNoise(name, size.scale, size.rho, size.floor, float(dof), repeated.free, 0, size.scans)
+    return ChannelNoise(**vars(size), channel=name, dof=float(dof), pairs=repeated.free, wild=0)
 
 
 def _repeated(stack: Stack, channel: Channel, residual: np.ndarray) -> Repeated:
@@ -268,8 +262,8 @@ def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: 
     out = np.empty_like(z)
     for channel, found in zip(stack.channels, noise.channels):
         size = np.sqrt(found.dof / random.chisquare(found.dof, count))
-        rho = found.rho * (1 - found.floor)
-        more = random.normal(0.0, np.sqrt((1 - rho**2) / max(found.dof, 10.0)), count)
+        unsure = np.sqrt((1 - found.neighbours**2) / max(found.dof, 10.0))
+        more = random.normal(0.0, unsure, count)
         part = z[channel.rows]
         out[channel.rows] = size * (part + more * np.vstack([np.zeros((1, count)), part[:-1]])) / np.sqrt(1 + more**2)
     return out

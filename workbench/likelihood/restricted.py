@@ -75,6 +75,11 @@ class Size:
     floor: float
     scans: float
 
+    @property
+    def neighbours(self) -> float:
+        """Correlation of a reading with the one before."""
+        return self.rho * (1 - self.floor)
+
 
 @dataclass(frozen=True, eq=False)
 class _Likelihood:
@@ -93,12 +98,25 @@ def sizes_of(channels: Sequence[Repeated]) -> list[Size]:
 
 
 def _mean(variance: np.ndarray, posterior: np.ndarray) -> Size:
-    """The scan that comes next has the mean of the variances and of the covariances of neighbours that are possible."""
-    course, spread = posterior.sum(axis=1), SPREADS**2 @ posterior.sum(axis=0)
-    floor = float(course @ COURSES[:, 1])
-    neighbours = course @ (COURSES[:, 0] * (1 - COURSES[:, 1]))
-    scale, rho = np.sqrt(np.sum(variance * posterior)), neighbours / (1 - floor)
-    return Size(float(scale), float(rho), floor, float(np.sqrt(spread)))
+    """The scan that comes next has the mean of the variances that are possible, and goes on as ``_going_on`` says."""
+    rho, floor = _going_on(posterior.sum(axis=1))
+    spread = SPREADS**2 @ posterior.sum(axis=0)
+    return Size(float(np.sqrt(np.sum(variance * posterior))), rho, floor, float(np.sqrt(spread)))
+
+
+def _going_on(course: np.ndarray) -> tuple[float, float]:
+    """Correlation and floor of one course instead of many (C,) that are possible.
+
+    It has the means of the covariance of neighbours, (1 - w) rho, and of the sum of the covariances with all that
+    follow, (1 - w) rho / (1 - rho): the variance of the mean of a scan goes with it, and at the mean of rho it would be
+    too small, as it grows ever faster with rho. Since it is convex in rho, there is such a course, 0 <= w <= 1.
+    """
+    rho, wandering = COURSES[:, 0], 1 - COURSES[:, 1]
+    neighbours, following = float(course @ (wandering * rho)), float(course @ (wandering * rho / (1 - rho)))
+    if neighbours <= 0:
+        return neighbours, 0.0
+    going_on = 1 - neighbours / following
+    return going_on, 1 - neighbours / going_on
 
 
 # ---- one channel -----------------------------------------------------------------------------------------------------

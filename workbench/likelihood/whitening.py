@@ -155,15 +155,6 @@ class Whitener:
         return self.laws[count:]
 
 
-def _add_echo(echo: np.ndarray, z: np.ndarray) -> None:
-    """z_k + echo_k z_(k-1), one row after the other, in place. z: (n,) or (n, m)"""
-    band = np.vstack([np.ones(len(echo)), -np.append(echo[1:], 0.0)])
-    columns = z.reshape(len(z), -1)
-    for first in range(0, columns.shape[1], AT_ONCE):
-        some = slice(first, first + AT_ONCE)
-        columns[:, some] = dtbtrs(band, columns[:, some], uplo="L", diag="U")[0]
-
-
 def whitener(stack: Stack, noise: Noise) -> Whitener:
     """The whitener of a stack; noise must have its channels and rows."""
     sigma, rho, floor = np.empty(stack.size), np.zeros(stack.size), np.zeros(stack.size)

@@ -1,5 +1,7 @@
 """The restricted likelihood of what repeats disagree by: against dense matrices, and where moments go wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,7 +61,7 @@ def test_it_is_that_of_dense_matrices(shuffled, c, t):
 def test_short_scans_tell_the_correlation_without_bias():
     """Ten rows less a line have a correlation of neighbours 0.3 below the true one."""
     benches = [[channel(3, 10, 0.45, 1.5, seed * 8 + k) for k in range(8)] for seed in range(60)]
-    found = [one.rho for bench in benches for one in sizes_of(bench)]
+    found = [one.neighbours for bench in benches for one in sizes_of(bench)]
     assert np.mean(found) == pytest.approx(0.45, abs=0.04)  # three standard errors of 60 benches
 
 
@@ -76,6 +78,17 @@ def test_noise_that_wanders_as_a_whole_has_no_floor():
     assert max(one.floor for one in found) < 0.05
 
 
+def test_the_mean_of_a_scan_is_as_uncertain_as_repeats_let_expect():
+    """The variance of a long mean is 1 + 2 (1 - w) rho / (1 - rho) of that of independent readings; at the means of rho
+    and w it comes out at half of that in most benches of three repeats."""
+    every = (channel(3, 40, 0.9, 0.0, seed, floor=0.7) for seed in range(180))
+    free = [replace(one, shapes=np.zeros((len(one.values), 0))) for one in every]
+    found = [one for k in range(60) for one in sizes_of(free[3 * k : 3 * k + 3])]
+    means = [one.scale**2 * (1 + 2 * one.neighbours / (1 - one.rho)) for one in found]
+    assert np.median(means) == pytest.approx(1 + 2 * 0.3 * 0.9 / 0.1, rel=0.2)
+    assert 0 <= min(one.floor for one in found) and max(one.rho for one in found) < 1
+
+
 def test_a_spread_that_few_scans_hardly_show_is_not_taken_for_none():
     """Two scans of four channels, off by half their noise: drift and offset would be told from zero by 0 / 0."""
     benches = [[channel(2, 40, 0.4, 0.5, seed * 8 + k) for k in range(4)] for seed in range(40)]
@@ -87,7 +100,7 @@ def test_a_channel_without_repeats_takes_what_the_others_have_in_common():
     alone = channel(1, 20)
     others = [channel(3, 60, 0.6, 1.0, seed) for seed in range(4)]
     *known, found = sizes_of([*others, alone])
-    assert found.scale == 1.0 and found.rho == pytest.approx(np.mean([k.rho for k in known]), abs=0.06)
+    assert found.scale == 1.0 and found.neighbours == pytest.approx(np.mean([k.neighbours for k in known]), abs=0.06)
 
 
 def test_where_nothing_was_repeated_all_is_as_declared():
