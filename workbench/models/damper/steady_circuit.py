@@ -7,8 +7,8 @@ import numpy as np
 from effects.damper_design import Damper
 from workbench.errors import WorkbenchError
 
-STEPS = 60  # of the secant iteration on the coupling factor; some five are needed
-CLOSE = 1e-12  # change of the current, of its largest value, at which it is found
+STEPS = 60  # of the iteration on the coupling factor; one to four are needed
+CLOSE = 1e-12  # current that is missing, of its largest value, at which it is found
 
 
 def voltage_left(design: Damper, voltage: np.ndarray, resistance: np.ndarray) -> np.ndarray:
@@ -43,10 +43,9 @@ def circuit_current(design: Damper, position: np.ndarray, velocity: np.ndarray, 
         return current
     step = 1e-6 * (np.abs(current) + 1e-3)
     for _ in range(STEPS):
-        found = asked(current)
-        slope = (asked(current + step) - found) / step
-        change = (found - current) / (1.0 - np.minimum(slope, 0.5))
-        current = current + change
-        if np.max(np.abs(change)) <= CLOSE * np.max(np.abs(current)) + 1e-15:
-            return current
+        missing = asked(current) - current
+        if np.max(np.abs(missing)) <= CLOSE * np.max(np.abs(current)) + 1e-15:
+            return current + missing
+        slope = (asked(current + step) - current - missing) / step
+        current = current + missing / (1.0 - np.minimum(slope, 0.5))
     raise WorkbenchError("the current of the damper's circuit was not found: a coupling law leaves no steady current")

@@ -30,6 +30,8 @@ for six steps).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 from math import sqrt
 
 import numpy as np
@@ -72,11 +74,27 @@ class DqModel(BaseModel):
             raise WorkbenchError(
                 f"a dq machine cannot answer a table of kind {kind!r}; it knows {', '.join(sorted(_ANSWERS))}"
             )
-        return _ANSWERS[kind](Operation(design, conditions))
+        values = tuple((name, column.tobytes()) for name, column in conditions.items())
+        return dict(_answered(_Question(design, kind, values, conditions)))
 
     def options(self, design: DqMachine, campaign: Campaign) -> Sequence[Option]:
         """What could be measured next, with the instruments that the campaign shows."""
         return options(campaign.tables)
+
+
+@dataclass(frozen=True)
+class _Question:
+    """A machine at conditions: the same where all their values are, (name, bytes) each."""
+
+    design: DqMachine
+    kind: str
+    values: tuple[tuple[str, bytes], ...]
+    conditions: Columns = field(compare=False)
+
+
+@lru_cache(maxsize=64)  # instruments are moved and effects of them tried on one and the same machine
+def _answered(question: _Question) -> dict[str, np.ndarray]:
+    return _ANSWERS[question.kind](Operation(question.design, question.conditions))
 
 
 def _back_emf(operation: Operation) -> dict[str, np.ndarray]:

@@ -175,8 +175,9 @@ def newton(
             if not worse.any():
                 break
             share = np.where(worse, 0.5 * share, share)
+        else:
+            a, b = residual(x + share * step_x, y + share * step_y)
         x, y = x + share * step_x, y + share * step_y
-        a, b = residual(x, y)
     if worst.max() < 1e3 * CLOSE:
         return x, y
     row = int(np.argmax(np.nan_to_num(worst, nan=np.inf)))
