@@ -29,7 +29,7 @@ from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
 from workbench.ledger.validate import validate
 from workbench.ledger.walk import add_effect, skeleton_for, walk
-from workbench.models.bases import nominal_model
+from workbench.models.bases import nominal_model, redesigned
 from workbench.models.model import Model
 from workbench.report import (
     write_comparison_report,
@@ -158,15 +158,16 @@ def _from_elsewhere(source: str, here: str) -> str:
     )
 
 
-def _settled(options: argparse.Namespace, campaign: Campaign, model: Model) -> Campaign:
-    """The campaign with the conventions that were found in it, where the user accepts them."""
+def _settled(options: argparse.Namespace, campaign: Campaign, model: Model) -> tuple[Campaign, Model]:
+    """The campaign with the conventions that were found in it, where the user accepts them, and the model of its
+    device."""
     if not options.accept_conventions:
-        return campaign
+        return campaign, model
     with _progress() as progress:
         conventions = settle(model, campaign, progress)
     if not conventions.are_right:
         print("accepted:", *conventions.sentences, "", conventions.fix, sep="\n")
-    return conventions.campaign
+    return conventions.campaign, redesigned(model, campaign, conventions.campaign)
 
 
 def _compare(options: argparse.Namespace) -> None:
@@ -192,7 +193,7 @@ def _print_conventions(campaign: Campaign, model: Model) -> None:
 def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, model)
+        campaign, model = _settled(options, campaign, model)
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
@@ -202,7 +203,7 @@ def _diagnose(options: argparse.Namespace) -> None:
 def _add(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, model)
+        campaign, model = _settled(options, campaign, model)
         with _progress() as progress:
             added = add_effect(model, campaign, effects, options.effect, out, options.seed, progress)
         _write_comparison(out, added.comparison)
@@ -215,7 +216,7 @@ def _add(options: argparse.Namespace) -> None:
 def _ledger(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
-        campaign = _settled(options, campaign, model)
+        campaign, model = _settled(options, campaign, model)
         with _progress() as progress:
             ledger, diagnosis = walk(model, campaign, effects, out, options.seed, progress)
         _write_diagnosis(out, diagnosis)

@@ -65,6 +65,10 @@ def metered(worked_out):
     )
 
 
+def without_shunt(one):
+    return replace(one, conditions={"velocity": one.conditions["velocity"]})
+
+
 def quiet(size):
     """Three repeats that scatter by a share of what is declared."""
     values = np.tile(np.linspace(1.0, 2.0, 8), 3)
@@ -84,6 +88,7 @@ def quiet(size):
         ([emf(offset=0.02)], [emf()], "has an offset", {}),
         ([resistance(0.0043)], [resistance(0.00393)], "copper by 0.00393", {}),
         ([force(zero=-40.0)], [force()], "give power", DAMPER),
+        ([without_shunt(force())], [force()], "so that they count as open", DAMPER),
         ([force(), voltage(66.0)], [force(), voltage()], "force constant from the forces", DAMPER),
     ],
 )

@@ -1,6 +1,7 @@
 """Ordinary mistakes of a laboratory are named as what they are, and a right campaign gets no convention."""
 
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from workbench.data.table import Campaign, Response, Table
 from workbench.errors import WorkbenchError
 from workbench.explain import mistakes
 from workbench.explain.conventions import settle
-from workbench.models.bases import nominal_model
+from workbench.models.bases import nominal_model, redesigned
 from workbench.models.machine.model import MachineBench
 from workbench.models.model import Model
 
@@ -86,6 +87,23 @@ def test_poles_that_are_declared_as_pole_pairs_are_thought_of(right, tmp_path):
     assert settled(folder).advice[-1].endswith(f"[device] pole_pairs = {pairs}.")
     line = next(m for m in MISTAKES["dq"] if m.words == "phase for line voltage")
     assert not any("pole_pairs" in words for words in settled(mistaken(line, right["dq"], tmp_path / "line")).advice)
+
+
+@pytest.mark.parametrize(
+    "bench, key, factor",
+    [("damper", "internal_resistance_ohm", 1000), ("dq", "inductance_q_H", 0.001), ("dq", "psi_m_Vs", 10)],
+)
+def test_a_constant_in_another_unit_is_told_from_readings_that_are(bench, key, factor, right, tmp_path):
+    """All readings that go with it are off at once; the text for campaign.toml holds what it should have been."""
+    declared = read_campaign(right[bench]).device[key]
+    wrong = shutil.copytree(right[bench], tmp_path / "wrong") / "campaign.toml"
+    wrong.write_text(re.sub(rf"(?m)^{key} = .*$", f"{key} = {factor * declared!r}", wrong.read_text(), count=1))
+    found = settled(wrong.parent)
+    assert found.names == ("unit_factor",) and found.sentences[0].startswith(f"[device]: {key} looks")
+    assert found.fix.startswith(f"[device]\n{key} = ") and found.campaign.device[key] == pytest.approx(declared)
+    before = read_campaign(wrong.parent)
+    again = redesigned(nominal_model(before), before, found.campaign)
+    assert settle(again, found.campaign).are_right
 
 
 def test_a_wild_reading_of_the_drag_is_no_exchange(right, tmp_path):

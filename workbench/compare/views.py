@@ -173,20 +173,13 @@ def regime_map(view: ChannelView) -> RegimeMap | None:
 
 
 def _edges(values: np.ndarray) -> np.ndarray:
-    """Edges of cells: between levels where there are few, at even shares of the rows otherwise."""
+    """Edges of cells, from the least to the greatest value: between levels where there are few, else at even shares of
+    the rows."""
     levels = np.unique(np.round(values, 9))
-    if len(levels) <= LEVELS:
-        middle = 0.5 * (levels[1:] + levels[:-1])
-        first, last = (
-            (levels[0] - (middle[0] - levels[0]), levels[-1] + levels[-1] - middle[-1])
-            if len(middle)
-            else (
-                levels[0] - 0.5,
-                levels[0] + 0.5,
-            )
-        )
-        return np.concatenate([[first], middle, [last]])
-    return np.unique(np.quantile(values, np.linspace(0, 1, CELLS + 1)))
+    if len(levels) > LEVELS:
+        return np.unique(np.quantile(values, np.linspace(0, 1, CELLS + 1)))
+    between = 0.5 * (levels[1:] + levels[:-1])
+    return np.concatenate([[values.min()], between, [values.max()]])
 
 
 def _cell_means(view: ChannelView, place: np.ndarray, cells: int):

@@ -8,6 +8,7 @@ import numpy as np
 
 from units import percent
 from workbench.data.column_units import factor, split_unit
+from workbench.data.kinds import KINDS
 from workbench.data.repeats import matched_rows
 from workbench.data.table import Campaign, Response, Table
 
@@ -33,6 +34,15 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
     for check in _OF_A_CAMPAIGN:
         found += check(campaign)
     return tuple(found)
+
+
+def _unsaid_shunt(table: Table) -> list[str]:
+    if "shunt" not in KINDS[table.kind].axes or "shunt" in table.conditions:
+        return []
+    return [
+        f"{table.file}: nothing says what was connected to the terminals, so that they count as open; give shunt_ohm "
+        "as a column where they were not"
+    ]
 
 
 def _repeats_agree(table: Table) -> list[str]:
@@ -345,5 +355,6 @@ def _efficiency(table: Table) -> list[str]:
 
 _OF_A_CAMPAIGN = (_known_exactly, _constants, _between_lines, _positions, _same_readings)
 _OF_A_TABLE = (
-    _repeats_agree, _clipping, _efficiency, _phase_sum, _cogging, _copper, _impedance, _causality, _reversal, _loop,
+    _unsaid_shunt, _repeats_agree, _clipping, _efficiency, _phase_sum, _cogging, _copper, _impedance, _causality,
+    _reversal, _loop,
 )  # fmt: skip

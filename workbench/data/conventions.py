@@ -54,6 +54,7 @@ NAMES: dict[str, str] = {
     "clipped": "a reading stops at the end of its range",
     "stuck": "a reading does not change any more",
 }
+DEVICE = "[device]"  # in the place of a file, where a constant of the device is meant
 ANGLE = "angle_mech"
 LINES = {"v_a": "v_ab", "v_b": "v_bc", "v_c": "v_ca"}
 TURNING = ("speed", "direction", "torque")  # what changes its sign with the sense of rotation, besides the angle
@@ -190,9 +191,8 @@ class Scaled(Fix):
     @property
     def words(self) -> str:
         many = len(self.columns) > 1
-        size = f"{1 / self.factor:.6g} times too large" if self.factor < 1 else f"{self.factor:.6g} times too small"
         why = " and ".join(_FACTOR_WORDS[name] for name in self.means)
-        return f"{', '.join(self.columns)} look{'' if many else 's'} {size}: {why}"
+        return f"{', '.join(self.columns)} look{'' if many else 's'} {_how_far(self.factor)}: {why}"
 
     @property
     def entry(self) -> dict[str, object]:
@@ -200,6 +200,11 @@ class Scaled(Fix):
 
     def apply(self, table: Table) -> Table:
         return _changed(table, self.columns, lambda v: self.factor * v, self.factor)
+
+
+def _how_far(factor: float) -> str:
+    """Of a number that has to be multiplied by a factor."""
+    return f"{1 / factor:.6g} times too large" if factor < 1 else f"{factor:.6g} times too small"
 
 
 _FACTOR_WORDS = {
@@ -434,6 +439,32 @@ class LeftOut(Fix):
         return rows_of(table, keep)
 
 
+@dataclass(frozen=True)
+class DeviceFactor(Fix):
+    """true = factor * constant of ``[device]``, which every table goes with. file: ``DEVICE``"""
+
+    key: str
+    declared: float
+    factor: float
+    place: ClassVar[int] = 12
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return ("unit_factor",)
+
+    @property
+    def words(self) -> str:
+        return f"{self.key} looks {_how_far(self.factor)}: {_FACTOR_WORDS['unit_factor']}"
+
+    @property
+    def entry(self) -> dict[str, object]:
+        return {self.key: self.factor * self.declared}
+
+    @property
+    def anywhere(self) -> Fix:
+        return self
+
+
 def is_phase(column: str) -> bool:
     """v_a, i_b, dpsi_c: a quantity of one of three phases."""
     return len(column) > 2 and column[-2:] in ("_a", "_b", "_c")
@@ -500,7 +531,8 @@ def applied(campaign: Campaign, fixes: Iterable[Fix]) -> Campaign:
         for fix in (f for f in ordered if f.file == table.file):
             table = fix.apply(table)
         tables.append(table)
-    return replace(campaign, tables=tuple(tables))
+    device = {**campaign.device, **section_of(f for f in ordered if f.file == DEVICE).get(DEVICE, {})}
+    return replace(campaign, tables=tuple(tables), device=device)
 
 
 def fixes_of(campaign: Campaign) -> tuple[Fix, ...]:
@@ -683,8 +715,10 @@ def _joined(have: object, more: object) -> object:
 
 def section_text(section: Mapping[str, Mapping[str, object]]) -> str:
     """The text to put into campaign.toml."""
-    lines = ["[conventions]"] + [f"{_quoted(file)} = {_toml(entry)}" for file, entry in section.items()]
-    return "\n".join(lines) + "\n"
+    files = [f"{_quoted(file)} = {_toml(entry)}" for file, entry in section.items() if file != DEVICE]
+    constants = [f"{key} = {_toml(value)}" for key, value in section.get(DEVICE, {}).items()]
+    parts = {"[conventions]": files, DEVICE: constants}
+    return "\n".join("\n".join([head, *lines]) + "\n" for head, lines in parts.items() if lines)
 
 
 def _quoted(text: str) -> str:

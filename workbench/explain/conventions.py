@@ -16,12 +16,15 @@ import numpy as np
 
 from units import DEGREE
 from workbench.data.checks import checks_of
+from workbench.data.column_units import split_unit
 from workbench.data.conventions import (
     ANGLE,
+    DEVICE,
     NAMES,
     AngleDirection,
     AngleUnit,
     AngleZero,
+    DeviceFactor,
     Fix,
     IgnoredColumns,
     InvertedColumns,
@@ -38,6 +41,7 @@ from workbench.data.conventions import (
     stated_factors,
 )
 from workbench.data.table import Campaign, Response, Table
+from workbench.errors import WorkbenchError
 from workbench.explain.misfit import Sums, allowances, predicted, sums
 from workbench.explain.mistakes import (
     COMMON,
@@ -45,6 +49,7 @@ from workbench.explain.mistakes import (
     NEAR,
     OVERWHELMING,
     RARE,
+    TENS,
     Order,
     compatible,
     cost_of_zero,
@@ -59,6 +64,7 @@ from workbench.explain.mistakes import (
 from workbench.explain.verdict import CONVENTION
 from workbench.findings import Diagnosis
 from workbench.models.base import Progress
+from workbench.models.bases import redesigned
 from workbench.models.model import Model
 
 POOL = 16  # readings of a table that are kept
@@ -153,9 +159,10 @@ def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: 
     model = replace(model, base=model.base.anywhere(model.design), effects=())
     readers = [_Reader(model, campaign, table) for table in campaign.tables if table.responses]
     readings = _readings_of_all(readers)
-    best = _joint(readings)
+    best = sorted([*_joint(readings), *_of_device(readers)], key=lambda w: -w.net)
     fixes = _sharpened(readers, _habits(readers, best[0].fixes))
-    broken = tuple(fix for fix in _broken_channels(model, applied(campaign, fixes)))
+    repaired = applied(campaign, fixes)
+    broken = tuple(_broken_channels(redesigned(model, campaign, repaired), repaired))
     return _conventions(campaign, readers, readings, best, fixes, broken)
 
 
@@ -195,6 +202,11 @@ class Reading:
     @property
     def net(self) -> float:
         return self.log_likelihood - sum(self.costs) - OVERWHELMING * len(self.costs)
+
+    def explains(self, before: Reading, most: float) -> bool:
+        """Whether every channel that it improves is left with no more than that."""
+        both = zip(before.errors.values(), self.errors.values())
+        return all(now <= most or now > BETTER * was for was, now in both)
 
 
 class _Reader:
@@ -279,9 +291,7 @@ class _Reader:
         if self.table.kind == "drag" and reading.fixes:
             exchanged = any(isinstance(f, SwappedColumns) for f in reading.fixes)  # their product is the same power
             return self._is_loud and not exchanged and max(reading.errors.values()) < POWER
-        most = EXPLAINED if sized else EXPLAINED_SIGN
-        before = list(self.as_it_is.errors.values())
-        return all(now <= most or now > BETTER * was for was, now in zip(before, reading.errors.values()))
+        return reading.explains(self.as_it_is, EXPLAINED if sized else EXPLAINED_SIGN)
 
     def _seconds(self, found: Sequence[Reading]) -> list[Reading]:
         """A second fix of the table beside the leading ones."""
@@ -485,6 +495,38 @@ def _joint(readings: Sequence[Sequence[Reading]]) -> list[_Whole]:
     return sorted((whole.agreeing(turning) for whole in beam), key=lambda w: -w.net)
 
 
+def _of_device(readers: Sequence[_Reader]) -> list[_Whole]:
+    """Readings of the whole campaign with a constant of the device in another unit than its key says, where a table is
+    missed by far. An expansion about a drawing is not asked: lengths of a machine have a scale of their own."""
+    far = any(max(r.as_it_is.errors.values(), default=0.0) > EXPLAINED for r in readers)
+    if not far or readers[0].model.base.is_expansion:
+        return []
+    fixes = ((fix, nice.cost) for nice in TENS for fix in _device_factors(readers[0].campaign, nice.value))
+    return [whole for fix, cost in fixes if (whole := _with_device(readers, fix, cost)) is not None]
+
+
+def _device_factors(campaign: Campaign, factor: float) -> list[DeviceFactor]:
+    """Of every constant that has a unit with prefixes."""
+    numbers = {key: v for key, v in campaign.device.items() if isinstance(v, (int, float)) and v}
+    keys = [key for key in numbers if split_unit(key)[1] not in ("", "degC")]
+    return [DeviceFactor(DEVICE, key, numbers[key], factor) for key in keys]
+
+
+def _with_device(readers: Sequence[_Reader], fix: DeviceFactor, cost: float) -> _Whole | None:
+    """None where there is no such device, or a table that it changes is not met with it."""
+    before = readers[0].campaign
+    campaign = applied(before, [fix])
+    try:
+        model = redesigned(readers[0].model, before, campaign)
+    except WorkbenchError:
+        return None
+    again = [_Reader(model, campaign, reader.table).as_it_is for reader in readers]
+    if not all(one.explains(reader.as_it_is, EXPLAINED) for one, reader in zip(again, readers)):
+        return None
+    likelihood = sum(one.log_likelihood for one in again)
+    return _Whole((fix,), {fix: cost}, likelihood, likelihood - cost - OVERWHELMING)
+
+
 def _habits(readers: Sequence[_Reader], fixes: tuple[Fix, ...]) -> tuple[Fix, ...]:
     """The fixes, and those of the angle and the speed also in tables that cannot tell, if no table speaks against."""
     for habit in dict.fromkeys(fix.anywhere for fix in fixes if _is_of_the_shaft(fix)):
@@ -579,7 +621,8 @@ def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken)
     others = _equivalents(best)
     section = section_of(everything)
     repaired = applied(campaign, everything)
-    repaired = replace(repaired, conventions=_merged(campaign.conventions, section))
+    of_files = {file: entry for file, entry in section.items() if file != DEVICE}
+    repaired = replace(repaired, conventions=_merged(campaign.conventions, of_files))
     found = tuple(Found(fix, *_odds(fix, best, fixes)) for fix in everything)
     probability = 1.0 if broken else _p_wrong(best)
     names = _names_of(everything, [o for o in others if _as_simple(o, best[0])])

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
+import scipy.stats
 
 from effects.base import Effect
-from effects.parameter import parameters_of
-from workbench.believed import LIKELY
+from effects.parameter import Parameter, parameters_of
+from workbench.believed import LIKELY, TAILS
 from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
@@ -26,7 +27,7 @@ from workbench.explain.sealed import opened, refutations, refuted, with_sealed
 from workbench.explain.search import searched
 from workbench.explain.tried import Search
 from workbench.explain.verdict import NOTHING_MISSING, Thresholds, Verdict, verdict
-from workbench.findings import ChannelFit, Diagnosis, Ranked, SizePosterior
+from workbench.findings import ChannelFit, Diagnosis, Estimate, Ranked, SizePosterior
 from workbench.likelihood.bench import Bench, bench_of
 from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import nearest
@@ -35,6 +36,7 @@ from workbench.models.model import Model
 SEED = 20261
 LISTED = 12  # explanations that are printed with their probability
 ON_BOUND = 1e-6  # of the range of a parameter, within which it ends on its bound
+AS_BELIEVED = 0.8  # of what was believed of a parameter before, from which in its 90 % interval nothing was learned
 
 Progress = Callable[[str], None]
 
@@ -201,9 +203,10 @@ def _ranked(search: Search, name: str, probability: float, gain: float, before: 
         return Ranked(name, title, probability, gain, {}, before[0], before[0], before[1], before[1])
     hypothesis = search.fitted[best]
     after = _errors(hypothesis)
-    bounds = tuple(p for effect in hypothesis.effects if effect.name() == name for p in on_bounds(effect))
+    (effect,) = (one for one in hypothesis.effects if one.name() == name)
     sizes = estimates(hypothesis, search.weights(name))[name]
-    return Ranked(name, title, probability, gain, sizes, before[0], after[0], before[1], after[1], bounds)
+    said = on_bounds(effect), as_believed(effect, sizes)
+    return Ranked(name, title, probability, gain, sizes, before[0], after[0], before[1], after[1], *said)
 
 
 def _errors(hypothesis: Hypothesis) -> tuple[float, float | None]:
@@ -220,6 +223,19 @@ def on_bounds(effect: Effect) -> tuple[str, ...]:
         if min(abs(value - p.low), abs(value - p.high)) <= reach and abs(value - p.null) > reach:
             found.append(name)
     return tuple(found)
+
+
+def as_believed(effect: Effect, sizes: Mapping[str, Estimate]) -> tuple[str, ...]:
+    """Parameters of an effect of which the readings tell next to nothing. sizes: the estimate of each"""
+    return tuple(name for name, p in parameters_of(effect).items() if _believed(p, sizes[name]) >= AS_BELIEVED)
+
+
+def _believed(parameter: Parameter, estimate: Estimate) -> float:
+    """How probable it was before that a parameter lies in its 90 % interval."""
+    low = estimate.low90 if estimate.low90 > parameter.low else -np.inf  # what lies beyond a bound is believed at it
+    high = estimate.high90 if estimate.high90 < parameter.high else np.inf
+    ends = [end if np.isinf(end) else parameter.prior.standard(end) for end in (low, high)]
+    return float(np.diff(scipy.stats.t.cdf(ends, TAILS))[0])
 
 
 def residual_signature(search: Search) -> dict[str, object]:

@@ -49,7 +49,7 @@ def _both(value: float, cost: float, *means: str) -> list[Nice]:
     return [Nice(v, cost, means or ("unit_factor",)) for v in (value, 1 / value)]
 
 
-_TENS = [*_both(1e3, COMMON), *_both(1e6, RARE), *_both(10.0, USUAL), *_both(100.0, USUAL)]
+TENS = [*_both(1e3, COMMON), *_both(1e6, RARE), *_both(10.0, USUAL), *_both(100.0, USUAL)]
 _TWO = _both(2.0, USUAL)
 _PEAK = _both(sqrt(2), COMMON, "rms_or_peak")
 _LINE = _both(sqrt(3), COMMON, "line_or_phase")
@@ -61,14 +61,14 @@ _POUND = _both(4.4482216, USUAL)  # N in a pound-force
 _KILOGRAM = _both(9.80665, USUAL)  # N in a kilogram-force
 _INCH = _both(0.11298483, USUAL)  # Nm in an inch-pound
 _BY_QUANTITY: dict[str, list[Nice]] = {
-    "v": _TENS + _TWO + _PEAK + _LINE + _BOTH,
-    "i": _TENS + _TWO + _PEAK + _LINE,
-    "power": _TENS + _TWO + _both(3.0, USUAL, "line_or_phase"),
-    "torque": _TENS + _TWO + _KILOGRAM + _INCH,
-    "force": _TENS + _TWO + _KILOGRAM + _POUND,
+    "v": TENS + _TWO + _PEAK + _LINE + _BOTH,
+    "i": TENS + _TWO + _PEAK + _LINE,
+    "power": TENS + _TWO + _both(3.0, USUAL, "line_or_phase"),
+    "torque": TENS + _TWO + _KILOGRAM + _INCH,
+    "force": TENS + _TWO + _KILOGRAM + _POUND,
     "speed": _both(2 * pi / 60, COMMON) + _both(2 * pi, USUAL) + _both(60.0, USUAL),
     "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL),
-    "shunt": _TENS,
+    "shunt": TENS,
     "frequency": _both(2 * pi, COMMON) + _both(60.0, USUAL) + _both(1e3, USUAL),
     "amplitude": _both(1e3, COMMON) + _TWO + _PEAK,
 }
@@ -86,7 +86,7 @@ def factors(column: str, pole_pairs: float | None) -> list[Nice]:
     what = quantity(column)
     if what in SENSELESS or column.endswith("_T"):
         return []
-    found = list(_BY_QUANTITY.get(what, _TENS + _TWO))
+    found = list(_BY_QUANTITY.get(what, TENS + _TWO))
     if what == "speed" and pole_pairs and pole_pairs > 1:
         found += _both(pole_pairs, COMMON, "electrical_or_mechanical")
         found += _both(pole_pairs * 60 / (2 * pi), RARE, "electrical_or_mechanical", "unit_factor")
@@ -100,8 +100,8 @@ def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) ->
     """
     if not value > 0:
         return []
-    known = _TENS if alone else factors(column, pole_pairs)
-    near = [nice for nice in known if abs(log(nice.value / value)) < (NEAR_TEN if nice in _TENS else NEAR)]
+    known = TENS if alone else factors(column, pole_pairs)
+    near = [nice for nice in known if abs(log(nice.value / value)) < (NEAR_TEN if nice in TENS else NEAR)]
     return sorted(near, key=lambda nice: abs(log(nice.value / value)))[:2]
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Mapping
+from dataclasses import replace
 
 from workbench import models
 from workbench.data.table import Campaign
@@ -29,6 +30,16 @@ def nominal_model(campaign: Campaign) -> Model:
     return model_of_device(campaign.device, campaign.folder)
 
 
+def redesigned(model: Model, before: Campaign, after: Campaign) -> Model:
+    """The model of the device of one campaign for that of another, itself where they declare the same.
+
+    Raises:
+        WorkbenchError: there is no such device.
+    """
+    same = before.device == after.device
+    return model if same else replace(model, design=model.base.design(_inputs(after.device)))
+
+
 def model_of_device(device: Mapping[str, object], where: str) -> Model:
     """The model of a ``[device]`` table, without effects. where: the file or folder that the table is from
 
@@ -41,4 +52,9 @@ def model_of_device(device: Mapping[str, object], where: str) -> Model:
         raise WorkbenchError(
             f"{where}: no model knows the [device] table; give model = one of {', '.join(bases)} in it, with its keys."
         )
-    return Model(found[0], found[0].design({key: value for key, value in device.items() if key != "model"}))
+    return Model(found[0], found[0].design(_inputs(device)))
+
+
+def _inputs(device: Mapping[str, object]) -> dict[str, object]:
+    """The ``[device]`` table without the name of a model."""
+    return {key: value for key, value in device.items() if key != "model"}

@@ -329,7 +329,7 @@ def _sizes(d: Diagnosis) -> tuple[Section, ...]:
     rows = [
         {
             "effect": plain(r.name), "parameter": plain(name), "value": estimated(e),
-            "90 % interval": bounds(e), "on a bound": "yes" if name in r.at_bound else _UNKNOWN,
+            "90 % interval": bounds(e), "remark": _remark(r, name) or _UNKNOWN,
         }
         for r in d.ranking if r.name in d.names
         for name, e in r.parameters.items()
@@ -340,6 +340,11 @@ def _sizes(d: Diagnosis) -> tuple[Section, ...]:
     caption = "Probability density of the parameter of an effect by itself, before and after the measurement."
     pictures = (Picture(beliefs.size_posteriors(d.posteriors), caption),) if d.posteriors else ()
     return (Section("How large it is", (table, *pictures)),)
+
+
+def _remark(ranked: Ranked, name: str) -> str:
+    """What a reader must know of a fitted parameter besides its size."""
+    return "on a bound" if name in ranked.at_bound else "as believed before" if name in ranked.as_believed else ""
 
 
 def _signature(d: Diagnosis) -> tuple[Section, ...]:
@@ -387,7 +392,7 @@ def _ranking(d: Diagnosis) -> tuple[Section, ...]:
 
 def _sizes_of(ranked: Ranked) -> str:
     sizes = (
-        f"{plain(n)} {interval(e)}{' on a bound' * (n in ranked.at_bound)}".replace("90 % interval ", "")
+        f"{plain(n)} {interval(e)} {_remark(ranked, n)}".rstrip().replace("90 % interval ", "")
         for n, e in ranked.parameters.items()
     )
     return "; ".join(sizes) or _UNKNOWN

@@ -399,8 +399,12 @@ def _size(d: Diagnosis) -> str:
     leader = leading(d)
     if len(d.names) > 1 or leader is None or not leader.parameters:
         return ""
-    sizes = listed(f"{plain(name)} {interval(estimate)}" for name, estimate in leader.parameters.items())
-    return f": {sizes}"
+    sizes = (f"{plain(n)} {interval(e)}{_unlearned(n in leader.as_believed)}" for n, e in leader.parameters.items())
+    return f": {listed(sizes)}"
+
+
+def _unlearned(as_believed: bool) -> str:
+    return ", which is what was believed before and not what these data tell" if as_believed else ""
 
 
 def set_words(words: str) -> str:

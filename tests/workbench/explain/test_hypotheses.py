@@ -491,7 +491,7 @@ class Lever(ResponseEffect):
 
 
 def test_beside_a_large_effect_others_do_what_they_do_there(bench):
-    """A lever that doubles the force doubles what a spring makes of it that is too soft; one of a tenth is as good as
+    """A lever that trebles the force trebles what a spring makes of it that is too soft; one of a tenth is as good as
     none."""
     soft = LIBRARY["soft_spring"]
     signatures = signatures_of(bench, (Lever(), soft()))
@@ -502,13 +502,13 @@ def test_beside_a_large_effect_others_do_what_they_do_there(bench):
         return Hypothesis(linearised(bench.fit, bench.null.x, (Lever(),), [more]), bench.fit, 0.0)
 
     assert search.signatures_beside(beside(0.1)) is signatures
-    there = search.signatures_beside(beside(1.0))
-    for name, times in (("soft_spring", 2.0), ("lever", 1.0)):
+    there = search.signatures_beside(beside(2.0))
+    for name, times in (("soft_spring", 3.0), ("lever", 1.0)):
         before = signatures.found[name][0].change
         assert there.found[name][0].change == pytest.approx(times * before, rel=0.01, abs=1e-9)
-    assert search.signatures_beside(beside(1.1)) is there, "near enough"
+    assert search.signatures_beside(beside(2.1)) is there, "near enough"
     search.bench = expanded(bench)
-    assert search.signatures_beside(beside(1.0)) is signatures, "an expansion is compared about its drawing"
+    assert search.signatures_beside(beside(2.0)) is signatures, "an expansion is compared about its drawing"
 
 
 def test_what_a_tolerance_could_do_is_done_as_the_tolerance_does_it_at_a_fit():
