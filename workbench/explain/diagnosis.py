@@ -36,7 +36,7 @@ from workbench.models.model import Model
 SEED = 20261
 LISTED = 12  # explanations that are printed with their probability
 ON_BOUND = 1e-6  # of the range of a parameter, within which it ends on its bound
-AS_BELIEVED = 0.8  # of what was believed of a parameter before, from which in its 90 % interval nothing was learned
+AS_BELIEVED = 0.75  # of what was believed of a parameter before, from which in its 90 % interval nothing was learned
 
 Progress = Callable[[str], None]
 

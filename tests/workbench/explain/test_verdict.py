@@ -5,11 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from workbench.explain.diagnosis import leading
+from effects.mechanical.coulomb_friction import CoulombFriction
+from effects.parameter import parameters_of
+from workbench.explain.diagnosis import as_believed, leading
 from workbench.explain.explore import Beliefs, Posterior, beside_the_unknown, posterior
 from workbench.explain.sealed import with_sealed
 from workbench.explain.verdict import Thresholds, Verdict, printed, verdict
-from workbench.findings import Sealed
+from workbench.findings import Estimate, Sealed
 
 SURE = Thresholds(sure=0.95, quiet=0.5, can_tell=True)
 BLIND = Thresholds(sure=0.95, quiet=0.5, can_tell=False)
@@ -222,3 +224,12 @@ def test_beside_something_unknown_only_what_stands_out_is_named(remains):
 def test_an_unknown_function_that_needs_no_effect_stays_alone():
     shown = beside_the_unknown(p({"n1": 0.02}, {"": 0.98}), USUAL, nothing_stands_out)
     assert shown.beside == {frozenset(): 0.98}
+
+
+@pytest.mark.parametrize("spread, said", [(1.0, ("reversal",)), (0.5, ())])
+def test_what_the_readings_tell_next_to_nothing_of_is_known(spread, said):
+    """An interval as wide as what was believed before, and one of half its width."""
+    prior = parameters_of(CoulombFriction)["reversal"].prior
+    low, high = (prior.value(side * 1.645 * spread) for side in (-1, 1))
+    sizes = {"level": Estimate(4.0, 0.1, 3.8, 4.2, "N"), "reversal": Estimate(1e-3, 1e-3, low, high, "m/s")}
+    assert as_believed(CoulombFriction(), sizes) == said

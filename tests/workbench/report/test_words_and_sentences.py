@@ -300,6 +300,12 @@ def test_parameters_on_a_bound_are_said_where_they_are_named(diagnosis):
     assert said.startswith("Force of coulomb friction ends on a bound")
 
 
+def test_a_size_that_the_data_leave_as_it_was_believed_says_so(diagnosis):
+    assert "believed before" not in verdict_sentence(diagnosis)
+    untold = tuple(replace(r, as_believed=("force",)) for r in diagnosis.ranking)
+    assert "not what these data tell" in verdict_sentence(replace(diagnosis, ranking=untold))
+
+
 def test_an_unknown_law_that_could_stand_for_the_names_is_said(diagnosis):
     assert "one unknown law and no effect, with probability 2 %" in " ".join(conclusions(diagnosis))
     assert "unknown law" not in " ".join(conclusions(replace(diagnosis, p_none_of_these=1e-5)))
