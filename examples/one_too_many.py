@@ -12,6 +12,7 @@ COLUMNS = {"impedance": ("re", "frequency"), "dq_operation": ("v_d", "i_q"), "co
 
 
 def coefficient():
+    """Weight of one polynomial: of any size, as nothing is known of it."""
     return parameter(0.0, "1", prior=Normal(1.0), low=-20.0, high=20.0, source="none: it is free")
 
 

@@ -65,6 +65,10 @@ class Setup:
 
 
 class Catalogue(Protocol):
+    """What can be hidden on one kind of bench, and the truth that answers.
+
+    effects: of the library;  outside: laws that no effect of it has
+    """
     name: str
     effects: Mapping[str, Hidden]
     outside: Mapping[str, Hidden]
@@ -354,6 +358,7 @@ def _sized(hidden: Hidden, state, chi2: float, seen) -> tuple[Any, float]:
 
 
 def log_uniform(between: tuple[float, float], rng: np.random.Generator) -> float:
+    """A number between two others, each order of magnitude alike."""
     return float(np.exp(rng.uniform(*np.log(between))))
 
 

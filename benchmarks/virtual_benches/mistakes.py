@@ -51,10 +51,12 @@ def mistaken(mistake: Mistake, right: Path, folder: Path) -> Path:
 
 
 def scaled(columns: Sequence[str], factor: float) -> Change:
+    """Columns are read so many times too large."""
     return lambda frame: frame.assign(**{c: frame[c] * factor for c in columns})
 
 
 def inverted(*columns: str) -> Change:
+    """Columns count the other way round."""
     return scaled(columns, -1.0)
 
 
@@ -69,10 +71,12 @@ def turned(zero: float) -> Change:
 
 
 def late(column: str, rows: int = 1) -> Change:
+    """A column stands so many rows too late."""
     return lambda frame: frame.assign(**{column: np.roll(frame[column], rows)})
 
 
 def clipped(column: str, share: float) -> Change:
+    """A column ends at a share of its largest reading."""
     def cut(frame: pd.DataFrame) -> pd.DataFrame:
         end = share * frame[column].abs().max()
         return frame.assign(**{column: frame[column].clip(-end, end)})
@@ -93,15 +97,18 @@ def stuck(column: str, start: float, stop: float) -> Change:
 
 
 def shifted(column: str, offset: float) -> Change:
+    """A column reads so much more, in the unit of its heading."""
     return lambda frame: frame.assign(**{column: frame[column] + offset})
 
 
 def between_lines(frame: pd.DataFrame) -> pd.DataFrame:
+    """Voltages of lines in the columns of phases."""
     a, b, c = (frame[f"v_{x}_V"] for x in "abc")
     return frame.assign(v_a_V=a - b, v_b_V=b - c, v_c_V=c - a)
 
 
 def both(*changes: Change) -> Change:
+    """One mistake after the other."""
     def all_of(frame: pd.DataFrame) -> pd.DataFrame:
         for change in changes:
             frame = change(frame)

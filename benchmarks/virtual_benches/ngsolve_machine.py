@@ -95,6 +95,7 @@ def circle(outline: Outline, radius: float, edges: int) -> list[int]:
 
 
 def stator(m: dict) -> Outline:
+    """Outline of the stator with its half of the air gap. m: the numbers of the machine, SI"""
     shift = m["stator_shift"]
     o = Outline(lambda r, a: (r * cos(a) + shift[0], r * sin(a) + shift[1]))
     pitch, r_si = 2 * pi / m["slots"], m["rotor_radius"] + m["drawn_airgap"]

@@ -104,6 +104,7 @@ def channel_views(bench: Bench, x: np.ndarray | None = None, effects: Sequence_[
 
 
 def axis_of(name: str) -> tuple[Axis, float]:
+    """Axis of a condition as people read it, and the factor on its SI values."""
     unit, factor = for_people(name)
     return Axis(name, unit), factor
 

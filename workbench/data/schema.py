@@ -27,6 +27,7 @@ _ID = re.compile(r"\w[\w.-]{0,99}")
 
 
 def folder_name(text: str) -> str:
+    """The text, where it can name a folder; ValueError otherwise."""
     if not _ID.fullmatch(text):
         raise ValueError('names the folder of the results; write letters, digits, "-", "_" and ".", a letter first')
     return text

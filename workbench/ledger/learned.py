@@ -183,6 +183,7 @@ def _range(kind: str, response: str, parts: Sequence[_Part]) -> LearnedRange:
 
 
 def is_angle(name: str) -> bool:
+    """Whether a condition goes round."""
     return "angle" in name
 
 

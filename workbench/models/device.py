@@ -66,12 +66,14 @@ def _refuse_doubles(table: Mapping[str, object], keys: Mapping[str, str]) -> Non
 
 
 def require_positive(values: Mapping[str, float], *fields: str) -> None:
+    """Raises WorkbenchError for a field that is not positive."""
     for name in fields:
         if not values[name] > 0:
             raise WorkbenchError(f"[device] {name} must be positive, found {values[name]:g}: correct campaign.toml")
 
 
 def require_whole(values: Mapping[str, float], *fields: str) -> None:
+    """Raises WorkbenchError for a field that is no whole number."""
     for name in fields:
         if values[name] != round(values[name]):
             raise WorkbenchError(

@@ -118,6 +118,7 @@ def _far(pulls: Sequence[Pull]) -> list[Pull]:
 
 
 def rows(channels: Sequence[ValidatedChannel]) -> int:
+    """Readings of all channels together."""
     return sum(c.n for c in channels)
 
 

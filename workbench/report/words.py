@@ -36,6 +36,7 @@ def label(name: str, unit: str) -> str:
 
 
 def axis_label(axis: Axis) -> str:
+    """Name and unit of an axis, for a figure."""
     return label(axis.name, axis.unit)
 
 
