@@ -69,6 +69,7 @@ class Catalogue(Protocol):
 
     effects: of the library;  outside: laws that no effect of it has
     """
+
     name: str
     effects: Mapping[str, Hidden]
     outside: Mapping[str, Hidden]

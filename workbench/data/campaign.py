@@ -38,6 +38,7 @@ from workbench.data.schema import (
     folder_name,
     holdout_rule,
 )  # fmt: skip
+from workbench.data.side_by_side import stacked
 from workbench.data.suspicions import FEW_ROWS, suspicions
 from workbench.data.table import OPEN_CIRCUIT, Campaign, Conditions, Response, Systematic, Table, Tolerance
 from workbench.errors import WorkbenchError
@@ -104,7 +105,7 @@ class _Reader:
     def tables(self, number: int, entry: TableEntry) -> list[Table]:
         """The tables of a file: one, or more where columns with many gaps are kept apart."""
         kind = kind_of(entry.kind, f"{FILE}, table {number}")
-        raw = self._raw(entry)
+        raw, entry = stacked(self._raw(entry), entry)
         self.complaints += raw.remarks
         columns, remarks = columns_of(raw, entry, kind)
         self.complaints += remarks

@@ -62,14 +62,18 @@ def _renamed(raw: RawTable, alias: Mapping[str, str]) -> tuple[Heading, ...]:
     """Headings with the names of ``alias``: "force_kN", or "force" where the heading has the unit."""
     headings = list(raw.headings)
     for written, meant in alias.items():
-        place = _place(raw, headings, written, "alias")
+        place = place_of(raw, headings, written, "alias")
         name, unit = split_unit(meant)
         headings[place] = Heading(headings[place].written, name, unit or headings[place].unit)
     return tuple(headings)
 
 
-def _place(raw: RawTable, headings: Sequence[Heading], key: str, by: str) -> int:
-    """The column that a key means: by its heading, else by its quantity with or without unit."""
+def place_of(raw: RawTable, headings: Sequence[Heading], key: str, by: str) -> int:
+    """The column that a key means: by its heading, else by its quantity with or without unit. by: what speaks of it
+
+    Raises:
+        WorkbenchError: there is no such column, or more than one.
+    """
     places = _places(headings, key)
     if not places:
         known = [h.written for h in headings if h.written]
@@ -101,7 +105,7 @@ def _declared(raw: RawTable, headings: Sequence[Heading], entries: Mapping[str, 
         heading = entry.from_ or key
         if entry.optional and not _places(headings, heading):
             continue
-        place = _place(raw, headings, heading, "columns")
+        place = place_of(raw, headings, heading, "columns")
         found.append(_of_entry(place, headings[place], key, entry, raw))
     return found
 
@@ -138,7 +142,7 @@ def _unit(where: str, entry: ColumnEntry, of_name: str) -> str:
 def _by_names(
     raw: RawTable, headings: Sequence[Heading], random: Mapping[str, Any], kind: Kind
 ) -> tuple[list[Column], list[str]]:
-    sizes = {_place(raw, headings, key, "u_random"): size for key, size in random.items()}
+    sizes = {place_of(raw, headings, key, "u_random"): size for key, size in random.items()}
     found, remarks = [], []
     for place, heading in enumerate(headings):
         if place not in sizes and (words := _unreadable(raw, place, heading)):

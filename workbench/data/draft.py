@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatch
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from workbench.data.guess import (
     is_rms,
     likely_kind,
     likely_model,
+    side_by_side,
 )
 from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
@@ -54,6 +56,15 @@ class _Sheet:
     columns: tuple[Guess, ...]
     kind: str
     before: Mapping[str, ColumnEntry] = field(default_factory=dict)
+
+    @cached_property
+    def beside(self) -> dict[int, tuple[int, ...]]:
+        """Places of the repeats beside a response, by its own; of headings that are known from before none."""
+        return {} if self.before else side_by_side(self.columns, KINDS[self.kind])
+
+    def again(self, place: int) -> list[str]:
+        """Headings of the repeats beside a response."""
+        return [self.raw.headings[k].written for k in self.beside.get(place, ())]
 
 
 def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
@@ -140,6 +151,8 @@ def _known_as(guess: Guess, before: Mapping[str, ColumnEntry]) -> str:
 
 def _repeats(sheet: _Sheet) -> int:
     """As many as have half the rows of the longest, at least: a broken row is none."""
+    if sheet.beside:
+        return 1 + len(next(iter(sheet.beside.values())))
     place = next((guess.place for guess in sheet.columns if guess.quantity == "repeat"), None)
     rows = Counter([] if place is None else map(str, sheet.raw.columns[place]))
     return max(sum(2 * count >= max(rows.values()) > 1 for count in rows.values()), 1)
@@ -216,7 +229,7 @@ def _value(value: object) -> str:
         return str(value).lower()
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(key)} = {_value(inner)}" for key, inner in value.items()) + " }"
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(_value, value)) + "]"
     return _text(value) if isinstance(value, str) else str(value)
 
@@ -256,6 +269,8 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     if guess.heading.written in sheet.before:
         entry = sheet.before[guess.heading.written].model_dump(exclude_defaults=True, by_alias=True)
         return f"{heading} = {_value(entry)}"
+    if any(guess.place in places for places in sheet.beside.values()):
+        return f"# {heading} is a repeat, a guess"
     if not quantity or quantity == "time":
         return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit) or _as_parts(guess, sheet)}"
     if quantity == "direction" and not sheet.raw.holds_numbers(guess.place):
@@ -270,7 +285,8 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     if not _is_answer(quantity, sheet):
         return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}{asked}'
     size, note = _noise(guess, sheet)
-    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size} }}{note}{asked}'
+    again = f", repeats = {_value(sheet.again(guess.place))}" if guess.place in sheet.beside else ""
+    return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size}{again} }}{note}{asked}'
 
 
 def _is_answer(quantity: str, sheet: _Sheet) -> bool:
@@ -290,9 +306,10 @@ def _name(guess: Guess) -> tuple[str, str]:
 
 def _noise(guess: Guess, sheet: _Sheet) -> tuple[str, str]:
     """Uncertainty of a reading as the file is to say it, and a comment on where it comes from."""
-    books = [sheet.raw.values(g.place) for g in sheet.columns if g.quantity in _BOOKKEEPING]
-    conditions = {g.quantity: sheet.raw.values(g.place) for g in _settings(sheet)}
-    found = noise_of(sheet.raw.values(guess.place), conditions, books)
+    places = (guess.place, *sheet.beside.get(guess.place, ()))
+    books = [np.tile(sheet.raw.values(g.place), len(places)) for g in sheet.columns if g.quantity in _BOOKKEEPING]
+    conditions = {g.quantity: np.tile(sheet.raw.values(g.place), len(places)) for g in _settings(sheet)}
+    found = noise_of(np.concatenate([sheet.raw.values(place) for place in places]), conditions, books)
     if found is None:
         return _text("?"), ""
     return found[0], f"  # u_random: scatter of {found[1]}; better the data sheet's"

@@ -64,6 +64,7 @@ _PHASE_VOLTAGES: Final = {"v_a", "v_b", "v_c"}
 _RMS: Final = {"rms", "eff", "effektiv"}
 _MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
+_AT_END: Final = re.compile(r"[\s_.#-]*(\d{1,2})$")  # the number that a name ends in
 _SCALED: Final = re.compile(r"^(?:m|k|u|M|c)(?=[A-Z]|ohm|Ohm|m_per_s|m$|s$)")
 
 
@@ -89,6 +90,31 @@ def guesses(raw: RawTable) -> list[Guess]:
     for settled in (_of_a_sine, _shunted, _of_a_line, _of_lines, _of_a_damper, _of_a_drive):
         found = settled(found)
     return found
+
+
+def side_by_side(found: Sequence[Guess], kind: Kind) -> dict[int, tuple[int, ...]]:
+    """Repeats of responses beside one another, F1, F2, F3: places of the further ones by that of the first. None where
+    a column counts repeats, or responses have unlike numbers of them."""
+    answers = [g for g in found if kind.is_response(g.quantity)]
+    beside = {g.place: _again(g, found) for g in answers}
+    unlike = len({len(places) for places in beside.values()}) != 1
+    return {} if unlike or any(g.quantity == "repeat" for g in found) else {k: p for k, p in beside.items() if p}
+
+
+def _again(first: Guess, found: Sequence[Guess]) -> tuple[int, ...]:
+    """Columns that nothing else is known of, with the heading of another but for a number that goes on."""
+    stem, number = _numbered(first.heading)
+    unknown = {_numbered(g.heading): g.place for g in found if not g.quantity and g.unit == first.unit}
+    places: list[int] = []
+    while (stem, number + 1 + len(places)) in unknown:
+        places.append(unknown[stem, number + 1 + len(places)])
+    return tuple(places)
+
+
+def _numbered(heading: Heading) -> tuple[str, int]:
+    """("force", 2) of "force 2"; what has no number is the first."""
+    number = _AT_END.search(heading.name)
+    return heading.name.removesuffix(number.group() if number else "").lower(), int(number.group(1)) if number else 1
 
 
 def _counted(raw: RawTable, place: int) -> str:

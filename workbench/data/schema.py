@@ -52,7 +52,7 @@ def _size(value: object) -> float:
 def _names(value: object) -> tuple[str, ...]:
     found = [value] if isinstance(value, str) else value
     if not isinstance(found, list) or not all(isinstance(name, str) for name in found):
-        raise ValueError("must be the name of an entry of [systematic], or a list of names")
+        raise ValueError("must be a name or a list of names")
     return tuple(found)
 
 
@@ -116,6 +116,9 @@ class ColumnEntry(Section):
     u_sys: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
         (), description="entries of [systematic] that act on the column, a name or a list"
     )
+    repeats: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        (), description="of a response: headings of further columns that hold it again, a repeat each"
+    )
     bandwidth: Size | None = Field(None, description="frequency above which the recorder lets nothing pass [Hz]")
     optional: bool = Field(False, description="true: the column may be missing")
     instrument: Note = None
@@ -127,6 +130,8 @@ class ColumnEntry(Section):
         for a, b, words in (("u", "u_random", "u and u_random are the same"), ("name", "from_", "name and from")):
             if getattr(self, a) is not None and getattr(self, b) is not None:
                 raise ValueError(f"{words}; keep one")
+        if self.repeats and self.role != "response":
+            raise ValueError(f"repeats are of a response, and the role is {self.role}")
         return self
 
 
