@@ -79,27 +79,23 @@ def test_what_an_effect_may_be_is_no_convention(right, tmp_path):
     assert settled(mistaken(weak, right["dq"], tmp_path / "weak")).are_right
 
 
-def test_poles_that_are_declared_as_pole_pairs_are_thought_of(right, tmp_path):
-    device = (right["dq"] / "campaign.toml").read_text(encoding="utf-8")
-    pairs = int(re.search(r"pole_pairs = (\d+)", device)[1])
-    folder = mistaken(Mistake("nothing", (), (), lambda frame: frame), right["dq"], tmp_path / "poles")
-    (folder / "campaign.toml").write_text(device.replace(f"pole_pairs = {pairs}", f"pole_pairs = {2 * pairs}"))
-    assert settled(folder).advice[-1].endswith(f"[device] pole_pairs = {pairs}.")
-    line = next(m for m in MISTAKES["dq"] if m.words == "phase for line voltage")
-    assert not any("pole_pairs" in words for words in settled(mistaken(line, right["dq"], tmp_path / "line")).advice)
-
-
 @pytest.mark.parametrize(
-    "bench, key, factor",
-    [("damper", "internal_resistance_ohm", 1000), ("dq", "inductance_q_H", 0.001), ("dq", "psi_m_Vs", 10)],
+    "bench, key, factor, name",
+    [
+        ("damper", "internal_resistance_ohm", 1000, "unit_factor"),
+        ("dq", "inductance_q_H", 0.001, "unit_factor"),
+        ("dq", "psi_m_Vs", 10, "unit_factor"),
+        ("dq", "resistance_ohm", 2, "line_or_phase"),
+        ("dq", "pole_pairs", 2, "poles"),
+    ],
 )
-def test_a_constant_in_another_unit_is_told_from_readings_that_are(bench, key, factor, right, tmp_path):
+def test_a_wrong_constant_is_told_from_wrong_readings(bench, key, factor, name, right, tmp_path):
     """All readings that go with it are off at once; the text for campaign.toml holds what it should have been."""
     declared = read_campaign(right[bench]).device[key]
     wrong = shutil.copytree(right[bench], tmp_path / "wrong") / "campaign.toml"
     wrong.write_text(re.sub(rf"(?m)^{key} = .*$", f"{key} = {factor * declared!r}", wrong.read_text(), count=1))
     found = settled(wrong.parent)
-    assert found.names == ("unit_factor",) and found.sentences[0].startswith(f"[device]: {key} looks")
+    assert found.names == (name,) and found.sentences[0].startswith(f"[device]: {key} looks")
     assert found.fix.startswith(f"[device]\n{key} = ") and found.campaign.device[key] == pytest.approx(declared)
     before = read_campaign(wrong.parent)
     again = redesigned(nominal_model(before), before, found.campaign)

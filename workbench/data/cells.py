@@ -75,7 +75,25 @@ def values_of(cells: Sequence[str], decimal: str, where: str, lines: Sequence[in
         return quick
     if is_time(cells):
         return seconds(cells, where)
+    _refuse_either(cells, decimal, where, lines)
     return readings(np.array([number(cell, decimal, where, line) for cell, line in zip(cells, lines)]))
+
+
+def _refuse_either(cells: Sequence[str], decimal: str, where: str, lines: Sequence[int]) -> None:
+    """A column of 3,192 and 12.786, where no cell shows that the other sign is one of thousands: 1.234,5.
+
+    Raises:
+        WorkbenchError: there is such a cell.
+    """
+    other = _other(decimal)
+    own = next((cell for cell in cells if decimal in cell), "")
+    told = any(cell.count(other) + (decimal in cell) > 1 for cell in cells if other in cell)
+    either = next((k for k, cell in enumerate(cells) if _EITHER[other].fullmatch(cell.strip())), None)
+    if own and not told and either is not None:
+        raise WorkbenchError(
+            f"{where}: line {lines[either]} says {cells[either].strip()}, which may be a decimal number or thousands, "
+            f"where its column has {own.strip()}; write the same sign everywhere."
+        )
 
 
 def _quick(cells: Sequence[str], decimal: str) -> np.ndarray | None:

@@ -45,6 +45,7 @@ NAMES: dict[str, str] = {
     "angle_direction": "the angle counts the other way round",
     "angle_zero": "the zero of the angle is elsewhere",
     "electrical_or_mechanical": "electrical and mechanical angles or speeds are confused",
+    "poles": "poles and pole pairs are confused",
     "unit_factor": "numbers are in another unit than declared",
     "line_or_phase": "line and phase quantities are confused",
     "rms_or_peak": "RMS and peak values are confused",
@@ -212,6 +213,7 @@ _FACTOR_WORDS = {
     "line_or_phase": "line for phase values or the reverse",
     "rms_or_peak": "peak for RMS values or the reverse",
     "electrical_or_mechanical": "electrical for mechanical or the reverse",
+    "poles": "poles for pole pairs or the reverse",
 }
 
 
@@ -441,24 +443,29 @@ class LeftOut(Fix):
 
 @dataclass(frozen=True)
 class DeviceFactor(Fix):
-    """true = factor * constant of ``[device]``, which every table goes with. file: ``DEVICE``"""
+    """true = factor * constant of ``[device]``, which every table goes with. file: ``DEVICE``
+
+    means: name of what is wrong, for people
+    """
 
     key: str
     declared: float
     factor: float
+    means: str = "unit_factor"
     place: ClassVar[int] = 12
 
     @property
     def names(self) -> tuple[str, ...]:
-        return ("unit_factor",)
+        return (self.means,)
 
     @property
     def words(self) -> str:
-        return f"{self.key} looks {_how_far(self.factor)}: {_FACTOR_WORDS['unit_factor']}"
+        return f"{self.key} looks {_how_far(self.factor)}: {_FACTOR_WORDS[self.means]}"
 
     @property
     def entry(self) -> dict[str, object]:
-        return {self.key: self.factor * self.declared}
+        true = self.factor * self.declared
+        return {self.key: round(true) if isinstance(self.declared, int) and true == round(true) else true}
 
     @property
     def anywhere(self) -> Fix:

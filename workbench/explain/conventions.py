@@ -7,7 +7,7 @@ habit. Each must be preferred overwhelmingly, so that no physical effect is take
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp
@@ -16,7 +16,6 @@ import numpy as np
 
 from units import DEGREE
 from workbench.data.checks import checks_of
-from workbench.data.column_units import split_unit
 from workbench.data.conventions import (
     ANGLE,
     DEVICE,
@@ -49,10 +48,11 @@ from workbench.explain.mistakes import (
     NEAR,
     OVERWHELMING,
     RARE,
-    TENS,
     Order,
     compatible,
     cost_of_zero,
+    factors_of_constant,
+    kelvins,
     nearest,
     of_the_table,
     orders,
@@ -77,6 +77,7 @@ APART = 4.0  # nats where tables of one encoder do not agree about its angle
 SAME = 1.0  # nats that a fix may cost a table that cannot tell whether it needs it
 OFF_BY_ONE_FACTOR = 5.0  # nats for a device whose readings of one quantity are all off by one factor, up to NEAR
 MET = 0.12  # relative misfit of a channel, below which there is nothing to settle in it
+FAR = 0.3  # misfit of a channel, from which constants of the device are doubted
 EXPLAINED = 0.5  # that a channel may be left with by a fix that improves it; signs and exchanges have no size to fit
 EXPLAINED_SIGN = 0.8
 POWER = 0.3  # misfit against taking power, that a drag may be left with by a change of its sign
@@ -130,24 +131,7 @@ class Conventions:
         said = ("Say so in campaign.toml and no effect is looked for before: the text is below.",)
         if any(isinstance(found.fix, Scaled) for found in self.found):
             said += ("Where the readings are right as they are, a factor of 1 says so, and it is not doubted again.",)
-        return said + self._of_poles
-
-    @property
-    def _of_poles(self) -> tuple[str, ...]:
-        """Voltages at a speed and torques at a current go with the pole pairs that are declared."""
-        pairs = pole_pairs(self.campaign)
-        ways = (tuple(found.fix for found in self.found), *self.equivalents)
-        factor = next((way[0].factor for way in ways if _goes_with_poles(way)), None)
-        if pairs is None or factor is None:
-            return ()
-        right = f"[device] pole_pairs = {pairs / factor:g}"
-        return (f"Poles for pole pairs look like this, too: then no factor is right, but {right}.",)
-
-
-def _goes_with_poles(fixes: tuple[Fix, ...]) -> bool:
-    """Whether voltages and torques are off by two, all the same way, and nothing else is."""
-    scaled = [fix for fix in fixes if isinstance(fix, Scaled) and {*map(quantity, fix.columns)} <= {"v", "torque"}]
-    return len(scaled) == len(fixes) > 0 and {fix.factor for fix in scaled} in ({0.5}, {2.0})
+        return said
 
 
 def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: None) -> Conventions:
@@ -157,13 +141,15 @@ def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: 
     """
     progress("settling conventions")
     model = replace(model, base=model.base.anywhere(model.design), effects=())
+    told = tuple(fix for table in campaign.tables for fix in kelvins(table))
+    declared, campaign = campaign, applied(campaign, told)
     readers = [_Reader(model, campaign, table) for table in campaign.tables if table.responses]
     readings = _readings_of_all(readers)
     best = sorted([*_joint(readings), *_of_device(readers)], key=lambda w: -w.net)
     fixes = _sharpened(readers, _habits(readers, best[0].fixes))
     repaired = applied(campaign, fixes)
     broken = tuple(_broken_channels(redesigned(model, campaign, repaired), repaired))
-    return _conventions(campaign, readers, readings, best, fixes, broken)
+    return _conventions(declared, readers, readings, best, fixes, told + broken)
 
 
 def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: float) -> Diagnosis:
@@ -496,23 +482,24 @@ def _joint(readings: Sequence[Sequence[Reading]]) -> list[_Whole]:
 
 
 def _of_device(readers: Sequence[_Reader]) -> list[_Whole]:
-    """Readings of the whole campaign with a constant of the device in another unit than its key says, where a table is
+    """Readings of the whole campaign with a constant of the device that is not what its key says, where a table is
     missed by far. An expansion about a drawing is not asked: lengths of a machine have a scale of their own."""
-    far = any(max(r.as_it_is.errors.values(), default=0.0) > EXPLAINED for r in readers)
+    far = any(max(r.as_it_is.errors.values(), default=0.0) > FAR for r in readers)
     if not far or readers[0].model.base.is_expansion:
         return []
-    fixes = ((fix, nice.cost) for nice in TENS for fix in _device_factors(readers[0].campaign, nice.value))
+    fixes = _of_constants(readers[0].campaign.device)
     return [whole for fix, cost in fixes if (whole := _with_device(readers, fix, cost)) is not None]
 
 
-def _device_factors(campaign: Campaign, factor: float) -> list[DeviceFactor]:
-    """Of every constant that has a unit with prefixes."""
-    numbers = {key: v for key, v in campaign.device.items() if isinstance(v, (int, float)) and v}
-    keys = [key for key in numbers if split_unit(key)[1] not in ("", "degC")]
-    return [DeviceFactor(DEVICE, key, numbers[key], factor) for key in keys]
+def _of_constants(device: Mapping[str, object]) -> Iterator[tuple[Fix, float]]:
+    """What constants of a device may mean, with what each costs."""
+    numbers = ((key, v) for key, v in device.items() if isinstance(v, (int, float)) and v)
+    for key, number in numbers:
+        for nice in factors_of_constant(key):
+            yield DeviceFactor(DEVICE, key, number, nice.value, nice.means[0]), nice.cost
 
 
-def _with_device(readers: Sequence[_Reader], fix: DeviceFactor, cost: float) -> _Whole | None:
+def _with_device(readers: Sequence[_Reader], fix: Fix, cost: float) -> _Whole | None:
     """None where there is no such device, or a table that it changes is not met with it."""
     before = readers[0].campaign
     campaign = applied(before, [fix])

@@ -10,6 +10,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from units import DEGREE
+from workbench.data.column_units import split_unit
 from workbench.data.conventions import (
     ANGLE,
     LINES,
@@ -28,6 +29,7 @@ from workbench.data.table import Table
 
 OVERWHELMING = 7.0  # nats, odds of 1000 to 1, by which the data must prefer each fix beyond what it is believed
 COLDEST, HOTTEST = -80.0, 450.0  # degC, between which a column of temperatures reads, be it one of kelvins
+UNBEARABLE = 240.0  # degC, of the insulation of a winding (IEC 60085 ends at class 250) and of magnets but AlNiCo
 COMMON, USUAL, RARE = 4.0, 5.5, 7.5  # minus ln of how often a first file has this mistake
 NEAR = 0.2  # of the logarithm of a factor, beyond which it is another one; effects reach 20 %
 NEAR_TEN = 0.5  # the same for a power of ten, which no effect comes near
@@ -49,7 +51,7 @@ def _both(value: float, cost: float, *means: str) -> list[Nice]:
     return [Nice(v, cost, means or ("unit_factor",)) for v in (value, 1 / value)]
 
 
-TENS = [*_both(1e3, COMMON), *_both(1e6, RARE), *_both(10.0, USUAL), *_both(100.0, USUAL)]
+_TENS = [*_both(1e3, COMMON), *_both(1e6, RARE), *_both(10.0, USUAL), *_both(100.0, USUAL)]
 _TWO = _both(2.0, USUAL)
 _PEAK = _both(sqrt(2), COMMON, "rms_or_peak")
 _LINE = _both(sqrt(3), COMMON, "line_or_phase")
@@ -61,14 +63,14 @@ _POUND = _both(4.4482216, USUAL)  # N in a pound-force
 _KILOGRAM = _both(9.80665, USUAL)  # N in a kilogram-force
 _INCH = _both(0.11298483, USUAL)  # Nm in an inch-pound
 _BY_QUANTITY: dict[str, list[Nice]] = {
-    "v": TENS + _TWO + _PEAK + _LINE + _BOTH,
-    "i": TENS + _TWO + _PEAK + _LINE,
-    "power": TENS + _TWO + _both(3.0, USUAL, "line_or_phase"),
-    "torque": TENS + _TWO + _KILOGRAM + _INCH,
-    "force": TENS + _TWO + _KILOGRAM + _POUND,
+    "v": _TENS + _TWO + _PEAK + _LINE + _BOTH,
+    "i": _TENS + _TWO + _PEAK + _LINE,
+    "power": _TENS + _TWO + _both(3.0, USUAL, "line_or_phase"),
+    "torque": _TENS + _TWO + _KILOGRAM + _INCH,
+    "force": _TENS + _TWO + _KILOGRAM + _POUND,
     "speed": _both(2 * pi / 60, COMMON) + _both(2 * pi, USUAL) + _both(60.0, USUAL),
     "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL),
-    "shunt": TENS,
+    "shunt": _TENS,
     "frequency": _both(2 * pi, COMMON) + _both(60.0, USUAL) + _both(1e3, USUAL),
     "amplitude": _both(1e3, COMMON) + _TWO + _PEAK,
 }
@@ -86,11 +88,20 @@ def factors(column: str, pole_pairs: float | None) -> list[Nice]:
     what = quantity(column)
     if what in SENSELESS or column.endswith("_T"):
         return []
-    found = list(_BY_QUANTITY.get(what, TENS + _TWO))
+    found = list(_BY_QUANTITY.get(what, _TENS + _TWO))
     if what == "speed" and pole_pairs and pole_pairs > 1:
         found += _both(pole_pairs, COMMON, "electrical_or_mechanical")
         found += _both(pole_pairs * 60 / (2 * pi), RARE, "electrical_or_mechanical", "unit_factor")
     return found
+
+
+def factors_of_constant(key: str) -> list[Nice]:
+    """The factors that have a name of a constant of the device."""
+    name, unit = split_unit(key)
+    if name == "pole_pairs":
+        return _both(2.0, USUAL, "poles")
+    between_lines = _both(2.0, USUAL, "line_or_phase") if name.endswith("resistance") else []
+    return [*_TENS, *between_lines] if unit not in ("", "degC") else []
 
 
 def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) -> list[Nice]:
@@ -100,8 +111,8 @@ def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) ->
     """
     if not value > 0:
         return []
-    known = TENS if alone else factors(column, pole_pairs)
-    near = [nice for nice in known if abs(log(nice.value / value)) < (NEAR_TEN if nice in TENS else NEAR)]
+    known = _TENS if alone else factors(column, pole_pairs)
+    near = [nice for nice in known if abs(log(nice.value / value)) < (NEAR_TEN if nice in _TENS else NEAR)]
     return sorted(near, key=lambda nice: abs(log(nice.value / value)))[:2]
 
 
@@ -178,11 +189,15 @@ def _shifts(table: Table) -> Iterator[tuple[Fix, float]]:
 
 def _temperatures(table: Table) -> Iterator[tuple[Fix, float]]:
     for column in (c for c in table.conditions if c.endswith("_T")):
-        middle = float(np.median(table.conditions[column]))
-        if middle > 200.0:
-            yield TemperatureScale(table.file, column, "kelvin"), COMMON
-        if middle > 50.0:
+        if float(np.median(table.conditions[column])) > 50.0:
             yield TemperatureScale(table.file, column, "fahrenheit"), COMMON
+
+
+def kelvins(table: Table) -> Iterator[TemperatureScale]:
+    """Temperatures that no winding and no magnet withstands, be it in one row: no model has to be asked."""
+    for column, values in table.conditions.items():
+        if column.endswith("_T") and values.min() > UNBEARABLE and values.max() < HOTTEST:
+            yield TemperatureScale(table.file, column, "kelvin")
 
 
 # ---- readings of the responses that do not --------------------------------------------------------------------------
