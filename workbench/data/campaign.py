@@ -105,7 +105,8 @@ class _Reader:
     def tables(self, number: int, entry: TableEntry) -> list[Table]:
         """The tables of a file: one, or more where columns with many gaps are kept apart."""
         kind = kind_of(entry.kind, f"{FILE}, table {number}")
-        raw, entry = stacked(self._raw(entry), entry)
+        files = (entry.model_copy(update={"file": name}) for name in (entry.file, *entry.repeats))
+        raw, entry = stacked([self._raw(one) for one in files], entry)
         self.complaints += raw.remarks
         columns, remarks = columns_of(raw, entry, kind)
         self.complaints += remarks

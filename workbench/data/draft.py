@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatch
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +24,7 @@ from workbench.data.guess import (
     is_rms,
     likely_kind,
     likely_model,
+    numbered,
     side_by_side,
 )
 from workbench.data.headings import known_unit
@@ -32,9 +32,11 @@ from workbench.data.kinds import KINDS
 from workbench.data.raw_table import RawTable, read_raw, used_twice
 from workbench.data.scatter import noise_of
 from workbench.data.schema import FILE, ColumnEntry, TableEntry, campaign_file
+from workbench.data.side_by_side import NUMBER, stacked
 from workbench.errors import WorkbenchError
 
 _OF_THE_LARGEST = f"assumed: {100 * ZERO_DRIFT:g} % of the largest reading"
+_SAME_PLACE, _SAME_ANSWER = 0.01, 0.2  # of the largest value: files that differ by less may repeat one another
 _BOOKKEEPING = ("scan", "repeat", "holdout")
 _WHICH_INDUCTANCE = "name: l_a of a phase fed alone, l_bc (l_ab, l_ca) between two lines, l_m of B by A"
 _OF_AXES = ("i_d", "i_q", "v_d", "v_q")
@@ -50,21 +52,24 @@ _SYSTEMATIC = "[systematic]  # errors that all rows of an instrument share; bett
 
 @dataclass(frozen=True, eq=False)
 class _Sheet:
-    """A data file with what its columns probably are. before: what another campaign says of the same headings"""
+    """A data file, or some that repeat it, with what its columns probably are.
 
+    files: names, that of the first repeat first;  beside: headings of the repeats beside a response, by its own
+    before: what another campaign says of the same headings
+    """
+
+    files: tuple[str, ...]
     raw: RawTable
     columns: tuple[Guess, ...]
     kind: str
+    beside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     before: Mapping[str, ColumnEntry] = field(default_factory=dict)
 
-    @cached_property
-    def beside(self) -> dict[int, tuple[int, ...]]:
-        """Places of the repeats beside a response, by its own; of headings that are known from before none."""
-        return {} if self.before else side_by_side(self.columns, KINDS[self.kind])
-
-    def again(self, place: int) -> list[str]:
-        """Headings of the repeats beside a response."""
-        return [self.raw.headings[k].written for k in self.beside.get(place, ())]
+    @property
+    def entry(self) -> TableEntry:
+        """What is declared of its repeats."""
+        columns = {h: ColumnEntry(role="response", repeats=list(again)) for h, again in self.beside.items()}
+        return TableEntry(file=self.files[0], kind=self.kind, repeats=list(self.files[1:]), columns=columns or None)
 
 
 def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
@@ -75,18 +80,18 @@ def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
     Raises:
         WorkbenchError: a file is not there, is no table, or lies in another folder.
     """
-    tables = [] if like is None else campaign_file(like).table
-    sheets = [_as_before(_sheet(path), tables) for path in paths]
+    tables, read = [] if like is None else campaign_file(like).table, [_sheet(path) for path in paths]
     folder = paths[0].resolve().parent
     if any(path.resolve().parent != folder for path in paths):
         raise WorkbenchError(f"all files of a campaign lie in one folder; put them beside {paths[0]}.")
+    sheets = [_as_before(_below(repeats), tables) for repeats in _repeated(read)]
     quantities = [guess.quantity for sheet in sheets for guess in sheet.columns]
     repeats = max(_repeats(sheet) for sheet in sheets)
     name = re.sub(r"[^\w.-]+", "-", folder.name).strip("-.") or "campaign"
     head = _HEAD.format(id=_text(name), repeats=repeats)
     model = likely_model([sheet.kind for sheet in sheets], quantities)
     device = _device(model, quantities, _zeros(sheets)) if like is None else _taken_over(like)
-    return head + device + "".join(_table(path.name, sheet) for path, sheet in zip(paths, sheets))
+    return head + device + "".join(map(_table, sheets))
 
 
 def campaign_like(folder: Path, name: str) -> str:
@@ -129,7 +134,49 @@ def _sheet(path: Path) -> _Sheet:
         if count > 1:
             raise used_twice(path.name, count, heading)
     columns = tuple(guesses(raw))
-    return _Sheet(raw, columns, likely_kind([guess.quantity for guess in columns]))
+    kind = likely_kind([guess.quantity for guess in columns])
+    return _Sheet((path.name,), raw, columns, kind, side_by_side(columns, KINDS[kind]))
+
+
+def _repeated(sheets: Sequence[_Sheet]) -> list[list[_Sheet]]:
+    """Files with those that repeat them: the same columns and places under names that differ by a number."""
+    groups: list[list[_Sheet]] = []
+    for sheet in sheets:
+        group = next((group for group in groups if _repeats_it(group[0], sheet)), None)
+        if group is None:
+            groups.append([sheet])
+        else:
+            group.append(sheet)
+    return groups
+
+
+def _repeats_it(first: _Sheet, sheet: _Sheet) -> bool:
+    names = {numbered(Path(one.files[0]).stem) for one in (first, sheet)}
+    same_name = len(names) == 2 and len({stem for stem, _ in names}) == 1
+    same_columns = first.raw.headings == sheet.raw.headings and first.raw.rows == sheet.raw.rows
+    if not (same_name and same_columns) or any(guess.quantity == "repeat" for guess in sheet.columns):
+        return False
+    answers = [guess for guess in sheet.columns if _is_answer(guess.quantity, sheet)]
+    within = [(guess, _SAME_PLACE) for guess in _settings(sheet)] + [(guess, _SAME_ANSWER) for guess in answers]
+    return all(_is_alike(first.raw.values(g.place), sheet.raw.values(g.place), share) for g, share in within)
+
+
+def _is_alike(one: np.ndarray, other: np.ndarray, share: float) -> bool:
+    """Whether values differ by less than a share of the largest."""
+    known = np.isfinite(one) & np.isfinite(other)
+    apart, reach = np.linalg.norm(one[known] - other[known]), np.abs(one[known]).max(initial=0.0)
+    return bool(apart <= np.sqrt(known.sum()) * share * reach)
+
+
+def _below(sheets: Sequence[_Sheet]) -> _Sheet:
+    """The repeats of a sheet as one, in files and beside one another; the number that counts them is a guess, too."""
+    files = tuple(file for sheet in sheets for file in sheet.files)
+    whole = replace(sheets[0], files=files)
+    if len(files) == 1 and not whole.beside:
+        return whole
+    raw, _ = stacked([sheet.raw for sheet in sheets], whole.entry)
+    number = Guess(len(raw.headings) - 1, raw.headings[-1], "repeat", "")
+    return replace(whole, raw=raw, columns=(*whole.columns, number))
 
 
 def _as_before(sheet: _Sheet, tables: Sequence[TableEntry]) -> _Sheet:
@@ -151,8 +198,6 @@ def _known_as(guess: Guess, before: Mapping[str, ColumnEntry]) -> str:
 
 def _repeats(sheet: _Sheet) -> int:
     """As many as have half the rows of the longest, at least: a broken row is none."""
-    if sheet.beside:
-        return 1 + len(next(iter(sheet.beside.values())))
     place = next((guess.place for guess in sheet.columns if guess.quantity == "repeat"), None)
     rows = Counter([] if place is None else map(str, sheet.raw.columns[place]))
     return max(sum(2 * count >= max(rows.values()) > 1 for count in rows.values()), 1)
@@ -246,11 +291,13 @@ def _text(value: str) -> str:
 # ---- tables --------------------------------------------------------------------------------------------------------
 
 
-def _table(name: str, sheet: _Sheet) -> str:
+def _table(sheet: _Sheet) -> str:
     source = "as before" if sheet.before else "a guess"
     kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
-    lines = ["", "[[table]]", f"file = {_text(name)}", kind, "[table.columns]  # heading = what the column holds"]
-    return "\n".join(lines + [_line(guess, sheet) for guess in sheet.columns if guess.heading.written]) + "\n"
+    more = [f"repeats = {_value(sheet.files[1:])}  # the same measured again, a guess"] if sheet.files[1:] else []
+    lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, kind]
+    columns = [_line(g, sheet) for g in sheet.columns if g.heading.written and g.heading != NUMBER]
+    return "\n".join([*lines, "[table.columns]  # heading = what the column holds", *columns]) + "\n"
 
 
 def _unknown(unit: str) -> str:
@@ -269,7 +316,7 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     if guess.heading.written in sheet.before:
         entry = sheet.before[guess.heading.written].model_dump(exclude_defaults=True, by_alias=True)
         return f"{heading} = {_value(entry)}"
-    if any(guess.place in places for places in sheet.beside.values()):
+    if any(guess.heading.written in again for again in sheet.beside.values()):
         return f"# {heading} is a repeat, a guess"
     if not quantity or quantity == "time":
         return f"# {heading} = {{ ... }}  # not read{_unknown(guess.heading.unit) or _as_parts(guess, sheet)}"
@@ -285,7 +332,7 @@ def _line(guess: Guess, sheet: _Sheet) -> str:
     if not _is_answer(quantity, sheet):
         return f'{heading} = {{ {named}unit = {unit}, role = "condition" }}{asked}'
     size, note = _noise(guess, sheet)
-    again = f", repeats = {_value(sheet.again(guess.place))}" if guess.place in sheet.beside else ""
+    again = f", repeats = {_value(beside)}" if (beside := sheet.beside.get(guess.heading.written)) else ""
     return f'{heading} = {{ {named}unit = {unit}, role = "response", u_random = {size}{again} }}{note}{asked}'
 
 
@@ -306,10 +353,9 @@ def _name(guess: Guess) -> tuple[str, str]:
 
 def _noise(guess: Guess, sheet: _Sheet) -> tuple[str, str]:
     """Uncertainty of a reading as the file is to say it, and a comment on where it comes from."""
-    places = (guess.place, *sheet.beside.get(guess.place, ()))
-    books = [np.tile(sheet.raw.values(g.place), len(places)) for g in sheet.columns if g.quantity in _BOOKKEEPING]
-    conditions = {g.quantity: np.tile(sheet.raw.values(g.place), len(places)) for g in _settings(sheet)}
-    found = noise_of(np.concatenate([sheet.raw.values(place) for place in places]), conditions, books)
+    books = [sheet.raw.values(g.place) for g in sheet.columns if g.quantity in _BOOKKEEPING]
+    conditions = {g.quantity: sheet.raw.values(g.place) for g in _settings(sheet)}
+    found = noise_of(sheet.raw.values(guess.place), conditions, books)
     if found is None:
         return _text("?"), ""
     return found[0], f"  # u_random: scatter of {found[1]}; better the data sheet's"

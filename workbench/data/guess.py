@@ -92,29 +92,30 @@ def guesses(raw: RawTable) -> list[Guess]:
     return found
 
 
-def side_by_side(found: Sequence[Guess], kind: Kind) -> dict[int, tuple[int, ...]]:
-    """Repeats of responses beside one another, F1, F2, F3: places of the further ones by that of the first. None where
-    a column counts repeats, or responses have unlike numbers of them."""
+def side_by_side(found: Sequence[Guess], kind: Kind) -> dict[str, tuple[str, ...]]:
+    """Repeats of responses beside one another, F1, F2, F3: headings of the further ones by that of the first. None
+    where a column counts repeats, or responses have unlike numbers of them."""
     answers = [g for g in found if kind.is_response(g.quantity)]
-    beside = {g.place: _again(g, found) for g in answers}
-    unlike = len({len(places) for places in beside.values()}) != 1
+    beside = {g.heading.written: _again(g, found) for g in answers}
+    unlike = len({len(again) for again in beside.values()}) != 1
     return {} if unlike or any(g.quantity == "repeat" for g in found) else {k: p for k, p in beside.items() if p}
 
 
-def _again(first: Guess, found: Sequence[Guess]) -> tuple[int, ...]:
-    """Columns that nothing else is known of, with the heading of another but for a number that goes on."""
-    stem, number = _numbered(first.heading)
-    unknown = {_numbered(g.heading): g.place for g in found if not g.quantity and g.unit == first.unit}
-    places: list[int] = []
-    while (stem, number + 1 + len(places)) in unknown:
-        places.append(unknown[stem, number + 1 + len(places)])
-    return tuple(places)
+def _again(first: Guess, found: Sequence[Guess]) -> tuple[str, ...]:
+    """Headings of columns that nothing else is known of, as that of another but for a number that goes on."""
+    stem, number = numbered(first.heading.name)
+    alike = [g.heading for g in found if not g.quantity and g.unit == first.unit]
+    unknown = {numbered(heading.name): heading.written for heading in alike}
+    again: list[str] = []
+    while (stem, number + 1 + len(again)) in unknown:
+        again.append(unknown[stem, number + 1 + len(again)])
+    return tuple(again)
 
 
-def _numbered(heading: Heading) -> tuple[str, int]:
+def numbered(name: str) -> tuple[str, int]:
     """("force", 2) of "force 2"; what has no number is the first."""
-    number = _AT_END.search(heading.name)
-    return heading.name.removesuffix(number.group() if number else "").lower(), int(number.group(1)) if number else 1
+    number = _AT_END.search(name)
+    return name.removesuffix(number.group() if number else "").lower(), int(number.group(1)) if number else 1
 
 
 def _counted(raw: RawTable, place: int) -> str:

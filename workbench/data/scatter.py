@@ -103,5 +103,16 @@ def _robust(differences: np.ndarray) -> float:
 
 
 def _of_digits(values: np.ndarray) -> float:
+    """Standard deviation by the steps that values are read in: those of a converter, where some recur, else those of
+    their last digit."""
     steps = np.diff(np.unique(values))
-    return float(steps.min()) / np.sqrt(12.0) if steps.size else 0.0
+    if not steps.size:
+        return 0.0
+    step = float(steps.min()) if len(steps) + 1 < len(values) else _last_digit(values)
+    return step / float(np.sqrt(12.0))
+
+
+def _last_digit(values: np.ndarray) -> float:
+    """The largest power of ten of which all values are multiples."""
+    places = 10.0 ** np.arange(3, -10, -1)
+    return next((float(p) for p in places if np.allclose(values, p * np.round(values / p), rtol=1e-9, atol=0.0)), 0.0)

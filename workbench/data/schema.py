@@ -140,6 +140,9 @@ class TableEntry(Section):
 
     file: Text = Field(description="CSV, text or Parquet file in the folder of the campaign")
     kind: Text = Field(description="what was measured, see below")
+    repeats: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        (), description="further files with the same columns, in which all was measured again, a repeat each"
+    )
     columns: dict[str, ColumnEntry] | None = Field(
         None, description="what the columns are, by their headings; columns that are not named are not read"
     )
@@ -164,6 +167,8 @@ class TableEntry(Section):
     def _one_spelling(self) -> TableEntry:
         if self.columns is not None and self.u_random is not None:
             raise ValueError("give columns or u_random, not both: with columns the uncertainty stands in each of them")
+        if len({self.file, *self.repeats}) <= len(self.repeats):
+            raise ValueError("file and repeats name a file twice; name every file once")
         return self
 
 

@@ -145,6 +145,9 @@ def test_without_repeats_neighbours_show_the_noise_and_few_rows_none():
     random, places = np.random.default_rng(4), np.linspace(0, 1, 400)
     said, shown_by = noise_of(np.sin(places) + 0.01 * random.standard_normal(400), {"velocity": places})
     assert shown_by == "neighbours" and float(said) == pytest.approx(0.01, rel=0.2)
+    line = np.round(0.0277 * places * 4000 + 0.06 * random.standard_normal(400), 2)[::33]
+    said, _ = noise_of(line, {"speed": places[::33]})
+    assert 0.02 < float(said) < 0.2, "a straight line steps by much more than its noise"
     assert noise_of(np.arange(5.0), {"velocity": np.arange(5.0)}) is None and noise_of(np.ones(20), {}) is None
 
 

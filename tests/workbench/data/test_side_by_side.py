@@ -39,6 +39,49 @@ def test_it_is_the_campaign_whose_repeats_are_counted(tmp_path):
     assert np.array_equal(one.repeat, other.repeat) and np.array_equal(one.scan, other.scan)
 
 
+def in_files(folder, change=lambda lines: lines, more='repeats = ["f 2.csv", "f 3.csv"]\n'):
+    """One repeat a file; the change is to the last."""
+    folder.mkdir()
+    for k, force in enumerate(FORCE):
+        lines = ["v [m/s],F1 [N]", *(f"{v!r},{f!r}" for v, f in zip(VELOCITY.tolist(), force.tolist()))]
+        lines = change(lines) if k == 2 else lines
+        (folder / ("f.csv" if k == 0 else f"f {k + 1}.csv")).write_text("\n".join(lines) + "\n")
+    columns = f'"F1 [N]" = {{ name = "force", unit = "N", {ROLE} }}\n'
+    (folder / "campaign.toml").write_text(HEAD + more + SPEED + columns)
+    return folder
+
+
+def test_files_that_repeat_one_another_are_one_table(tmp_path):
+    one, other = read_campaign(beside(tmp_path / "beside")), read_campaign(in_files(tmp_path / "files"))
+    (first,), (second,) = one.tables, other.tables
+    assert np.array_equal(first.responses["force"].values, second.responses["force"].values)
+    assert np.array_equal(first.repeat, second.repeat) and set(other.file_hashes) == {"f.csv", "f 2.csv", "f 3.csv"}
+
+
+@pytest.mark.parametrize(
+    "change, more, words",
+    [
+        (lambda lines: [x + ",1" for x in lines], 'repeats = "f 3.csv"\n', "f 3.csv: has other columns than f.csv"),
+        (lambda lines: lines, 'repeats = ["f.csv"]\n', "file and repeats name a file twice"),
+        (lambda lines: lines, 'repeats = ["f 4.csv"]\n', "the data file 'f 4.csv' of campaign.toml does not exist"),
+    ],
+)
+def test_files_that_cannot_repeat_one_another_are_said(tmp_path, change, more, words):
+    with pytest.raises(WorkbenchError) as said:
+        read_campaign(in_files(tmp_path / "c", change, more))
+    assert words in str(said.value)
+
+
+def test_a_draft_takes_files_for_repeats_where_they_are_alike(tmp_path):
+    """Of other velocities, of forces of another size or under another name they are tables of their own."""
+    files = ["f.csv", "f 2.csv", "f 3.csv"]
+    same = in_files(tmp_path / "same")
+    assert 'repeats = ["f 2.csv", "f 3.csv"]' in draft_of([same / file for file in files])
+    harder = [f"{v!r},{2 * f!r}" for v, f in zip(VELOCITY.tolist(), FORCE[2].tolist())]
+    other = in_files(tmp_path / "other", lambda lines: [lines[0], *harder])
+    assert draft_of([other / file for file in files]).count("[[table]]") == 2
+
+
 def test_a_gap_is_said_with_its_line(tmp_path):
     folder = beside(tmp_path / "c")
     lines = (folder / "f.csv").read_text().splitlines()
