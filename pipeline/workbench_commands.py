@@ -101,6 +101,7 @@ def add_import(parser: argparse.ArgumentParser) -> None:
     """A ``campaign.toml`` for plain data files."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="CSV, text or Parquet files of one folder; only read")
     parser.add_argument("--like", metavar="DIR", help="campaign of the same device: takes its device and instruments")
+    parser.add_argument("--decimal", choices=(",", "."), help="sign of the files, where their numbers do not show it")
     parser.set_defaults(run=_import)
 
 
@@ -197,7 +198,7 @@ def _diagnose(options: argparse.Namespace) -> None:
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
-        _print_diagnosis(diagnosis, out)
+        _print_diagnosis(diagnosis, campaign, out)
 
 
 def _add(options: argparse.Namespace) -> None:
@@ -223,7 +224,7 @@ def _ledger(options: argparse.Namespace) -> None:
         if ledger.steps:
             _write_ledger(out, ledger)
             _print_ledger(ledger)
-        _print_diagnosis(diagnosis, out)
+        _print_diagnosis(diagnosis, campaign, out)
 
 
 def _validate(options: argparse.Namespace) -> None:
@@ -281,7 +282,7 @@ def _new_effect(options: argparse.Namespace) -> None:
 def _import(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         like = None if options.like is None else Path(options.like)
-        target, lines = write_draft([Path(file) for file in options.files], like)
+        target, lines = write_draft([Path(file) for file in options.files], like, options.decimal)
         todo = f'fill in the "?" of line {", ".join(map(str, lines))}' if lines else "read it once"
         print(f"wrote {target}: {todo}, then airgap compare {target.parent}")
 
@@ -326,8 +327,8 @@ def _print_comparison(c: Comparison, out: Path) -> None:
     print(f"results in {out}")
 
 
-def _print_diagnosis(d: Diagnosis, out: Path) -> None:
-    print("", *(f"! {check}" for check in d.checks), sep="\n")
+def _print_diagnosis(d: Diagnosis, campaign: Campaign, out: Path) -> None:
+    print("", *(f"! {words}" for words in (*d.checks, *campaign.complaints)), sep="\n")
     if d.verdict != "convention":
         _print_found(d)
     print(verdict_sentence(d), meaning(d), *bound_sentences(d), *d.contradictions, *conclusions(d), sep="\n")

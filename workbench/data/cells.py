@@ -56,7 +56,7 @@ def decimal_sign(text: str, where: str) -> str:
     if not comma and not point and "," in text and (either := _EITHER[","].search(text)):
         raise WorkbenchError(
             f'{where}: {either.group()} may be a decimal number or thousands; say decimal = "," or decimal = "." in '
-            "its [[table]]."
+            "its [[table]], or --decimal to airgap import."
         )
     return "," if comma else "."
 

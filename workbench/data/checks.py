@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 
 from units import percent
 from workbench.data.column_units import factor, split_unit
 from workbench.data.kinds import KINDS
-from workbench.data.repeats import matched_rows
+from workbench.data.repeats import matched_rows, places_of
 from workbench.data.table import Campaign, Response, Table
 
 LOUD = 4.0  # standard errors from which a check speaks
@@ -49,7 +49,7 @@ def _repeats_agree(table: Table) -> list[str]:
     stations = matched_rows(table)
     found = []
     for r in table.responses.values() if stations is not None else ():
-        z, size = _scatter(r, stations)
+        z, size = _scatter(table, r, stations)
         shift = z.mean(axis=0) * np.sqrt(len(stations))
         if size > 3:
             found.append(f"{table.file}: repeats of {r.name} disagree by {size:.1f} times the declared uncertainty")
@@ -63,9 +63,11 @@ def _repeats_agree(table: Table) -> list[str]:
     return found
 
 
-def _scatter(r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
-    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size."""
-    z = (r.values[stations] - r.values[stations].mean(axis=1, keepdims=True)) / r.random[stations]
+def _scatter(table: Table, r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
+    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size; less
+    what comes of conditions that were not met alike, by a curved surface over them."""
+    values = (r.values - _surface(table, r))[stations]
+    z = (values - values.mean(axis=1, keepdims=True)) / r.random[stations]
     return z, float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
 
 
@@ -158,6 +160,14 @@ def _impedance(table: Table) -> list[str]:
     )
 
 
+def _surface(table: Table, r: Response) -> np.ndarray:
+    """The readings by a quadratic form in the conditions (n,)."""
+    places = places_of(table)
+    products = [places[:, i] * places[:, j] for i, j in combinations_with_replacement(range(places.shape[1]), 2)]
+    shapes = np.column_stack([np.ones(table.rows), places, *products]) / r.random[:, None]
+    return r.random * (shapes @ np.linalg.lstsq(shapes, r.values / r.random, rcond=None)[0])
+
+
 def _causality(table: Table) -> list[str]:
     """Kramers-Kronig: one set of real coefficients makes both parts of the impedance of a causal linear device.
 
@@ -169,7 +179,8 @@ def _causality(table: Table) -> list[str]:
     if table.kind != "impedance" or not {"re", "im"} <= set(table.responses) or "frequency" not in table.conditions:
         return []
     stations = matched_rows(table)
-    noise = 1.0 if stations is None else max(1.0, *(_scatter(table.responses[n], stations)[1] for n in ("re", "im")))
+    parts = (table.responses[name] for name in ("re", "im"))
+    noise = 1.0 if stations is None else max(1.0, *(_scatter(table, part, stations)[1] for part in parts))
     worst = max((_not_causal(table, rows) for rows in _sweeps(table)), default=1.0) / noise
     if worst < NOT_CAUSAL:
         return []

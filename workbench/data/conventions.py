@@ -422,8 +422,8 @@ class LeftOut(Fix):
 
     @property
     def words(self) -> str:
-        what = "stops at the end of its range" if self.why == "clipped" else "was stuck"
-        return f"{self.column} {what}, {self._shown:.6g} {self.unit}"
+        what = "stops at the end of its range," if self.why == "clipped" else "was stuck at"
+        return f"{self.column} {what} {self._shown:.6g} {self.unit}".rstrip()
 
     @property
     def _shown(self) -> float:

@@ -29,7 +29,7 @@ from workbench.data.guess import (
 )
 from workbench.data.headings import known_unit
 from workbench.data.kinds import KINDS
-from workbench.data.raw_table import RawTable, read_raw, used_twice
+from workbench.data.raw_table import Layout, RawTable, read_raw, used_twice
 from workbench.data.scatter import noise_of
 from workbench.data.schema import FILE, ColumnEntry, TableEntry, campaign_file
 from workbench.data.side_by_side import NUMBER, stacked
@@ -55,7 +55,7 @@ class _Sheet:
     """A data file, or some that repeat it, with what its columns probably are.
 
     files: names, that of the first repeat first;  beside: headings of the repeats beside a response, by its own
-    before: what another campaign says of the same headings
+    before: what another campaign says of the same headings;  decimal: sign that has to be declared
     """
 
     files: tuple[str, ...]
@@ -64,6 +64,7 @@ class _Sheet:
     kind: str
     beside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     before: Mapping[str, ColumnEntry] = field(default_factory=dict)
+    decimal: str | None = None
 
     @property
     def entry(self) -> TableEntry:
@@ -72,15 +73,16 @@ class _Sheet:
         return TableEntry(file=self.files[0], kind=self.kind, repeats=list(self.files[1:]), columns=columns or None)
 
 
-def draft_of(paths: Sequence[Path], like: Path | None = None) -> str:
+def draft_of(paths: Sequence[Path], like: Path | None = None, decimal: str | None = None) -> str:
     """The text of a ``campaign.toml`` for some data files of one folder.
 
     like: folder of a campaign of the same device, whose device, tolerances, instruments and, under the same headings,
         columns are taken over
+    decimal: sign of the files, "," or ".", where they do not show it
     Raises:
         WorkbenchError: a file is not there, is no table, or lies in another folder.
     """
-    tables, read = [] if like is None else campaign_file(like).table, [_sheet(path) for path in paths]
+    tables, read = [] if like is None else campaign_file(like).table, [_sheet(path, decimal) for path in paths]
     folder = paths[0].resolve().parent
     if any(path.resolve().parent != folder for path in paths):
         raise WorkbenchError(f"all files of a campaign lie in one folder; put them beside {paths[0]}.")
@@ -103,14 +105,14 @@ def campaign_like(folder: Path, name: str) -> str:
     return f"[campaign]\nid = {_text(name)}\n" + _taken_over(folder)
 
 
-def write_draft(paths: Sequence[Path], like: Path | None = None) -> tuple[Path, list[int]]:
+def write_draft(paths: Sequence[Path], like: Path | None = None, decimal: str | None = None) -> tuple[Path, list[int]]:
     """Writes the draft beside the data files, which are only read; returns its path and the lines to fill in.
 
     Raises:
         WorkbenchError: there is a campaign file already, or a file is no table.
     """
     target = paths[0].parent / FILE
-    text = draft_of(paths, like)
+    text = draft_of(paths, like, decimal)
     if target.exists():
         raise WorkbenchError(f"{target}: exists already; it is not overwritten.")
     try:
@@ -124,18 +126,18 @@ def _is_open(line: str) -> bool:
     return '= "?"' in line.partition("#")[0] or 'unit = "?"' in line.partition(" # ")[0]
 
 
-def _sheet(path: Path) -> _Sheet:
+def _sheet(path: Path, decimal: str | None) -> _Sheet:
     if path.is_dir():
         raise WorkbenchError(f"{path}: is a folder; name the files in it, {path}/*.csv.")
     if not path.is_file():
         raise WorkbenchError(f"{path}: cannot be read as CSV: there is no such file.")
-    raw = read_raw(path)
+    raw = read_raw(path, Layout(decimal=decimal))
     for heading, count in Counter(heading.written for heading in raw.headings if heading.written).items():
         if count > 1:
             raise used_twice(path.name, count, heading)
     columns = tuple(guesses(raw))
     kind = likely_kind([guess.quantity for guess in columns])
-    return _Sheet((path.name,), raw, columns, kind, side_by_side(columns, KINDS[kind]))
+    return _Sheet((path.name,), raw, columns, kind, side_by_side(columns, KINDS[kind]), decimal=decimal)
 
 
 def _repeated(sheets: Sequence[_Sheet]) -> list[list[_Sheet]]:
@@ -294,8 +296,9 @@ def _text(value: str) -> str:
 def _table(sheet: _Sheet) -> str:
     source = "as before" if sheet.before else "a guess"
     kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
+    sign = [f"decimal = {_text(sheet.decimal)}"] if sheet.decimal else []
     more = [f"repeats = {_value(sheet.files[1:])}  # the same measured again, a guess"] if sheet.files[1:] else []
-    lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, kind]
+    lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, *sign, kind]
     columns = [_line(g, sheet) for g in sheet.columns if g.heading.written and g.heading != NUMBER]
     return "\n".join([*lines, "[table.columns]  # heading = what the column holds", *columns]) + "\n"
 

@@ -102,7 +102,12 @@ KINDS: dict[str, Kind] = {
         cost=2.0,
         says="Driven by a sine; re, im: fundamental of the force over that of the velocity.",
     ),
-    "force_loop": Kind(("force", "torque"), ("displacement", "velocity"), cost=2.0, says="Force over a driven motion."),
+    "force_loop": Kind(
+        ("force", "torque"),
+        ("displacement", "velocity"),
+        cost=2.0,
+        says="Force over a driven motion. Of a damper at frequency, amplitude, shunt and phase, x = A sin(phase).",
+    ),
     "dq_operation": Kind(
         ("v_d", "v_q", "torque"),
         ("i_d", "i_q", "speed"),

@@ -77,6 +77,7 @@ APART = 4.0  # nats where tables of one encoder do not agree about its angle
 SAME = 1.0  # nats that a fix may cost a table that cannot tell whether it needs it
 OFF_BY_ONE_FACTOR = 5.0  # nats for a device whose readings of one quantity are all off by one factor, up to NEAR
 MET = 0.12  # relative misfit of a channel, below which there is nothing to settle in it
+DRAWN = 1.0  # nats for a wrong constant of the device before a wrong column: it is copied once, from a sheet
 FAR = 0.3  # misfit of a channel, from which constants of the device are doubted
 EXPLAINED = 0.5  # that a channel may be left with by a fix that improves it; signs and exchanges have no size to fit
 EXPLAINED_SIGN = 0.8
@@ -496,7 +497,7 @@ def _of_constants(device: Mapping[str, object]) -> Iterator[tuple[Fix, float]]:
     numbers = ((key, v) for key, v in device.items() if isinstance(v, (int, float)) and v)
     for key, number in numbers:
         for nice in factors_of_constant(key):
-            yield DeviceFactor(DEVICE, key, number, nice.value, nice.means[0]), nice.cost
+            yield DeviceFactor(DEVICE, key, number, nice.value, nice.means[0]), nice.cost + DRAWN
 
 
 def _with_device(readers: Sequence[_Reader], fix: Fix, cost: float) -> _Whole | None:

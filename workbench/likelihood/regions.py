@@ -217,4 +217,4 @@ def _words(name: str, bound: float, signed: bool) -> str:
     unit, factor = ("A", 1.0) if name == CURRENT else for_people(name)
     shown = bound - ZERO_CELSIUS if name.endswith("_T") else factor * bound
     either = " either way" if signed else ""
-    return f"{name.replace('_', ' ')} above {shown:.3g} {unit}".rstrip() + either
+    return f"{name.replace('_', ' ')} above {shown:{'.0f' if abs(shown) >= 1000 else '.3g'}} {unit}".rstrip() + either

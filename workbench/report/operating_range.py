@@ -59,13 +59,18 @@ def _cell(axes, regime: RegimeMap, row: int, column: int, reach: float, words: b
     if words:
         colour = "white" if abs(mean) > 0.6 * reach else BLACK
         axes.text(column + 0.5, row + 0.5, _cell_text(mean), ha="center", va="center", fontsize=8, color=colour)
-    if regime.p_value[row, column] < ALARMING_P:
+    if _stands_out(regime)[row, column]:
         axes.plot(
             column + np.array([0.04, 0.96, 0.96, 0.04, 0.04]),
             row + np.array([0.05, 0.05, 0.95, 0.95, 0.05]),
             color=BLACK,
             linewidth=1.4,
         )
+
+
+def _stands_out(regime: RegimeMap) -> np.ndarray:
+    """Cells that are not chance, as many as there are (ny, nx)."""
+    return np.count_nonzero(regime.count) * regime.p_value < ALARMING_P
 
 
 def _cell_text(mean: float) -> str:
@@ -75,7 +80,7 @@ def _cell_text(mean: float) -> str:
 def _bars(figure: Figure, axes, regime: RegimeMap) -> None:
     """One condition only: a bar a cell."""
     place = np.arange(len(regime.x_edges) - 1)
-    chance = regime.p_value[0] >= ALARMING_P
+    chance = ~_stands_out(regime)[0]
     axes.bar(place + 0.5, regime.mean[0], width=0.85, color=np.where(chance, BLUE, ALARM))
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     _edges(axes.set_xticks, regime.x_edges)

@@ -20,6 +20,7 @@ from workbench.findings import (
     Parity,
     Ranked,
     RegimeMap,
+    Sealed,
     Sequence,
     Whiteness,
 )  # fmt: skip
@@ -42,6 +43,7 @@ from workbench.report.words import (
 )
 
 GOAL = 1.2  # chi2/n up to which a channel is at the noise
+UNSURE = 0.05  # the same, from which nothing speaks against a model
 ALARMING_PULL = 3.0  # sigma
 ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
@@ -503,12 +505,17 @@ def sealed_sentence(d: Diagnosis) -> str:
     """What the rows that no fit has seen say of the final model."""
     if d.sealed is None:
         return "There are none: all rows were fitted, so that prediction was not tested on rows that no fit has seen."
-    holds = "The model holds there" if d.sealed.holds else "The model does not hold there"
     return (
         f"{d.sealed.n} rows were sealed and opened once, after every fit and choice. Where they lie: {d.sealed.tests}. "
-        f"{holds}: chi²/n = {chi2_text(d.sealed.chi2_per_n)}; noise and what the fit leaves uncertain give as much or "
-        f"more with {p_text(d.sealed.p_value)}."
+        f"{_holds(d.sealed)} there: chi²/n = {chi2_text(d.sealed.chi2_per_n)}; noise and what the fit leaves uncertain "
+        f"give as much or more with {p_text(d.sealed.p_value)}."
     )
+
+
+def _holds(sealed: Sealed) -> str:
+    if not sealed.holds:
+        return "The model does not hold"
+    return "The model holds" if sealed.p_value >= UNSURE else "The model can hardly be said to hold"
 
 
 def left_out_sentence(d: Diagnosis) -> str:

@@ -61,13 +61,25 @@ def validation_sections(v: Validation) -> tuple[Section, ...]:
 
 
 def validation_sentence(v: Validation) -> str:
-    """Error and band of the corrected model against those of the device as drawn."""
+    """Error and band of the corrected model against those of the device as drawn; before them, that instruments would
+    have to be wrong for them."""
     return (
-        f"Without anything of the device being fitted to these {rows(v.corrected)} readings, chi²/n is "
-        f"{chi2_text(chi2(v.corrected))} where the device as drawn gives {chi2_text(chi2(v.base))}"
+        f"{_with_wrong_instruments(v)}Without anything of the device being fitted to these {rows(v.corrected)} "
+        f"readings, chi²/n is {chi2_text(chi2(v.corrected))} where the device as drawn gives {chi2_text(chi2(v.base))}"
         f"{' though its instruments may be further off than they are declared' if _far(v.base_calibrations) else ''}; "
         f"{percent(share(v.corrected))} of the readings lie in the predicted 90 % band "
         f"(as drawn {percent(share(v.base))})."
+    )
+
+
+def _with_wrong_instruments(v: Validation) -> str:
+    far = sorted(_far(v.calibrations), key=lambda p: -abs(p.pull))
+    if not far:
+        return ""
+    worst = f"{plain(far[0].name)} by {signed(far[0].pull, 2)} sigma"
+    return (
+        f"For what follows instruments would have to be off by more than they are declared, {worst}: is it the same "
+        "device? "
     )
 
 

@@ -58,7 +58,8 @@ def test_columns_that_look_like_another_convention_are_said_to(learned, tmp_path
 
 def test_only_the_calibration_of_the_new_instruments_moves(learned, tmp_path):
     """A new zero of the force cell is found; a stiffness that has changed is not, and shows as an error."""
-    shifted = validate(learned, other(tmp_path / "a", extra=lambda x: 3e5 * x**3 + 0.06), LIBRARY, nominal=NOMINAL)
+    there = other(tmp_path / "a", n=240, extra=lambda x: 3e5 * x**3 + 0.06)
+    shifted = validate(learned, there, LIBRARY, nominal=NOMINAL)
     (pull,) = shifted.calibrations
     assert (pull.name, pull.sigma) == ("force_offset", 0.02)
     assert pull.pull * pull.sigma == pytest.approx(0.07, abs=0.015) and abs(shifted.corrected[0].bias) < 0.01
