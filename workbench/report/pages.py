@@ -139,7 +139,7 @@ def _pictures(c: Comparison):
     yield tuple(
         _picture(
             operating_range.regime_maps, c.regimes[k : k + _FEW_MAPS],
-            "Mean residual of each cell in u; framed cells, red bars, are not chance at p < 0.01 for all cells of a map.",
+            "Mean residual of each cell in u; framed cells, red bars, are not chance (p < 0.01 for a map).",
         )
         for k in range(0, max(len(c.regimes), 1), _FEW_MAPS)
     )  # fmt: skip
