@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from units import QUANTITIES
 from workbench.data.kinds import KINDS, Kind
 from workbench.data.raw_table import Heading, RawTable
 
@@ -42,8 +43,9 @@ _WORDS: Final = {
     "angle": "angle_mech", "winkel": "angle_mech", "phi": "angle_mech", "theta": "angle_mech", "frequency": "frequency",
     "frequenz": "frequency", "power": "power", "leistung": "power", "voltage": "voltage", "spannung": "voltage",
     "current": "current", "strom": "current", "shunt": "shunt", "amplitude": "amplitude",
-    "inductance": UNTOLD_INDUCTANCE, "induktivitaet": UNTOLD_INDUCTANCE,
+    "widerstand": "resistance", "inductance": UNTOLD_INDUCTANCE, "induktivitaet": UNTOLD_INDUCTANCE,
 }  # fmt: skip
+_COMPOUNDS: Final = ("kraft", "moment", "drehzahl", "geschwindigkeit", "spannung", "strom", "widerstand")
 # Unit -> quantity, and the prefix that a phase or an axis takes.
 _UNITS: Final = {
     "N": ("force", ""), "Nm": ("torque", ""), "rpm": ("speed", ""), "rad_per_s": ("speed", ""),
@@ -65,7 +67,7 @@ _RMS: Final = {"rms", "eff", "effektiv"}
 _MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _AT_END: Final = re.compile(r"[\s_.#-]*(\d{1,2})$")  # the number that a name ends in
-_SCALED: Final = re.compile(r"^(?:m|k|u|M|c)(?=[A-Z]|ohm|Ohm|m_per_s|m$|s$)")
+_BASES: Final = {unit: base for row in QUANTITIES for base in row if base in _UNITS for unit in row}
 
 
 @dataclass(frozen=True)
@@ -210,7 +212,13 @@ def _quantity(heading: Heading) -> str:
             return book
     if heading.unit in ("degC", "K", "degF") or (words[:1] and words[0] in _THERMAL and words[-1] == "c"):
         return _temperature(words)
-    return _by_unit(heading.unit, words) or next((_WORDS[w] for w in words if w in _WORDS), "")
+    return _by_unit(heading.unit, words) or next(filter(None, map(_by_word, words)), "")
+
+
+def _by_word(word: str) -> str:
+    """The quantity of a word or of one that German ends in: Losbrechmoment, Klemmenspannung."""
+    ends = (end for end in _COMPOUNDS if word.endswith(end))
+    return _WORDS.get(word) or next((_WORDS[end] for end in ends), "")
 
 
 def is_known(name: str) -> bool:
@@ -239,7 +247,7 @@ def _by_unit(unit: str, words: Sequence[str]) -> str:
     phases = [w for w in (last, *words[:1]) if w in _PHASES and (w == last or len(w) == 2)]  # ia_mes, but u_mes is none
     if prefix and phases:
         return f"{prefix}_{_PHASES[phases[0]]}"
-    if plain == "displacement" and "amplitude" in words:
+    if plain == "displacement" and ("amplitude" in words or words == ["a"]):
         return "amplitude"
     if plain == "resistance" and {"shunt", "load", "last", "lastwiderstand"} & set(words):
         return "shunt"
@@ -257,12 +265,8 @@ def _lines_of(prefix: str, words: Sequence[str]) -> str:
 
 
 def _base(unit: str) -> str:
-    """N of kN, ohm of mOhm, Vs of mVs."""
-    known = {"Ohm": "ohm"}
-    if unit in _UNITS:
-        return unit
-    bare = _SCALED.sub("", unit)
-    return known.get(bare, bare)
+    """N of kN, ohm of mOhm, Nm of Ncm."""
+    return unit if unit in _UNITS else _BASES.get(unit, unit)
 
 
 def likely_kind(quantities: Sequence[str]) -> str:

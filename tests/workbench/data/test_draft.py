@@ -93,6 +93,8 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
         ("phi [°],Induktivität cb [µH],L_d [mH]", ["angle_mech", "l_bc", ""], "inductance"),
         ("U_uv [V],Uv [V],R_wv [mOhm],n [rpm]", ["v_ab", "v_b", "r_bc", "speed"], "back_emf"),
         ("Kraft [kN],zweite Kraft [N],v [m/s]", ["force", "", "velocity"], "damping_velocity"),
+        ("Antriebsdrehzahl,Reibmoment [Ncm]", ["speed", "torque"], "drag"),
+        ("f [Hz],A [mm],Weg [mm],Kraft [N]", ["frequency", "amplitude", "displacement", "force"], "force_loop"),
     ],
 )
 def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
