@@ -109,7 +109,6 @@ class Conventions:
     found: the fixes;  campaign: with them applied;  probability: that something is wrong with the conventions
     names: of what is wrong, from ``data.conventions.NAMES``, with the names of readings that are as simple and likely
     sentences: what it looks like, for people;  fix: the text for campaign.toml;  checks: what needs no model
-    equivalents: other readings that the data cannot tell from the found one, simplest first
     """
 
     found: tuple[Found, ...]
@@ -119,7 +118,6 @@ class Conventions:
     sentences: tuple[str, ...] = ()
     fix: str = ""
     checks: tuple[str, ...] = ()
-    equivalents: tuple[tuple[Fix, ...], ...] = ()
 
     @property
     def are_right(self) -> bool:
@@ -615,10 +613,7 @@ def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken)
     probability = 1.0 if broken else _p_wrong(best)
     names = _names_of(everything, [o for o in others if _as_simple(o, best[0])])
     sentences = _sentences(everything, others)
-    return Conventions(
-        found, repaired, probability, names, sentences, _text(section, others), checks,
-        tuple(other.fixes for other in others),
-    )  # fmt: skip
+    return Conventions(found, repaired, probability, names, sentences, _text(section, others), checks)
 
 
 def _p_wrong(best: list[_Whole]) -> float:

@@ -29,7 +29,7 @@ from workbench.data.table import Table
 
 OVERWHELMING = 7.0  # nats, odds of 1000 to 1, by which the data must prefer each fix beyond what it is believed
 COLDEST, HOTTEST = -80.0, 450.0  # degC, between which a column of temperatures reads, be it one of kelvins
-UNBEARABLE = 240.0  # degC, of the insulation of a winding (IEC 60085 ends at class 250) and of magnets but AlNiCo
+UNBEARABLE = 240.0  # degC in every row: hotter than the insulation of windings bears (IEC 60085, class 220 and 250)
 COMMON, USUAL, RARE = 4.0, 5.5, 7.5  # minus ln of how often a first file has this mistake
 NEAR = 0.2  # of the logarithm of a factor, beyond which it is another one; effects reach 20 %
 NEAR_TEN = 0.5  # the same for a power of ten, which no effect comes near
