@@ -85,7 +85,6 @@ def test_what_an_effect_may_be_is_no_convention(right, tmp_path):
         ("damper", "internal_resistance_ohm", 1000, "unit_factor"),
         ("dq", "inductance_q_H", 0.001, "unit_factor"),
         ("dq", "psi_m_Vs", 10, "unit_factor"),
-        ("dq", "resistance_ohm", 2, "line_or_phase"),
         ("dq", "pole_pairs", 2, "poles"),
     ],
 )

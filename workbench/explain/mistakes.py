@@ -96,12 +96,12 @@ def factors(column: str, pole_pairs: float | None) -> list[Nice]:
 
 
 def factors_of_constant(key: str) -> list[Nice]:
-    """The factors that have a name of a constant of the device."""
+    """The factors that have a name of a constant of the device. That of a resistance between two lines has none: a hot
+    winding with weak magnets behind a rectifier looks like twice the resistance."""
     name, unit = split_unit(key)
     if name == "pole_pairs":
         return _both(2.0, USUAL, "poles")
-    between_lines = _both(2.0, USUAL, "line_or_phase") if name.endswith("resistance") else []
-    return [*_TENS, *between_lines] if unit not in ("", "degC") else []
+    return _TENS if unit not in ("", "degC") else []
 
 
 def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) -> list[Nice]:
