@@ -101,6 +101,12 @@ def test_a_wrong_constant_is_told_from_wrong_readings(bench, key, factor, name, 
     assert settle(again, found.campaign).are_right
 
 
+def test_a_hot_winding_behind_a_rectifier_is_no_other_resistance(tmp_path):
+    """With weak magnets besides it looks like twice the resistance."""
+    names = ("diode_drop", "weak_magnets", "winding_temperature")
+    assert settled(hide(damper_bench.CATALOGUE, "several", 88203, names)[0].write(tmp_path / "hot")).are_right
+
+
 def test_a_wild_reading_of_the_drag_is_no_exchange(right, tmp_path):
     """It gives power; speed for torque makes that a small speed of a large torque, which gives as little."""
 
