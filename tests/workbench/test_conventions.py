@@ -300,3 +300,10 @@ def test_a_temperature_is_not_exchanged_for_what_no_temperature_can_be():
     assert not mistakes._can_be_exchanged(drag, "speed", "room_T")
     warm = replace(drag, conditions={"speed": np.linspace(20.0, 90.0, 8), "room_T": room})
     assert mistakes._can_be_exchanged(warm, "speed", "room_T")
+
+
+@pytest.mark.parametrize("shown, found", [(294.2, ["winding_T"]), (21.0, []), (230.0, [])])
+def test_a_winding_that_would_burn_is_one_in_kelvin(shown, found):
+    """Four rows are too few for a model to tell it by."""
+    warm = table({"resistance": np.ones(4)}, 0.01, np.zeros(4, int), np.zeros(4, int), winding_T=shown + np.arange(4.0))
+    assert [fix.column for fix in mistakes.kelvins(warm)] == found

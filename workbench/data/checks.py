@@ -71,6 +71,14 @@ def _scatter(table: Table, r: Response, stations: np.ndarray) -> tuple[np.ndarra
     return z, float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
 
 
+def _surface(table: Table, r: Response) -> np.ndarray:
+    """The readings by a quadratic form in the conditions (n,)."""
+    places = places_of(table)
+    products = [places[:, i] * places[:, j] for i, j in combinations_with_replacement(range(places.shape[1]), 2)]
+    shapes = np.column_stack([np.ones(table.rows), places, *products]) / r.random[:, None]
+    return r.random * (shapes @ np.linalg.lstsq(shapes, r.values / r.random, rcond=None)[0])
+
+
 def _clipping(table: Table) -> list[str]:
     found = []
     for r in table.responses.values():
@@ -158,14 +166,6 @@ def _impedance(table: Table) -> list[str]:
         if wrong
         else []
     )
-
-
-def _surface(table: Table, r: Response) -> np.ndarray:
-    """The readings by a quadratic form in the conditions (n,)."""
-    places = places_of(table)
-    products = [places[:, i] * places[:, j] for i, j in combinations_with_replacement(range(places.shape[1]), 2)]
-    shapes = np.column_stack([np.ones(table.rows), places, *products]) / r.random[:, None]
-    return r.random * (shapes @ np.linalg.lstsq(shapes, r.values / r.random, rcond=None)[0])
 
 
 def _causality(table: Table) -> list[str]:

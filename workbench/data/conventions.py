@@ -192,8 +192,7 @@ class Scaled(Fix):
     @property
     def words(self) -> str:
         many = len(self.columns) > 1
-        why = " and ".join(_FACTOR_WORDS[name] for name in self.means)
-        return f"{', '.join(self.columns)} look{'' if many else 's'} {_how_far(self.factor)}: {why}"
+        return f"{', '.join(self.columns)} look{'' if many else 's'} {_off_by(self.factor, self.means)}"
 
     @property
     def entry(self) -> dict[str, object]:
@@ -203,9 +202,10 @@ class Scaled(Fix):
         return _changed(table, self.columns, lambda v: self.factor * v, self.factor)
 
 
-def _how_far(factor: float) -> str:
-    """Of a number that has to be multiplied by a factor."""
-    return f"{1 / factor:.6g} times too large" if factor < 1 else f"{factor:.6g} times too small"
+def _off_by(factor: float, means: Sequence[str]) -> str:
+    """How a number looks that has to be multiplied by a factor, and why."""
+    size = f"{1 / factor:.6g} times too large" if factor < 1 else f"{factor:.6g} times too small"
+    return f"{size}: {' and '.join(_FACTOR_WORDS[name] for name in means)}"
 
 
 _FACTOR_WORDS = {
@@ -445,31 +445,27 @@ class LeftOut(Fix):
 class DeviceFactor(Fix):
     """true = factor * constant of ``[device]``, which every table goes with. file: ``DEVICE``
 
-    means: name of what is wrong, for people
+    means: names of what is wrong, for people
     """
 
     key: str
     declared: float
     factor: float
-    means: str = "unit_factor"
+    means: tuple[str, ...]
     place: ClassVar[int] = 12
 
     @property
     def names(self) -> tuple[str, ...]:
-        return (self.means,)
+        return self.means
 
     @property
     def words(self) -> str:
-        return f"{self.key} looks {_how_far(self.factor)}: {_FACTOR_WORDS[self.means]}"
+        return f"{self.key} looks {_off_by(self.factor, self.means)}"
 
     @property
     def entry(self) -> dict[str, object]:
         true = self.factor * self.declared
         return {self.key: round(true) if isinstance(self.declared, int) and true == round(true) else true}
-
-    @property
-    def anywhere(self) -> Fix:
-        return self
 
 
 def is_phase(column: str) -> bool:

@@ -155,8 +155,8 @@ def _repeated(sheets: Sequence[_Sheet]) -> list[list[_Sheet]]:
 def _repeats_it(first: _Sheet, sheet: _Sheet) -> bool:
     names = {numbered(Path(one.files[0]).stem) for one in (first, sheet)}
     same_name = len(names) == 2 and len({stem for stem, _ in names}) == 1
-    same_columns = first.raw.headings == sheet.raw.headings and first.raw.rows == sheet.raw.rows
-    if not (same_name and same_columns) or any(guess.quantity == "repeat" for guess in sheet.columns):
+    layouts = {(one.raw.headings, one.raw.rows, one.raw.decimal) for one in (first, sheet)}
+    if not same_name or len(layouts) > 1 or any(guess.quantity == "repeat" for guess in sheet.columns):
         return False
     answers = [guess for guess in sheet.columns if _is_answer(guess.quantity, sheet)]
     within = [(guess, _SAME_PLACE) for guess in _settings(sheet)] + [(guess, _SAME_ANSWER) for guess in answers]

@@ -495,7 +495,7 @@ def _of_constants(device: Mapping[str, object]) -> Iterator[tuple[Fix, float]]:
     numbers = ((key, v) for key, v in device.items() if isinstance(v, (int, float)) and v)
     for key, number in numbers:
         for nice in factors_of_constant(key):
-            yield DeviceFactor(DEVICE, key, number, nice.value, nice.means[0]), nice.cost + DRAWN
+            yield DeviceFactor(DEVICE, key, number, nice.value, nice.means), nice.cost + DRAWN
 
 
 def _with_device(readers: Sequence[_Reader], fix: Fix, cost: float) -> _Whole | None:
@@ -510,7 +510,7 @@ def _with_device(readers: Sequence[_Reader], fix: Fix, cost: float) -> _Whole | 
     if not all(one.explains(reader.as_it_is, EXPLAINED) for one, reader in zip(again, readers)):
         return None
     likelihood = sum(one.log_likelihood for one in again)
-    return _Whole((fix,), {fix: cost}, likelihood, likelihood - cost - OVERWHELMING)
+    return _Whole((fix,), {fix.anywhere: cost}, likelihood, likelihood - cost - OVERWHELMING)
 
 
 def _habits(readers: Sequence[_Reader], fixes: tuple[Fix, ...]) -> tuple[Fix, ...]:

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from workbench.data.cells import values_of
 from workbench.data.headings import heading_parts
 from workbench.data.raw_table import Layout, decoded, read_raw, table_of_text
 from workbench.errors import WorkbenchError
@@ -158,3 +159,11 @@ def test_parquet_is_read_as_csv_is(tmp_path):
     assert (raw.headings[0].name, raw.headings[0].unit) == ("F", "kN")
     assert np.array_equal(raw.values(0), [1.5, NAN], equal_nan=True)
     assert np.array_equal(raw.values(2), [0, 1.5]) and np.array_equal(raw.values(3), [1, 2])
+
+
+def test_a_column_that_mixes_decimal_signs_is_refused():
+    """12.786 among 3,192 is no 12786; beside 1.234,5 it is."""
+    lines, where = [2, 3, 4], "a.csv"
+    with pytest.raises(WorkbenchError, match="line 4 says 12.786, which may be a decimal number or thousands"):
+        values_of(["3,192", "9,826", "12.786"], ",", where, lines)
+    assert values_of(["3,192", "1.234,5", "12.786"], ",", where, lines).tolist() == [3.192, 1234.5, 12786.0]

@@ -74,6 +74,9 @@ def test_a_device_that_is_right_only_with_wrong_instruments_is_said_to_be(learne
     far = replace(found, base_calibrations=(replace(found.base_calibrations[0], pull=25.0),), corrected=found.base)
     worse = replace(far, corrected=tuple(replace(c, rms_error=2 * c.rms_error) for c in found.base))
     assert "further off than they are declared" in validation_sentence(far)
+    assert validation_sentence(far).startswith("Without anything")
+    moved = replace(far, calibrations=far.base_calibrations)
+    assert "declared, force offset by +25 sigma: is it the same device? Without" in validation_sentence(moved)
     said = "calibration of the device as drawn moves further than its declaration allows: force offset by +25 sigma."
     assert warnings(far)[-1] == f"The {said}"
     assert not any("worse than the device as drawn" in words for words in warnings(worse))

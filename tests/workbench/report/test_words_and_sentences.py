@@ -273,6 +273,11 @@ def test_sealed_rows_that_disagree_are_not_taken_for_an_unknown_function(diagnos
     assert "does not hold there" in sealed_sentence(found) and "chi²/n = 3.10" in sealed_sentence(found)
 
 
+@pytest.mark.parametrize("p, said", [(0.3, "The model holds there"), (2e-3, "can hardly be said to hold there")])
+def test_sealed_rows_that_a_model_hardly_meets_are_no_success(diagnosis, p, said):
+    assert said in sealed_sentence(replace(diagnosis, sealed=replace(diagnosis.sealed, p_value=p, holds=True)))
+
+
 def test_without_sealed_rows_and_regions_prediction_is_said_to_be_untested(diagnosis):
     assert "40 rows" in sealed_sentence(diagnosis) and "never fitted: they test prediction" in sealed_sentence(
         diagnosis

@@ -175,7 +175,7 @@ def newton(
             if not worse.any():
                 break
             share = np.where(worse, 0.5 * share, share)
-        else:
+        else:  # at the last share nobody has asked
             a, b = residual(x + share * step_x, y + share * step_y)
         x, y = x + share * step_x, y + share * step_y
     if worst.max() < 1e3 * CLOSE:
