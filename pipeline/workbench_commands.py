@@ -135,7 +135,7 @@ def _set_up(options: argparse.Namespace) -> tuple[Campaign, Library, Model, Path
         learned = read_model(saved, effects)
         model = with_effects(learned, model, saved)
         if model.effects and not options.model:
-            names = ", ".join(effect.name() for effect in model.effects)
+            names = ", ".join(model.names)
             print(f"{saved}: the model starts with what was learned before, {names}; without the file it is as drawn")
         if learned.source is not None and learned.source.campaign != campaign.id:
             print(f"{saved}: {_from_elsewhere(learned.source.campaign, campaign.id)}", file=sys.stderr)

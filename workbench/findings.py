@@ -329,6 +329,7 @@ class NextMeasurement:
 class Diagnosis:
     """All that ``diagnose`` found.
 
+    effects: names of the effects that the model already has
     verdict: nothing_missing, effect, group, pair, several, partial, none_of_these, cannot_tell or convention
     probability: that the sentence of the verdict is true: that the names are there (of a group: one of them), that
         nothing is missing which these data would show plainly, that something is there that no effect is
@@ -349,6 +350,7 @@ class Diagnosis:
     verdict: str
     names: tuple[str, ...]
     probability: float
+    effects: tuple[str, ...] = ()
     ranking: tuple[Ranked, ...] = ()
     p_nothing_missing: float = 0.0
     p_none_of_these: float = 0.0

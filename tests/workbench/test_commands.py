@@ -64,7 +64,8 @@ def test_the_walk_from_failing_to_nothing_missing(bench, tmp_path, capsys):
     said = json.loads((out / "diagnosis.json").read_text())
     assert said["verdict"] in ("effect", "group") and "coulomb_friction" in said["names"]
     assert "accepted" in run(capsys, "add", "coulomb_friction", bench, "--out", out)
-    assert json.loads((out / "diagnosis.json").read_text())["verdict"] == "nothing_missing"
+    said = json.loads((out / "diagnosis.json").read_text())
+    assert said["verdict"] == "nothing_missing" and said["effects"] == ["coulomb_friction"]
     assert json.loads((out / "comparison.json").read_text())["model"]["effects"] == ["coulomb_friction"]
     assert len((out / "ledger.csv").read_text().splitlines()) == 3
     for name in ("comparison.html", "diagnosis.html", "ledger.html"):

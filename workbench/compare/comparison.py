@@ -56,7 +56,7 @@ def comparison_of(bench: Bench, library: Mapping[str, type[Effect]], progress=la
     return Comparison(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
-        effects=tuple(effect.name() for effect in bench.model.effects),
+        effects=bench.model.names,
         failing=failing(scores, pulls),
         chi2_per_n=_mean([(s.chi2_per_n, s.n) for s in scores]),
         held_out_chi2_per_n=_mean([(s.held_out_chi2_per_n, s.n) for s in held]) if held else None,

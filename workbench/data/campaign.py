@@ -18,6 +18,7 @@ import numpy as np
 
 from workbench.data.column_units import difference, factor, split_unit, to_inside
 from workbench.data.columns import BOOKKEEPING, Column, columns_of
+from workbench.data.constants import with_constants
 from workbench.data.conventions import with_conventions
 from workbench.data.dimensions import check_input, check_reading
 from workbench.data.expression import evaluate
@@ -106,7 +107,7 @@ class _Reader:
         """The tables of a file: one, or more where columns with many gaps are kept apart."""
         kind = kind_of(entry.kind, f"{FILE}, table {number}")
         files = (entry.model_copy(update={"file": name}) for name in (entry.file, *entry.repeats))
-        raw, entry = stacked([self._raw(one) for one in files], entry)
+        raw, entry = with_constants(*stacked([self._raw(one) for one in files], entry))
         self.complaints += raw.remarks
         columns, remarks = columns_of(raw, entry, kind)
         self.complaints += remarks

@@ -41,7 +41,7 @@ def _unsaid_shunt(table: Table) -> list[str]:
         return []
     return [
         f"{table.file}: nothing says what was connected to the terminals, so that they count as open; give shunt_ohm "
-        "as a column where they were not"
+        "as a column, or in constants of the table, where they were not"
     ]
 
 

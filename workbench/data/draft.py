@@ -293,14 +293,25 @@ def _text(value: str) -> str:
 # ---- tables --------------------------------------------------------------------------------------------------------
 
 
+_OFTEN_CONSTANT = {"shunt": "shunt_ohm", "frequency": "frequency_Hz", "amplitude": "amplitude_mm"}
+
+
 def _table(sheet: _Sheet) -> str:
     source = "as before" if sheet.before else "a guess"
     kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
     sign = [f"decimal = {_text(sheet.decimal)}"] if sheet.decimal else []
     more = [f"repeats = {_value(sheet.files[1:])}  # the same measured again, a guess"] if sheet.files[1:] else []
-    lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, *sign, kind]
+    lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, *sign, kind, *_constants(sheet)]
     columns = [_line(g, sheet) for g in sheet.columns if g.heading.written and g.heading != NUMBER]
     return "\n".join([*lines, "[table.columns]  # heading = what the column holds", *columns]) + "\n"
+
+
+def _constants(sheet: _Sheet) -> list[str]:
+    """Conditions of the kind that no column holds, to be filled in."""
+    there = {guess.quantity for guess in sheet.columns}
+    missing = [key for axis, key in _OFTEN_CONSTANT.items() if axis in KINDS[sheet.kind].axes and axis not in there]
+    listed = ", ".join(f"{key} = ?" for key in missing)
+    return [f"# constants = {{ {listed} }}  # what was the same in all rows and no column holds"] if missing else []
 
 
 def _unknown(unit: str) -> str:

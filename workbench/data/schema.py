@@ -68,7 +68,14 @@ def _delimiter(text: str) -> str:
     return text
 
 
+def _constant(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or value != value:
+        raise ValueError("must be a number, the same for all rows; inf for an open circuit")
+    return float(value)
+
+
 Formula = Annotated[Any, BeforeValidator(_formula)]
+Constant = Annotated[Any, BeforeValidator(_constant)]
 Size = Annotated[Any, BeforeValidator(_size)]
 Text = Annotated[str, Field(strict=True)]
 Note = Annotated[Any, Field(description="for people, not looked at")]
@@ -150,6 +157,9 @@ class TableEntry(Section):
         None, description="instead of columns: uncertainty by column, where headings say quantity and unit"
     )
     alias: dict[str, Text] = Field({}, description='heading = "quantity_unit", so that no file is ever rewritten')
+    constants: dict[str, Constant] = Field(
+        {}, description="conditions that no column holds as they were the same in all rows, such as { shunt_ohm = 1.5 }"
+    )
     bandwidth_Hz: Size | None = Field(None, description="frequency above which the recorder lets nothing pass")
     decimal: Annotated[str | None, AfterValidator(lambda t: t if t is None else _decimal(t))] = Field(
         None, description='"," or "."; default: found out'
@@ -285,7 +295,7 @@ def _place(loc: Location) -> str:
     words = [FILE]
     if loc[0] == "table" and len(loc) > 1:
         words.append(f"table {int(loc[1]) + 1}")
-        words += [f"column {loc[3]!r}"] if loc[2:3] == ("columns",) and len(loc) > 3 else []
+        words += [f"{'column' if loc[2] == 'columns' else loc[2]} {loc[3]!r}"] if len(loc) > 3 else []
     elif len(loc) > 1:
         words.append(f"[{loc[0]}]" + (f" {loc[1]}" if loc[0] in _OF_NAMED else ""))
     return ", ".join(words) + ": "

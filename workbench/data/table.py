@@ -40,7 +40,10 @@ class Conditions(dict[str, np.ndarray]):
 
     def __missing__(self, name: str) -> np.ndarray:
         known = ", ".join(self) or "none"
-        raise WorkbenchError(f"{self.table}: the model needs the condition {name!r}, the table has {known}; add it.")
+        raise WorkbenchError(
+            f"{self.table}: the model needs the condition {name!r}, the table has {known}; add it, or say "
+            f"it in constants of its [[table]] where it was the same in all rows."
+        )
 
 
 @dataclass(frozen=True, eq=False)

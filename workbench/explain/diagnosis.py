@@ -85,6 +85,7 @@ def diagnosis_of(
     return Diagnosis(
         campaign=bench.campaign.id,
         model=bench.model.base.name,
+        effects=bench.model.names,
         verdict=said.kind,
         names=said.names,
         probability=said.probability,

@@ -162,11 +162,11 @@ def with_law_error(problem: Problem, effects: Sequence[Effect], x: np.ndarray) -
     wrong = [effect for effect in effects if effect.law_error > 0]
     if not wrong:
         return problem, 0.0
-    changes = [effect.law_error * _change(problem, effects, effect, x) for effect in wrong]
+    changes = [effect.law_error * change_by(problem, effects, effect, x) for effect in wrong]
     return _without_laws(problem, [_law(problem, number, changes) for number in range(len(problem.stack.channels))])
 
 
-def _change(problem: Problem, effects: Sequence[Effect], effect: Effect, x: np.ndarray) -> np.ndarray:
+def change_by(problem: Problem, effects: Sequence[Effect], effect: Effect, x: np.ndarray) -> np.ndarray:
     """What one of the effects does to the readings, SI (n,): by itself, or beside the others where the model has no
     answer so."""
     predict, others = problem.predictor.predict, tuple(other for other in effects if other is not effect)

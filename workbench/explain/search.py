@@ -182,7 +182,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
         if (smaller := _smaller(search, promise, heap)) is not None:
             heappush(heap, promise)
             promise = smaller
-        if search.bench.model.base.is_expansion and len(search.fitted) // PATIENCE > len(search.beside):
+        if len(search.fitted) // PATIENCE > len(search.beside):
             progress("an unknown function")
             weigh(search, search.ranked[0])
         if -promise.order < _enough(search) and len(search.fitted) > LEAST_FITS:

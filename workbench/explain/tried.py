@@ -19,7 +19,7 @@ from effects.parameter import parameters_of
 from workbench.believed import PLAIN
 from workbench.errors import WorkbenchError
 from workbench.explain.explore import Beliefs, Explanation, Names, Posterior, explored, posterior
-from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, fitted_from, from_elsewhere, turned
+from workbench.explain.hypotheses import Beside, Hypothesis, at_zero, change_by, fitted_from, from_elsewhere, turned
 from workbench.likelihood.bench import Bench
 from workbench.likelihood.fit import FAR, Fit
 from workbench.likelihood.gains import Gains
@@ -30,6 +30,7 @@ from workbench.likelihood.unknown_laws import LAW_ERRORS, LAWS, UnknownLaw
 
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
+NOTHING = 1.0  # nat, that is no evidence of anything
 NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
 STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
 MOVED = 3.0  # of the noise of all readings, that one standard deviation of a tolerance makes more or less beside a fit
@@ -265,19 +266,33 @@ class Search:
 
     def stands_out(self, name: str, names: Set) -> bool:
         """Whether an effect of a set explains so much that it cannot stand for the law of an unknown function beside
-        the set: one that does is followed to a tenth at best, which leaves a hundredth of what it explains."""
+        the set: one that does is followed to a tenth at best, which leaves a hundredth of what it explains, in
+        channels that the effect changes."""
         if names not in self.fitted:
             return False
-        known = self.log_evidence(names)
-        explained = known - max(self.log_evidence(part) for part in self.fitted if part <= names - {name})
-        return explained * LAW_ERRORS[-1] ** 2 > self._with_unknown(names) - known
+        explained = self.log_evidence(names) - max(
+            self.log_evidence(part) for part in self.fitted if part <= names - {name}
+        )
+        return explained * LAW_ERRORS[-1] ** 2 > self._left_to_unknown(name, names)
 
-    def _with_unknown(self, names: Set) -> float:
-        """ln evidence of a set with what suits best of unknown functions and laws beside it [nats]."""
+    def _left_to_unknown(self, name: str, names: Set) -> float:
+        """What suits best of unknown functions and laws gains beside a set, no less than what is nothing; of functions
+        in channels that an effect of the set leaves as they are, nothing [nats]."""
+        known = self.log_evidence(names)
         found = [self.log_evidence(n) for n in self.fitted if n - LAWS.keys() == names and n != names]
-        found += [self.log_evidence_beside(names)] if names in self.beside else []
         found += [self.guessed_beside[names]] if names in self.guessed_beside else []
-        return max(found, default=np.inf)
+        if names in self.beside:
+            where = (channel for one in self.beside[names].leading for channel in one.shape.channels)
+            is_elsewhere = self._changed_by(name, names).isdisjoint(where)
+            found += [known if is_elsewhere else self.log_evidence_beside(names)]
+        return max(max(found, default=np.inf) - known, NOTHING)
+
+    def _changed_by(self, name: str, names: Set) -> frozenset[str]:
+        """Channels that an effect of a set that was fitted changes by more than their noise."""
+        problem, fit = self.fitted[names].problem, self.fitted[names].fit
+        (effect,) = (effect for effect in fit.at_maximum if effect.name() == name)
+        squares = problem.squares(change_by(problem, fit.at_maximum, effect, fit.x) / problem.white.sigma)
+        return frozenset(c.name for c, square in zip(problem.stack.channels, squares) if square > 1.0)
 
     @property
     def posterior(self) -> Posterior:

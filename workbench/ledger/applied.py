@@ -290,9 +290,7 @@ def _outer(covariance: np.ndarray) -> np.ndarray:
     return np.outer(sd, sd)
 
 
-def _slope(
-    at: Callable[[np.ndarray], np.ndarray], base: np.ndarray, direction: np.ndarray, step: float
-) -> np.ndarray:
+def _slope(at: Callable[[np.ndarray], np.ndarray], base: np.ndarray, direction: np.ndarray, step: float) -> np.ndarray:
     """d readings / d number by a step to one side, to the other where there is no answer; zero for a step of zero."""
     if step == 0.0:
         return np.zeros_like(base)

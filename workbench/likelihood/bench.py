@@ -18,7 +18,7 @@ from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.conditions import with_conditions
-from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted
+from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted, with_parameters
 from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
@@ -30,6 +30,7 @@ from workbench.models.model import Model
 MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is said
 SHARPENINGS = 3  # times a fit is repeated with a base model expanded about its result
 SHARP = 0.3  # change of the objective [nats] that is none
+DECIMALS = 4  # of standard normal numbers, to which the place that such a model is expanded about is rounded
 PULLED = 6.0  # standard deviations of a tolerance from where it is declared, which chance does not explain
 
 
@@ -225,7 +226,7 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         model = problem.predictor.model
         if not model.base.is_expansion:
             break
-        there = problem.predictor.model_at(fit.x, fit.at_maximum)
+        there = problem.predictor.model_at(*_place_of(fit))
         rows = (table for table in problem.stack.tables if table.rows)
         tables = [replace(table, conditions=there.true_conditions(table)) for table in rows]
         with answers_only():
@@ -236,6 +237,12 @@ def sharpened(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
         if abs(before - fit.objective) < SHARP:
             break
     return problem, fit
+
+
+def _place_of(fit: Fit) -> tuple[np.ndarray, tuple[Effect, ...]]:
+    """Where a fit ended, nuisances and effects, rounded to what is no distance to an expansion: what was solved for one
+    that ended a rounding away is found again."""
+    return np.round(fit.x, DECIMALS), with_parameters(fit.effects, np.round(fit.z, DECIMALS))
 
 
 def predictor_of(

@@ -92,9 +92,7 @@ class Signature:
         weights = np.moveaxis(apart, -1, 1 + axis).reshape(2, -1) / np.maximum(lengths, 1e-200)
         return np.minimum(weights, MOST_WEIGHT) * np.array([[-1.0], [1.0]])
 
-    def nearest(
-        self, target: np.ndarray, shifts: np.ndarray, white: Whitener
-    ) -> tuple[np.ndarray, Effect, np.ndarray]:
+    def nearest(self, target: np.ndarray, shifts: np.ndarray, white: Whitener) -> tuple[np.ndarray, Effect, np.ndarray]:
         """What is left of a change of the readings by the most like one that the effect makes, whitened (n,); the
         effect, and its z there.
 
@@ -203,9 +201,7 @@ class Signatures:
         could = self.white(self.slopes)
         return np.linalg.solve(np.eye(could.shape[1]) + could.T @ could, could.T @ self.terms.columns)
 
-    def beside(
-        self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect], slopes: np.ndarray
-    ) -> Signatures:
+    def beside(self, predictor: Predictor, x: np.ndarray, effects: Sequence[Effect], slopes: np.ndarray) -> Signatures:
         """The same at nuisances x (m,), with d readings / d x (n, m), and beside effects that are there, of these each
         beside the others."""
         without = cache(lambda others: predictor.predict(x, others))
@@ -259,7 +255,7 @@ def _is_seen(bench: Bench, signature: Signature) -> bool:
 def candidates(bench: Bench, library: Mapping[str, type[Effect]]) -> tuple[Effect, ...]:
     """Effects (all variants) that can act on the device and are not in the model yet."""
     model = bench.model
-    have = {effect.name() for effect in model.effects}
+    have = set(model.names)
     within = {name for effect in model.effects for name in effect.contains}
     return tuple(
         variant

@@ -26,8 +26,13 @@ class Model:
     design: Any
     effects: tuple[Effect, ...] = ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of its effects, in their order."""
+        return tuple(effect.name() for effect in self.effects)
+
     def __add__(self, effect: Effect) -> Model:
-        if any(have.name() == effect.name() for have in self.effects):
+        if effect.name() in self.names:
             raise WorkbenchError(f"the model already has the effect {effect.name()}: remove it first")
         if not effect.can_act_on(self.design):
             raise WorkbenchError(f"{effect.name()} cannot act on a {type(self.design).__name__}")
@@ -35,8 +40,8 @@ class Model:
 
     def without(self, name: str) -> Model:
         """The model without the effect of that name."""
-        if name not in [effect.name() for effect in self.effects]:
-            have = ", ".join(effect.name() for effect in self.effects) or "none"
+        if name not in self.names:
+            have = ", ".join(self.names) or "none"
             raise WorkbenchError(f"the model has no effect {name}; it has {have}")
         return replace(self, effects=tuple(effect for effect in self.effects if effect.name() != name))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -57,15 +57,18 @@ _FEW_MAPS = 6  # regime maps of one picture
 
 def write_comparison_report(path: Path, comparison: Comparison) -> None:
     """Write the page of a comparison: summary, failing channel, the nine views."""
-    effects = f" with {', '.join(map(plain, comparison.effects))}" if comparison.effects else ""
-    _write(path, comparison, comparison_sections, "Model against measurement", effects)
+    _write(path, comparison, comparison_sections, "Model against measurement", _that_it_has(comparison.effects))
 
 
 def write_diagnosis_report(path: Path, diagnosis: Diagnosis) -> None:
     """Write the page of a diagnosis: checks, verdict, probabilities, fit, sizes, sealed rows, what was tried."""
     made = {"seed": str(diagnosis.seed), "time": f"{diagnosis.wall_s:.0f} s"}
     tried = f"; {len(diagnosis.ranking)} effects tried" if diagnosis.ranking else ""
-    _write(path, diagnosis, diagnosis_sections, "What is missing", tried, made)
+    _write(path, diagnosis, diagnosis_sections, "What is missing", _that_it_has(diagnosis.effects) + tried, made)
+
+
+def _that_it_has(effects: Sequence[str]) -> str:
+    return f" with {listed(map(plain, effects))}" if effects else ""
 
 
 def write_ledger_report(path: Path, ledger: Ledger) -> None:

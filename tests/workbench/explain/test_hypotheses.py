@@ -42,7 +42,7 @@ from workbench.likelihood.bench import SHARP, bench_of, sharpened
 from workbench.likelihood.fit import fitted, linearised, misfit, refitted
 from workbench.likelihood.marginal import Catalogue, Terms
 from workbench.likelihood.signatures import Signatures, grid, signature, signatures_of
-from workbench.likelihood.unknown import SIZES, seen, shapes_of
+from workbench.likelihood.unknown import SIZES, Seen, seen, shapes_of
 from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Course, Whitener
 from workbench.models.model import Model
@@ -422,6 +422,21 @@ def test_a_fit_ends_where_the_expansion_is_exact(bench):
     assert exact(effect) is effect  # nothing to do for a model that is exact everywhere
 
 
+def test_what_is_solved_for_one_fit_is_found_again_by_one_that_ends_a_rounding_away(bench, monkeypatch):
+    """Not that of a fit that ends a thousandth of a tolerance further on."""
+    asked = []
+    monkeypatch.setattr(Expansion, "recentred", lambda self, design, tables=(): asked.append(design) or self)
+    expansion = replace(bench.fit.predictor, model=replace(bench.fit.predictor.model, base=Expansion()))
+    problem = replace(bench.fit, predictor=expansion)
+
+    def first_place(away):
+        asked.clear()
+        sharpened(problem, replace(bench.null, x=np.round(bench.null.x, 3) + away))
+        return asked[0]
+
+    assert first_place(0.0) == first_place(1e-9) != first_place(1e-3)
+
+
 class Unbuildable(Expansion):
     """It cannot be had about any other place, as a mesh that cannot be moved that far."""
 
@@ -664,24 +679,48 @@ def test_a_set_is_promised_less_where_a_part_of_it_was_fitted_and_promised_too_m
     assert guessed[two.names | {"wave4"}] == 200.0
 
 
-def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(tmp_path):
-    """By hand: one effect explains 800 nats, another one 400; an unknown function beside both 3.9, then 5, a law 9."""
+@pytest.fixture
+def two_that_explain_much(tmp_path):
+    """By hand: of two effects one explains 800 nats, the other one 400. The search, both, and an unknown function
+    beside both, given what it gains and the channel that it is in."""
     bench = sure_of_noise(tmp_path)
     none, first, second = frozenset(), frozenset(("wave2",)), frozenset(("wave3",))
-    law, both = next(iter(LAWS)), first | second
-    nats = {none: 0.0, first: 500.0, second: 100.0, both: 900.0}
+    nats = {none: 0.0, first: 500.0, second: 100.0}
     search = searching(bench, {names: replace(null_of(bench), log_evidence=v) for names, v in nats.items()})
+    pair = fitted_from(bench, [WAVES["wave2"](), WAVES["wave3"]()], bench.null.x, np.full(2, 0.8))
+    search.fitted[pair.names] = replace(pair, fit=replace(pair.fit, z=np.full(2, 0.8)), log_evidence=900.0)
+    shape = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.stack.y)[0]
+
+    def beside(gain, channel):
+        of_channel = Seen(replace(shape, channels=(channel,)), np.zeros(len(SIZES)))
+        return Beside(search.fitted[pair.names], 900.0 + gain, (of_channel,), ())
+
+    return search, pair.names, beside
+
+
+def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(two_that_explain_much):
+    """An unknown function beside both gains 3.9, then 5, a law 9."""
+    search, both, beside = two_that_explain_much
 
     def standing_out():
         return [name for name in sorted(both) if search.stands_out(name, both)]
 
     assert standing_out() == [], "nothing is known of what is unknown beside them"
     for gain, expected in ((3.9, ["wave2", "wave3"]), (5.0, ["wave2"])):
-        search.beside[both] = Beside(search.fitted[both], 900.0 + gain, (), ())
+        search.beside[both] = beside(gain, "pull.force")
         assert standing_out() == expected
-    search.fitted[both | {law}] = replace(null_of(bench), log_evidence=909.0)
+    search.fitted[both | {next(iter(LAWS))}] = replace(search.fitted[both], log_evidence=909.0)
     assert standing_out() == []
     assert not search.stands_out("wave4", frozenset(("wave4",))), "what was not fitted explains nothing"
+
+
+def test_an_effect_stands_for_no_function_in_channels_that_it_leaves_as_they_are(two_that_explain_much):
+    search, both, beside = two_that_explain_much
+    for channel, stands_out in (("pull.force", False), ("pull.temperature", True)):
+        search.beside[both] = beside(50.0, channel)
+        assert search.stands_out("wave2", both) is stands_out
+    search.fitted[both] = replace(search.fitted[both], log_evidence=100.0 + 90.0)
+    assert not search.stands_out("wave2", both), "what explains little may be what such a function leaves"
 
 
 @pytest.mark.parametrize("behind", (None, 28.0))

@@ -159,6 +159,17 @@ def test_a_page_is_written_from_what_there_is(tmp_path, clean, diagnosis, ledger
     assert "no conditions could be left out) stands at 27.4" in html and '<th class="text">left out</th>' not in html
 
 
+@pytest.mark.parametrize(
+    "has, said", [((), "Model damper"), (("inertance", "sensor_lag"), "damper with inertance and sensor lag")]
+)
+def test_both_pages_say_which_effects_the_model_has(tmp_path, clean, has, said):
+    write_comparison_report(tmp_path / "c.html", replace(clean, model="damper", effects=has))
+    write_diagnosis_report(tmp_path / "d.html", Diagnosis("bare", "damper", "nothing_missing", (), 0.9, has))
+    for name in "cd":
+        html = (tmp_path / f"{name}.html").read_text(encoding="utf-8")
+        assert said in html and ("Model damper with" in html) is bool(has)
+
+
 def test_one_picture_where_before_and_after_are_the_same(tmp_path, diagnosis):
     same = replace(diagnosis, verdict="nothing_missing", names=(), after=diagnosis.before)
     write_diagnosis_report(tmp_path / "d.html", same)
