@@ -75,6 +75,14 @@ class Table:
         return len(self.held_out)
 
     @cached_property
+    def between_lines(self) -> Mapping[str, tuple[str, str]]:
+        """Responses that are voltages between two phases, v_ab, and those of the phases, v_a and v_b."""
+        named = (
+            name for name in self.responses if len(name) == 4 and name.startswith("v_") and set(name[2:]) < {*"abc"}
+        )
+        return {name: (f"v_{name[2]}", f"v_{name[3]}") for name in named}
+
+    @cached_property
     def scans(self) -> tuple[np.ndarray, ...]:
         """Rows of every scan of every repeat."""
         _, which = np.unique(np.stack([self.scan, self.repeat]), axis=1, return_inverse=True)

@@ -143,7 +143,7 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
     """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
     until that changes nothing, or an unknown function is better by far. settled: sets that led and were treated so"""
     _best_first(search, heap, progress)
-    while (leader := search.ranked[0]) not in settled and not search.is_over:
+    while (leader := search.ranked[0]) not in settled and not _is_over(search, leader, progress):
         settled.add(leader)
         less_one(search, progress)
         for names in (leader - {name} for name in sorted(leader)):
@@ -152,6 +152,13 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
         exchange(search, leader, progress)
         _rivals(search, heap, leader, progress)
         _best_first(search, heap, progress)
+
+
+def _is_over(search: Search, leader: Set, progress: Progress) -> bool:
+    """Whether no other set is of use, what leads weighed beside an unknown function first."""
+    progress("an unknown function")
+    weigh(search, leader)
+    return search.is_over
 
 
 def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress) -> None:

@@ -54,18 +54,18 @@ class Model:
         response = self.base.respond(design, kind, conditions)
         _require_answers(table, response | _between_lines(response, table))
         told = self._given(table, {**conditions, **order})
-        for effect in self._of(ResponseEffect):
+        for effect in self._of[ResponseEffect]:
             response = dict(effect.on_response(response, told, kind, design))
-        for effect in self._of(InstrumentEffect):
+        for effect in self._of[InstrumentEffect]:
             response = dict(effect.on_reading(response, told, kind))
         return response | _between_lines(response, table)
 
     def true_conditions(self, table: Table) -> dict[str, np.ndarray]:
         """What the device was in where the instruments showed the conditions of a table, SI (n,) each."""
         conditions = dict(table.conditions)
-        for effect in self._of(InstrumentEffect):
+        for effect in self._of[InstrumentEffect]:
             conditions = dict(effect.on_condition(conditions, table.kind))
-        for effect in self._of(StateEffect):
+        for effect in self._of[StateEffect]:
             state = effect.on_state({**conditions, "order": table.order}, table.kind, self.design_as_built)
             conditions = without_order(state)
         return conditions
@@ -80,12 +80,15 @@ class Model:
     def design_as_built(self) -> Any:
         """The design after all effects that act on it."""
         design = self.design
-        for effect in self._of(DesignEffect):
+        for effect in self._of[DesignEffect]:
             design = effect.on_design(design)
         return design
 
-    def _of(self, kind: type) -> list:
-        return [effect for effect in self.effects if isinstance(effect, kind)]
+    @cached_property
+    def _of(self) -> Mapping[type, list]:
+        """The effects of every kind; all tables ask for them."""
+        kinds = (DesignEffect, StateEffect, ResponseEffect, InstrumentEffect)
+        return {kind: [effect for effect in self.effects if isinstance(effect, kind)] for kind in kinds}
 
 
 def without_order(conditions: Columns) -> dict[str, np.ndarray]:
@@ -104,11 +107,5 @@ def _require_answers(table: Table, response: Mapping[str, np.ndarray]) -> None:
 
 def _between_lines(response: dict[str, np.ndarray], table: Table) -> dict[str, np.ndarray]:
     """Voltages between two phases, v_ab = v_a - v_b, where a table has them and the model answers for the phases."""
-    pairs = {name: (f"v_{name[2]}", f"v_{name[3]}") for name in table.responses if _is_between_lines(name)}
-    return {
-        n: response[p] - response[m] for n, (p, m) in pairs.items() if n not in response and {p, m} <= set(response)
-    }
-
-
-def _is_between_lines(name: str) -> bool:
-    return len(name) == 4 and name.startswith("v_") and set(name[2:]) < set("abc")
+    pairs = table.between_lines.items()
+    return {n: response[p] - response[m] for n, (p, m) in pairs if n not in response and {p, m} <= set(response)}
