@@ -896,9 +896,10 @@ def expanded(bench):
     return replace(bench, model=model)
 
 
-def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, monkeypatch):
+@pytest.mark.parametrize("model", (expanded, lambda bench: bench), ids=("expansion", "as it is"))
+def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, monkeypatch, model):
     """A wave that none of the others can imitate, the first of which promises much, the others a little."""
-    bench = expanded(sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x)))
+    bench = model(sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x)))
     search = searching(bench, {frozenset(): null_of(bench)})
     search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
     monkeypatch.setattr(search_module, "PATIENCE", 2)
@@ -911,6 +912,21 @@ def test_a_long_search_ends_where_an_unknown_function_is_far_better(tmp_path, mo
     search_module._best_first(search, heap, lambda words: None)
     assert search.is_beaten and search.best_beside > search.log_posterior(search.ranked[0]) + 10
     assert len(search.fitted) == search_module.LEAST_FITS + 1 and heap, "nothing and the first three"
+
+
+@pytest.mark.parametrize("wave, are_fitted", [(900, False), (600, True)])
+def test_neighbours_of_what_an_unknown_function_beats_by_far_are_not_fitted(tmp_path, monkeypatch, wave, are_fitted):
+    """A wave that the one which leads cannot imitate, and one that it is."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.cos(wave * x + (wave == 900)))
+    leader = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.ones(1))
+    search = searching(bench, {frozenset(): null_of(bench), leader.names: leader})
+    search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    asked = []
+    monkeypatch.setattr(search_module, "less_one", lambda *of: asked.append("less one"))
+    monkeypatch.setattr(search_module, "exchange", lambda *of: asked.append("exchange"))
+    first = search.ranked[0]
+    search_module._effects_alone(search, [], set(), lambda words: None)
+    assert first in search.beside and bool(asked) is are_fitted
 
 
 @pytest.mark.parametrize(("patience", "is_weighed"), [(3, True), (4, True), (5, False)])
