@@ -37,7 +37,7 @@ from workbench.likelihood.unknown_laws import LAWS
 
 FITS = 60  # fits of sets of effects at most
 FIRST_FITS = 8  # after which what leads is asked for the first time which readings are wild
-PATIENCE = 8  # fits for every unknown function that is weighed, of an expansion: those of other models take no time
+PATIENCE = 8  # fits for every unknown function that is weighed before the end
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion, and what leads then

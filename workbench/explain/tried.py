@@ -270,9 +270,8 @@ class Search:
         channels that the effect changes."""
         if names not in self.fitted:
             return False
-        explained = self.log_evidence(names) - max(
-            self.log_evidence(part) for part in self.fitted if part <= names - {name}
-        )
+        without = max(self.log_evidence(part) for part in self.fitted if part <= names - {name})
+        explained = self.log_evidence(names) - without
         return explained * LAW_ERRORS[-1] ** 2 > self._left_to_unknown(name, names)
 
     def _left_to_unknown(self, name: str, names: Set) -> float:
