@@ -81,6 +81,7 @@ DRAWN = 1.0  # nats for a wrong constant of the device before a wrong column: it
 FAR = 0.3  # misfit of a channel, from which constants of the device are doubted
 EXPLAINED = 0.5  # that a channel may be left with by a fix that improves it; signs and exchanges have no size to fit
 EXPLAINED_SIGN = 0.8
+LEFT = 0.5  # of the misfit before, that another unit of a constant may leave: drag that nobody knows is no other unit
 POWER = 0.3  # misfit against taking power, that a drag may be left with by a change of its sign
 LOUD = 10.0  # times its uncertainty that a drag must be, before its sign is judged
 BETTER = 0.8  # of the misfit before, that counts as improved
@@ -188,10 +189,10 @@ class Reading:
     def net(self) -> float:
         return self.log_likelihood - sum(self.costs) - OVERWHELMING * len(self.costs)
 
-    def explains(self, before: Reading, most: float) -> bool:
-        """Whether every channel that it improves is left with no more than that."""
+    def explains(self, before: Reading, most: float, share: float = 1.0) -> bool:
+        """Whether every channel that it improves is left with no more than that, and than a share of what it was."""
         both = zip(before.errors.values(), self.errors.values())
-        return all(now <= most or now > BETTER * was for was, now in both)
+        return all(now <= min(most, share * was) or now > BETTER * was for was, now in both)
 
 
 class _Reader:
@@ -507,7 +508,7 @@ def _with_device(readers: Sequence[_Reader], fix: Fix, cost: float) -> _Whole | 
     except WorkbenchError:
         return None
     again = [_Reader(model, campaign, reader.table).as_it_is for reader in readers]
-    if not all(one.explains(reader.as_it_is, EXPLAINED) for one, reader in zip(again, readers)):
+    if not all(one.explains(reader.as_it_is, EXPLAINED, LEFT) for one, reader in zip(again, readers)):
         return None
     likelihood = sum(one.log_likelihood for one in again)
     return _Whole((fix,), {fix.anywhere: cost}, likelihood, likelihood - cost - OVERWHELMING)
