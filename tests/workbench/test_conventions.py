@@ -107,6 +107,14 @@ def test_a_hot_winding_behind_a_rectifier_is_no_other_resistance(tmp_path):
     assert settled(hide(damper_bench.CATALOGUE, "several", 88203, names)[0].write(tmp_path / "hot")).are_right
 
 
+def test_a_drag_that_nobody_knows_is_no_other_unit_of_the_viscous_one(tmp_path):
+    """Ten times the declared damping brakes nearly as one that goes with the root of the velocity."""
+    catalogue = damper_bench.CATALOGUE
+    kinds = [name for name in catalogue.outside if name not in catalogue.tuning_kinds]
+    made, answer = hide(catalogue, "outside", 667, kinds=kinds)
+    assert answer.outside == "drag with sqrt(v)" and settled(made.write(tmp_path / "root")).are_right
+
+
 def test_a_wild_reading_of_the_drag_is_no_exchange(right, tmp_path):
     """It gives power; speed for torque makes that a small speed of a large torque, which gives as little."""
 
