@@ -11,6 +11,7 @@ import pytest
 from benchmarks.virtual_benches import damper_bench, dq_bench
 from benchmarks.virtual_benches.hiding import hide
 from benchmarks.virtual_benches.mistakes import MISTAKES, Mistake, mistaken, scaled
+from effects.mechanical.coulomb_friction import CoulombFriction
 from tests.workbench.likelihood.tables import table
 from tests.workbench.models.machine_case import drawn
 from workbench.data.campaign import read_campaign
@@ -18,7 +19,7 @@ from workbench.data.conventions import NAMES, applied, fixes_of, section_text, w
 from workbench.data.table import Campaign, Response, Table
 from workbench.errors import WorkbenchError
 from workbench.explain import mistakes
-from workbench.explain.conventions import settle
+from workbench.explain.conventions import diagnosis_of, settle
 from workbench.models.bases import nominal_model, redesigned
 from workbench.models.machine.model import MachineBench
 from workbench.models.model import Model
@@ -99,6 +100,12 @@ def test_a_wrong_constant_is_told_from_wrong_readings(bench, key, factor, name, 
     before = read_campaign(wrong.parent)
     again = redesigned(nominal_model(before), before, found.campaign)
     assert settle(again, found.campaign).are_right
+
+
+def test_it_is_said_of_the_model_with_the_effects_that_it_has(right):
+    campaign = read_campaign(right["damper"])
+    model = nominal_model(campaign) + CoulombFriction()
+    assert diagnosis_of(settle(model, campaign), model, 1, 0.0).effects == ("coulomb_friction",)
 
 
 def test_a_hot_winding_behind_a_rectifier_is_no_other_resistance(tmp_path):

@@ -293,9 +293,6 @@ def _text(value: str) -> str:
 # ---- tables --------------------------------------------------------------------------------------------------------
 
 
-_OFTEN_CONSTANT = {"shunt": "shunt_ohm", "frequency": "frequency_Hz", "amplitude": "amplitude_mm"}
-
-
 def _table(sheet: _Sheet) -> str:
     source = "as before" if sheet.before else "a guess"
     kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
@@ -304,6 +301,9 @@ def _table(sheet: _Sheet) -> str:
     lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, *sign, kind, *_constants(sheet)]
     columns = [_line(g, sheet) for g in sheet.columns if g.heading.written and g.heading != NUMBER]
     return "\n".join([*lines, "[table.columns]  # heading = what the column holds", *columns]) + "\n"
+
+
+_OFTEN_CONSTANT = {"shunt": "shunt_ohm", "frequency": "frequency_Hz", "amplitude": "amplitude_mm"}
 
 
 def _constants(sheet: _Sheet) -> list[str]:

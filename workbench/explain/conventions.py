@@ -157,6 +157,7 @@ def diagnosis_of(conventions: Conventions, model: Model, seed: int, wall_s: floa
     return Diagnosis(
         campaign=conventions.campaign.id,
         model=model.base.name,
+        effects=model.names,
         verdict=CONVENTION,
         names=conventions.names,
         probability=conventions.probability,

@@ -72,7 +72,7 @@ def _leader_beside(search: Search, progress: Progress) -> None:
     for _ in range(ROUNDS):
         if search.ranked[0] in search.beside:
             break
-        weigh(search, search.ranked[0])
+        _weigh_leader(search, progress)
         _exactly(search, progress)
 
 
@@ -143,7 +143,10 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
     """Sets of effects, best first; then what leads without each of its effects and with each exchanged for another,
     until that changes nothing, or an unknown function is better by far. settled: sets that led and were treated so"""
     _best_first(search, heap, progress)
-    while (leader := search.ranked[0]) not in settled and not _is_over(search, leader, progress):
+    while (leader := search.ranked[0]) not in settled:
+        _weigh_leader(search, progress)
+        if search.is_over:
+            break
         settled.add(leader)
         less_one(search, progress)
         for names in (leader - {name} for name in sorted(leader)):
@@ -154,11 +157,10 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
         _best_first(search, heap, progress)
 
 
-def _is_over(search: Search, leader: Set, progress: Progress) -> bool:
-    """Whether no other set is of use, what leads weighed beside an unknown function first."""
+def _weigh_leader(search: Search, progress: Progress) -> None:
+    """An unknown function beside what leads."""
     progress("an unknown function")
-    weigh(search, leader)
-    return search.is_over
+    weigh(search, search.ranked[0])
 
 
 def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress) -> None:
@@ -190,8 +192,7 @@ def _best_first(search: Search, heap: list[Promise], progress: Progress, most: i
             heappush(heap, promise)
             promise = smaller
         if len(search.fitted) // PATIENCE > len(search.beside):
-            progress("an unknown function")
-            weigh(search, search.ranked[0])
+            _weigh_leader(search, progress)
         if -promise.order < _enough(search) and len(search.fitted) > LEAST_FITS:
             heappush(heap, promise)
             break
