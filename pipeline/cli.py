@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 
-from processes import use_one_thread
+from processes import use_one_thread, without_collecting
 from study.errors import exit_on_wrong_study
 
 EXIT_NOT_READ = 141  # as a shell says it of programs that the broken pipe ends
@@ -96,7 +96,9 @@ def _parser(given: list[str]) -> argparse.ArgumentParser:
     for name, command in COMMANDS.items():
         own = commands.add_parser(name, help=command.help)
         if given[:1] == [name]:
-            getattr(import_module(command.module), command.adds)(own)
+            with without_collecting():
+                module = import_module(command.module)
+            getattr(module, command.adds)(own)
     return parser
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any
 
 from figures.files import File
@@ -265,8 +266,12 @@ def _circumstances() -> dict[str, Any]:
     }
 
 
+@cache
 def git_commit() -> str | None:
-    """The commit of the project, with "+" when tracked files differ from it; None without git."""
+    """The commit of the project, with "+" when tracked files differ from it; None without git.
+
+    Asked once: what this process runs is what it has loaded, whatever is committed meanwhile.
+    """
     try:
         commit = _git("rev-parse", "HEAD")
         return commit + ("+" if _git("status", "--porcelain", "--untracked-files=no") else "")
