@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from types import ModuleType
 
 from processes import use_one_thread, without_collecting
 from study.errors import exit_on_wrong_study
@@ -96,10 +97,16 @@ def _parser(given: list[str]) -> argparse.ArgumentParser:
     for name, command in COMMANDS.items():
         own = commands.add_parser(name, help=command.help)
         if given[:1] == [name]:
-            with without_collecting():
-                module = import_module(command.module)
-            getattr(module, command.adds)(own)
+            getattr(_loaded(command.module), command.adds)(own)
     return parser
+
+
+def _loaded(module: str) -> ModuleType:
+    """A module with all that it imports; one that is there already leaves what the process has made since alone."""
+    if module not in sys.modules:
+        with without_collecting():
+            import_module(module)
+    return sys.modules[module]
 
 
 if __name__ == "__main__":
