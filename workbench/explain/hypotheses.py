@@ -25,8 +25,8 @@ from workbench.likelihood.whitening import LawError, law_error
 REACH = 4.0  # standard deviations to either side over which a posterior is integrated
 PLACES = 17
 ALSO = 0.5  # probability that an unknown law which shows in one group of channels shows in another one too
-LAW_ROUNDS = 4  # times the errors of laws are taken again where a fit ended
-LAW_CLOSE = 0.2  # change of half their ln determinant that is none [nats]
+LAW_ROUNDS = 6  # times the errors of laws are taken again where a fit ended
+LAW_CLOSE = 20.0  # change of half their ln determinant that is none, over that at which a fit is done
 IMPOSSIBLE = -1e30  # ln density where the model has no answer: a number, so that it can be interpolated
 SIZES_TRIED, OTHERS_TRIED = 3, {2: 8, 3: 4, 4: 3}  # values of the size and of every other parameter, by their number
 TURNS_TRIED = 8  # parts of a turn by which a direction is moved
@@ -84,16 +84,49 @@ def _fitted_from(
     bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None
 ) -> Hypothesis:
     """With the errors that the effects have; evidence by Laplace, for one parameter by integration over it."""
-    problem, log_det = with_law_error(bench.fit, with_parameters(effects, z), x)
+    place = np.concatenate([x, z])
+    problem, log_det = _with_law_error_at(bench, effects, place)
     fit = fitted(problem, tuple(effects), x, z, slopes)
+    sides: dict[bool, tuple[np.ndarray, float]] = {}
     for _ in range(LAW_ROUNDS):
-        before = log_det
-        problem, log_det = with_law_error(bench.fit, fit.at_maximum, fit.x)
-        if abs(log_det - before) < LAW_CLOSE:
+        end = np.concatenate([fit.x, fit.z])
+        there = _with_law_error_at(bench, effects, end)
+        off = there[1] - log_det
+        if abs(off) < LAW_CLOSE * bench.fit.close(fit.objective):
+            problem, log_det = there
             break
+        sides = _narrowed(sides, place, off)
+        if len(sides) == 1:
+            place, (problem, log_det) = end, there
+        else:
+            place = _between(*sides.values())
+            problem, log_det = _with_law_error_at(bench, effects, place)
         fit = refitted(problem, fit)
     evidence = fit.log_evidence if len(z) != 1 else _integrated(problem, fit)[2]
     return Hypothesis(fit, problem, evidence - log_det, log_det)
+
+
+def _with_law_error_at(bench: Bench, effects: Sequence[Effect], place: np.ndarray) -> tuple[Problem, float]:
+    """See ``with_law_error``. place: nuisances, then parameters of the effects (m + k,)"""
+    x, z = np.split(place, [len(bench.fit.start)])
+    return with_law_error(bench.fit, with_parameters(effects, z), x)
+
+
+def _narrowed(
+    sides: Mapping[bool, tuple[np.ndarray, float]], place: np.ndarray, off: float
+) -> dict[bool, tuple[np.ndarray, float]]:
+    """The nearest places to either side of the one at which errors of laws are those of where a fit with them ends,
+    with one more; after Illinois, the other side counts half where the same one is moved again."""
+    is_above = off > 0
+    stale = 0.5 if is_above in list(sides)[-1:] else 1.0
+    other = {side: (p, stale * o) for side, (p, o) in sides.items() if side is not is_above}
+    return other | {is_above: (place, off)}
+
+
+def _between(one: tuple[np.ndarray, float], other: tuple[np.ndarray, float]) -> np.ndarray:
+    """Where a straight line through both is zero."""
+    (a, above), (b, below) = one, other
+    return a + (b - a) * above / (above - below)
 
 
 def turned(bench: Bench, hypothesis: Hypothesis) -> Hypothesis:

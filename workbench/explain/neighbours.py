@@ -196,13 +196,12 @@ def less_one(search: Search, progress: Progress) -> None:
     """What leads is weighed against itself without each of its effects, fitted from where it ended, once more where it
     was fitted from elsewhere: a promise beside a null whose tolerances were pulled far may have hidden such a part, or
     begun its fit in another valley. Until such a leader is found."""
-    tried: set[Set] = set()
-    while (leader := search.ranked[0]) not in tried:
-        tried.add(leader)
-        for names in (leader - {name} for name in sorted(leader)):
+    while (whole := search.fitted[search.ranked[0]]) not in search.parted:
+        search.parted.add(whole)
+        for names in (whole.names - {name} for name in sorted(whole.names)):
             if names:
                 progress("fitting " + label_of(names))
-                _fit_part(search, search.fitted[leader], names)
+                _fit_part(search, whole, names)
 
 
 def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:

@@ -39,7 +39,8 @@ FITS = 60  # fits of sets of effects at most
 FIRST_FITS = 8  # after which what leads is asked for the first time which readings are wild
 PATIENCE = 8  # fits for every unknown function that is weighed before the end
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
-RIVALS = 2  # sets without an effect of what leads, fitted whatever they promise
+RIVALS = 2  # sets without an effect of what leads, fitted where others are not:
+MODEST = 30.0  # nats by which a promise was seen to be too modest at most
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion, and what leads then
 DOUBT = 8.0  # nats that an exact model may give an effect of which no fit is exact: up to 7.5 were seen
 ROUNDS = 3  # of sets and exact models at most
@@ -131,12 +132,17 @@ def _reaches(search: Search, heap: list[Promise]) -> bool:
     """Whether a promise is within reach of the best, now that exact models are known; all are given their new order."""
     if len(search.exact) == 1 or len(search.fitted) > FITS:  # nothing but the null is exact
         return False
+    _renew(search, heap)
+    best = max(search.log_posterior(search.ranked[0]), search.best_beside)
+    return any(-promise.order >= best - REACH for promise in heap[:1])
+
+
+def _renew(search: Search, heap: list[Promise]) -> None:
+    """What can be fitted still, as it promises now."""
     heap[:] = [p for p in heap if p.every in search.guessed and p.label not in search.failed]
     for promise in heap:
         promise.order = -promised_of(search, promise.every)
     heapify(heap)
-    best = max(search.log_posterior(search.ranked[0]), search.best_beside)
-    return any(-promise.order >= best - REACH for promise in heap[:1])
 
 
 def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progress: Progress) -> None:
@@ -167,11 +173,18 @@ def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress
     """What leads is weighed against the most promising sets that lack one of its effects: where tolerances are pulled
     far and sizes are large, promises were too modest by up to 25 nats."""
     for name in sorted(leader):
-        for promise in sorted(p for p in heap if name not in p.every)[:RIVALS]:
-            if promise.every not in search.fitted and promise.label not in search.failed:
-                progress("fitting " + promise.label)
-                if fit_set(search, promise) and _leads_on(search, promise.every):
-                    expand(search, search.fitted[promise.every], heap)
+        for promise in _most_promising(search, heap, name):
+            progress("fitting " + promise.label)
+            if fit_set(search, promise) and _leads_on(search, promise.every):
+                expand(search, search.fitted[promise.every], heap)
+
+
+def _most_promising(search: Search, heap: list[Promise], name: str) -> list[Promise]:
+    """The rivals that lack an effect of what leads, as they promise now: once the smaller of two sets is fitted, the
+    larger promises less than it did."""
+    least = search.log_posterior(search.ranked[0]) - MODEST
+    _renew(search, heap)
+    return sorted(p for p in heap if name not in p.every and -p.order >= least)[:RIVALS]
 
 
 def _leads_on(search: Search, names: Set) -> bool:

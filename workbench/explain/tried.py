@@ -107,6 +107,7 @@ class Search:
     origins: the fitted sets beside which that was guessed;  beside: sets beside an unknown function
     guessed_beside: ln evidence of such sets that were not fitted;  expanded: fits beside which more was looked for
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
+    parted: fits beside which those without one of their effects were made
     elsewhere: signatures beside fits of large effects
     """
 
@@ -123,6 +124,7 @@ class Search:
     failed: dict[str, str] = field(default_factory=dict)
     expanded: set[Set] = field(default_factory=set)
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
+    parted: set[Hypothesis] = field(default_factory=set)
     elsewhere: list[Signatures] = field(default_factory=list)
 
     def drop(self, names: Set, why: str) -> None:

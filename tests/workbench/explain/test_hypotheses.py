@@ -317,6 +317,21 @@ def test_the_error_of_a_law_is_that_of_the_fitted_size_wherever_the_fit_began(tm
     assert start > far.log_det + 2.0, "the start was indeed far"
 
 
+class Loose(Hardening):
+    """Its law is as good as none: fitted with a large error it is small and with a small one large, without end."""
+
+    model_error = 1.0
+
+
+def test_the_error_of_a_law_is_found_where_each_fit_throws_it_to_the_other_side(tmp_path):
+    bench = sure_of_noise(tmp_path, extra=lambda x: 4e8 * np.abs(x) ** 3 * x)
+    near, far = (fitted_from(bench, (Loose(),), bench.null.x, np.array([z])) for z in (0.5, 3.0))
+    for found in (near, far):
+        at_its_end = with_law_error(bench.fit, found.fit.at_maximum, found.fit.x)[1]
+        assert found.log_det == pytest.approx(at_its_end, abs=0.3)
+    assert far.log_evidence == pytest.approx(near.log_evidence, abs=0.3)
+
+
 class Close(Hardening):
     """Its law is good to a hundredth."""
 
@@ -628,6 +643,9 @@ def test_what_leads_is_weighed_against_itself_without_each_of_its_effects(tmp_pa
     assert search.ranked[0] == both
     less_one(search, lambda words: None)
     assert search.ranked[0] == one and set(search.fitted) == {none, one, frozenset(("wave5",)), both}
+    fitted_already = dict(search.fitted)
+    less_one(search, lambda words: pytest.fail("asked once more: " + words))
+    assert search.fitted == fitted_already
     straight = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.5]))
     assert search.log_evidence(one) == pytest.approx(straight.log_evidence, abs=1e-2)
 
@@ -796,22 +814,33 @@ def test_a_twin_is_found_of_what_a_tolerance_makes_good_but_for_its_curvature(tm
     assert search.log_evidence(frozenset(("twin",))) == pytest.approx(found.log_evidence, abs=1e-3)
 
 
-def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects_whatever_that_promises(
-    tmp_path, monkeypatch
-):
-    """One of which the model has no answer is left at that."""
-    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+def rivals_of(bench, promised):
+    """Sets of one wave that are fitted for they lack what leads, by the waves' numbers. promised: what each promises
+    behind the lead now [nats]; when they were made they all promised the same"""
     one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
     search = searching(bench, {frozenset(): null_of(bench), one.names: one})
+    sets = {k: frozenset((f"wave{k}",)) for k in promised}
+    for k, names in sets.items():  # of evidence below the null's, a share of which nobody promises
+        search.guessed[names] = search.log_posterior(one.names) - search.beliefs.log_prior(names) - promised[k]
     heap = [
-        Promise(order, f"wave{k}", frozenset((f"wave{k}",)), (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
-        for k, order in ((3, 5e3), (4, 2e3), (5, 1e3))
+        Promise(0.0, f"wave{k}", names, (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
+        for k, names in sets.items()
     ]
-    with monkeypatch.context() as patch:
-        patch.setattr(search_module, "fit_set", lambda search, promise: False)
-        search_module._rivals(search, heap, one.names, lambda words: None)
     search_module._rivals(search, heap, one.names, lambda words: None)
-    assert set(search.fitted) == {frozenset(), one.names, frozenset(("wave5",)), frozenset(("wave4",))}
+    return {k for k, names in sets.items() if names in search.fitted}
+
+
+def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects(tmp_path):
+    """As they promise now; none that could not lead if it had promised as much too little as was ever seen."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.06 * np.cos(600 * x))
+    assert rivals_of(bench, {3: 25.0, 4: 20.0, 5: 15.0}) == {4, 5}
+    assert rivals_of(bench, {3: 15.0, 4: 20.0, 5: 25.0}) == {3, 4}
+    assert rivals_of(bench, {3: 300.0, 4: 200.0, 5: 15.0}) == {5}
+
+
+def test_a_rival_of_which_the_model_has_no_answer_is_left_at_that(tmp_path, monkeypatch):
+    monkeypatch.setattr(search_module, "fit_set", lambda search, promise: False)
+    assert rivals_of(sure_of_noise(tmp_path), {3: 15.0, 4: 20.0}) == set()
 
 
 def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
