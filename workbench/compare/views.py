@@ -12,8 +12,8 @@ from functools import cached_property
 from math import gcd
 
 import numpy as np
-import scipy
 from scipy.spatial import cKDTree
+from scipy.special import stdtrit
 
 from effects.base import Effect
 from workbench.data.column_units import for_people
@@ -310,7 +310,7 @@ def _slope(x: np.ndarray, y: np.ndarray, weight: np.ndarray) -> tuple[float, flo
     spread = np.sum(weight * (x - x0) ** 2)
     slope = float(np.sum(weight * (x - x0) * (y - y0)) / spread)
     chi2 = np.sum(weight * (y - y0 - slope * (x - x0)) ** 2) / (len(x) - 2)
-    return slope, float(scipy.stats.t.ppf(0.95, len(x) - 2) * np.sqrt(max(chi2, 1.0) / spread))
+    return slope, float(stdtrit(len(x) - 2, 0.95) * np.sqrt(max(chi2, 1.0) / spread))
 
 
 def _meaning(view: ChannelView, name: str, low: float, high: float) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-import scipy.stats
+from scipy.special import stdtr
 
 from effects.base import Effect
 from effects.parameter import Parameter, parameters_of
@@ -236,7 +236,7 @@ def _believed(parameter: Parameter, estimate: Estimate) -> float:
     low = estimate.low90 if estimate.low90 > parameter.low else -np.inf  # what lies beyond a bound is believed at it
     high = estimate.high90 if estimate.high90 < parameter.high else np.inf
     ends = [end if np.isinf(end) else parameter.prior.standard(end) for end in (low, high)]
-    return float(np.diff(scipy.stats.t.cdf(ends, TAILS))[0])
+    return float(np.diff(stdtr(TAILS, ends))[0])
 
 
 def residual_signature(search: Search) -> dict[str, object]:

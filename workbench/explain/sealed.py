@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from workbench.believed import DISAGREE
 from workbench.errors import WorkbenchError
@@ -33,7 +33,7 @@ def opened(bench: Bench, final: Hypothesis) -> Sealed | None:
     covariance = np.eye(len(residual)) + slopes @ final.fit.covariance @ slopes.T
     square = float(residual @ np.linalg.solve(covariance, residual))
     dof = float(np.mean([channel.dof for channel in bench.noise.channels]))
-    p_value = float(chi2.sf(square / _heavier(len(residual), dof), len(residual)))
+    p_value = float(chdtrc(len(residual), square / _heavier(len(residual), dof)))
     return Sealed(len(residual), float(np.mean(residual**2)), p_value, sealed_words(bench), p_value > DISAGREE)
 
 

@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 from functools import cache, cached_property
 
 import numpy as np
-import scipy
-from scipy.special import log_ndtr
+from scipy.special import gammaln, log_ndtr
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -37,18 +36,14 @@ ALONG = 0.1  # of a step, over which its bend is taken by differences
 NEAR = 0.1  # move of an effect's standard normal number, up to which its slopes are taken for those a step before
 POOR = 0.25  # of what a step promises, below which its slopes are not those of the place
 ROUNDS = 4  # times the slopes of the nuisances are taken anew
+LEVEL = float(gammaln((TAILS + 1) / 2) - gammaln(TAILS / 2) - np.log(TAILS / 2) / 2)  # ln of Student's t density at
+# zero over the standard normal one there
 FAR = 20.0  # a standard normal number is not followed beyond
 
 
 def prior_cost(z: np.ndarray) -> float:
     """Minus ln of Student's t density of z over the standard normal one at zero."""
-    return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - _level()))
-
-
-@cache
-def _level() -> float:
-    """ln of Student's t density at zero over the standard normal one there."""
-    return float(scipy.stats.t.logpdf(0.0, TAILS) - scipy.stats.norm.logpdf(0.0))
+    return float(np.sum(0.5 * (TAILS + 1) * np.log1p(np.square(z) / TAILS) - LEVEL))
 
 
 def prior_weight(z: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
+from scipy.special import gammaincinv
 
 from workbench.likelihood.fit import Fit, Problem
 from workbench.likelihood.regions import blocks_of
@@ -100,4 +100,4 @@ def _without_fault(jacobian: np.ndarray, found: Sequence[_LeftOut]) -> float:
     every = sum(levers)
     across = np.sum(every * every.T) - sum(np.sum(one * one.T) for one in levers)
     variance = 2 * (own + across)
-    return float(scipy.stats.gamma.ppf(SUCH, mean**2 / variance, scale=variance / mean))
+    return float(gammaincinv(mean**2 / variance, SUCH) * variance / mean)

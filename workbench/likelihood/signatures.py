@@ -13,7 +13,7 @@ from itertools import product
 from math import log
 
 import numpy as np
-import scipy
+from scipy.special import stdtr
 
 from effects.base import Effect
 from effects.parameter import parameters_of
@@ -130,7 +130,7 @@ def signature(effect: Effect, change: Callable[[Effect], np.ndarray]) -> Signatu
     k = len(parameters_of(effect))
     z, width, _ = grid(k)
     changes, possible = _changes(effect, z, change)
-    below, above = (scipy.stats.t.cdf(z + side * width / 2, TAILS) for side in (-1, 1))
+    below, above = (stdtr(TAILS, z + side * width / 2) for side in (-1, 1))
     masses = np.log(above - below).sum(axis=1)
     masses = np.where(possible, masses, -np.inf)
     return Signature(effect, z, changes, masses - np.logaddexp.reduce(masses), width)

@@ -16,7 +16,7 @@ from functools import cached_property, lru_cache
 from math import log
 
 import numpy as np
-import scipy
+import pandas as pd
 
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
@@ -247,7 +247,7 @@ def _places(conditions: Mapping[str, np.ndarray], length: int) -> np.ndarray:
         if "angle" in name:
             columns += [np.cos(values) / TURNS[length], np.sin(values) / TURNS[length]]
         else:
-            rank = scipy.stats.rankdata(np.round(values, 12))
+            rank = pd.Series(np.round(values, 12)).rank().to_numpy()
             columns.append((rank - rank.mean()) / rank.std() / LENGTHS[length])
     return np.array(columns).T if columns else np.zeros((len(next(iter(conditions.values()))), 1))
 

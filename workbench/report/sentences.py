@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import isclose
 
 import numpy as np
-import scipy
+from scipy.special import bdtrc, fdtri
 
 from workbench.believed import LIKELY, PLAIN
 from workbench.findings import (
@@ -106,7 +106,7 @@ def fails(score: ChannelScore, channels: int) -> bool:
     well as the dof of its measurement say; n/2, as two repeats give, where they are not told.
     """
     dof = score.n / 2 if score.noise_dof is None else score.noise_dof
-    return score.chi2_per_n > max(GOAL, float(scipy.stats.f.isf(ALARMING_P / channels, score.n, dof)))
+    return score.chi2_per_n > max(GOAL, float(fdtri(score.n, dof, 1 - ALARMING_P / channels)))
 
 
 def channels_off(c: Comparison) -> list[ChannelScore]:
@@ -216,7 +216,7 @@ def by_chance(p_values: Iterable[float]) -> float:
     p = np.asarray(list(p_values), dtype=float)
     if not len(p):
         return 1.0
-    many = scipy.stats.binom.sf(np.sum(p < ALARMING_P) - 1, len(p), ALARMING_P)
+    many = bdtrc(np.sum(p < ALARMING_P) - 1, len(p), ALARMING_P)
     return float(min(1.0, 2 * min(len(p) * p.min(), many)))
 
 
@@ -318,7 +318,7 @@ def _structure(w: Whiteness, channels: int) -> str:
     """In words what is not white in a channel; empty where all is."""
     lags = len(w.autocorrelation)
     outside = int(np.sum(np.abs(w.autocorrelation) > w.band99))
-    in_lags = bool(channels * scipy.stats.binom.sf(outside - 1, lags, 0.01) < ALARMING_P)
+    in_lags = bool(channels * bdtrc(outside - 1, lags, 0.01) < ALARMING_P)
     depends = bool(channels * by_chance(d.p_value for d in w.dependences) < ALARMING_P)
     on = [plain(d.condition) for d in w.dependences if d.p_value < ALARMING_P]
     parts = ["from reading to reading"] * in_lags + [f"depends on {listed(on)}"] * depends

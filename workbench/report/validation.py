@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import scipy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.special import bdtr
 
 from figures.report import KeyNumber, KeyNumbers, Part, Picture, Remark, Section, Table, write_report
 from figures.style import BLACK, BLUE, ORANGE, new_figure, show_grid, styled
@@ -89,7 +89,7 @@ def warnings(v: Validation) -> tuple[str, ...]:
 
 
 def _too_sure(v: Validation) -> list[str]:
-    few = [c for c in v.corrected if scipy.stats.binom.cdf(round(c.share_in_90 * c.n), c.n, IN_BAND) < ALARMING_P]
+    few = [c for c in v.corrected if bdtr(round(c.share_in_90 * c.n), c.n, IN_BAND) < ALARMING_P]
     said = listed(f"{c.channel} ({percent(c.share_in_90)})" for c in few)
     return [f"The model is surer than it may be: fewer readings lie in its band than 90 % in {said}."] if few else []
 
