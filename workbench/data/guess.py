@@ -212,6 +212,8 @@ def _quantity(heading: Heading) -> str:
             return book
     if heading.unit in ("degC", "K", "degF") or (words[:1] and words[0] in _THERMAL and words[-1] == "c"):
         return _temperature(words)
+    if not heading.unit and _is_thermal(words):
+        return _temperature(words)
     return _by_unit(heading.unit, words) or next(filter(None, map(_by_word, words)), "")
 
 
@@ -225,6 +227,13 @@ def is_known(name: str) -> bool:
     """Whether a name is one that kinds or the bookkeeping know."""
     patterns = {p for kind in KINDS.values() for p in (*kind.responses, *kind.axes)}
     return name in (*_BOOKS, "magnet_T", "winding_T") or any(fnmatch(name, p) for p in patterns)
+
+
+def _is_thermal(words: Sequence[str]) -> bool:
+    """Whether words without a unit name a temperature that conditions know; T of a rotor or a stator is a torque."""
+    is_named = any(w.endswith(("temp", "temperature", "temperatur")) for w in words)
+    has_letter = "t" in words and {"rotor", "stator"}.isdisjoint(words)
+    return (is_named or has_letter) and _temperature(words) != ""
 
 
 def _temperature(words: Sequence[str]) -> str:
