@@ -83,7 +83,11 @@ def fitted_from(
 def _fitted_from(
     bench: Bench, effects: Sequence[Effect], x: np.ndarray, z: np.ndarray, slopes: np.ndarray | None
 ) -> Hypothesis:
-    """With the errors that the effects have; evidence by Laplace, for one parameter by integration over it."""
+    """With the errors that the effects have; evidence by Laplace, for one parameter by integration over it.
+
+    Errors of laws are those of where the fit with them ends: a large effect has a large error, with which it is fitted
+    small, and has a small one. Once fits threw each other to both sides, the place is closed in between them.
+    """
     place = np.concatenate([x, z])
     problem, log_det = _with_law_error_at(bench, effects, place)
     fit = fitted(problem, tuple(effects), x, z, slopes)
@@ -96,11 +100,8 @@ def _fitted_from(
             problem, log_det = there
             break
         sides = _narrowed(sides, place, off)
-        if len(sides) == 1:
-            place, (problem, log_det) = end, there
-        else:
-            place = _between(*sides.values())
-            problem, log_det = _with_law_error_at(bench, effects, place)
+        place = end if len(sides) == 1 else _between(*sides.values())
+        problem, log_det = there if place is end else _with_law_error_at(bench, effects, place)
         fit = refitted(problem, fit)
     evidence = fit.log_evidence if len(z) != 1 else _integrated(problem, fit)[2]
     return Hypothesis(fit, problem, evidence - log_det, log_det)
@@ -115,8 +116,11 @@ def _with_law_error_at(bench: Bench, effects: Sequence[Effect], place: np.ndarra
 def _narrowed(
     sides: Mapping[bool, tuple[np.ndarray, float]], place: np.ndarray, off: float
 ) -> dict[bool, tuple[np.ndarray, float]]:
-    """The nearest places to either side of the one at which errors of laws are those of where a fit with them ends,
-    with one more; after Illinois, the other side counts half where the same one is moved again."""
+    """The nearest place to either side, with one more; the other side counts half where the same one is moved again
+    (regula falsi after Illinois: Dowell and Jarratt, BIT 11 (1971), 168).
+
+    off: by what half the ln determinant is more where a fit with errors of this place ended
+    """
     is_above = off > 0
     stale = 0.5 if is_above in list(sides)[-1:] else 1.0
     other = {side: (p, stale * o) for side, (p, o) in sides.items() if side is not is_above}
