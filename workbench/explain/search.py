@@ -40,7 +40,7 @@ FIRST_FITS = 8  # after which what leads is asked for the first time which readi
 PATIENCE = 8  # fits for every unknown function that is weighed before the end
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
 RIVALS = 2  # sets without an effect of what leads, fitted where others are not:
-MODEST = 30.0  # nats by which a promise was seen to be too modest at most
+MODEST = 30.0  # nats behind what leads, that they promise at least: promises were too modest by up to 25
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion, and what leads then
 DOUBT = 8.0  # nats that an exact model may give an effect of which no fit is exact: up to 7.5 were seen
 ROUNDS = 3  # of sets and exact models at most
@@ -171,7 +171,7 @@ def _weigh_leader(search: Search, progress: Progress) -> None:
 
 def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress) -> None:
     """What leads is weighed against the most promising sets that lack one of its effects: where tolerances are pulled
-    far and sizes are large, promises were too modest by up to 25 nats."""
+    far and sizes are large, promises are too modest."""
     for name in sorted(leader):
         for promise in _most_promising(search, heap, name):
             progress("fitting " + promise.label)

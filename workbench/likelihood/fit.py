@@ -36,9 +36,9 @@ ALONG = 0.1  # of a step, over which its bend is taken by differences
 NEAR = 0.1  # move of an effect's standard normal number, up to which its slopes are taken for those a step before
 POOR = 0.25  # of what a step promises, below which its slopes are not those of the place
 ROUNDS = 4  # times the slopes of the nuisances are taken anew
-LEVEL = float(gammaln((TAILS + 1) / 2) - gammaln(TAILS / 2) - np.log(TAILS / 2) / 2)  # ln of Student's t density at
-# zero over the standard normal one there
 FAR = 20.0  # a standard normal number is not followed beyond
+# ln of Student's t density at zero over the standard normal one there
+LEVEL = float(gammaln((TAILS + 1) / 2) - gammaln(TAILS / 2) - np.log(TAILS / 2) / 2)
 
 
 def prior_cost(z: np.ndarray) -> float:
