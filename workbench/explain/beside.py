@@ -8,7 +8,8 @@ import numpy as np
 
 from workbench.explain.explore import Explanation, explored
 from workbench.explain.hypotheses import Beside, beside_unknown
-from workbench.explain.tried import REACH, Progress, Promise, Search, Set, additions, fit_set
+from workbench.explain.neighbours import fit_part
+from workbench.explain.tried import REACH, Progress, Promise, Search, Set, additions, fit_set, label_of
 
 BESIDE = 4  # sets that are looked at beside an unknown function
 MOST_BESIDE = 16  # effects at most that are fitted beside one; BESIDE where it is far better than any without
@@ -24,13 +25,24 @@ def weigh_unknown(search: Search, progress: Progress) -> None:
         return
     heap: list[Promise] = []
     _effects_beside(search, search.beside[frozenset()], heap)
-    leader = max(search.beside, key=search.log_posterior_beside)
-    if leader:
+    if leader := search.leader_beside:
         _effects_beside(search, search.beside[leader], heap)
     best = lambda: search.best_beside - search.beliefs.log_unknown  # noqa: E731
     for number, promise in enumerate(sorted(heap)[:most]):
         if number < BESIDE or -promise.order >= best() - REACH:
             _fit_beside(search, promise)
+
+
+def less_one_beside(search: Search, progress: Progress) -> None:
+    """What leads beside an unknown function is weighed there without each of its effects, until such a leader is found:
+    where such a function ends the search, nobody has asked for these, and an effect of no size at all was named."""
+    parted: set[Set] = set()
+    while search.is_beaten and (leader := search.leader_beside) not in parted:
+        parted.add(leader)
+        for names in (leader - {name} for name in sorted(leader)):
+            progress("an unknown function beside " + (label_of(names) or "nothing"))
+            if names in search.fitted or fit_part(search, search.fitted[leader], names):
+                weigh(search, names)
 
 
 def weigh(search: Search, names: Set) -> None:

@@ -201,13 +201,13 @@ def less_one(search: Search, progress: Progress) -> None:
         for names in (whole.names - {name} for name in sorted(whole.names)):
             if names:
                 progress("fitting " + label_of(names))
-                _fit_part(search, whole, names)
+                fit_part(search, whole, names)
 
 
-def _fit_part(search: Search, whole: Hypothesis, names: Set) -> None:
-    """Fits some of the effects of a fit, from where it ended."""
+def fit_part(search: Search, whole: Hypothesis, names: Set) -> bool:
+    """Fits some of the effects of a fit, from where it ended; False where the model has no answer."""
     effects, z = _part_of(whole, names)
-    fit_set(search, start_from(search, whole.fit, names, effects, whole.fit.x, z))
+    return fit_set(search, start_from(search, whole.fit, names, effects, whole.fit.x, z))
 
 
 def _part_of(whole: Hypothesis, names: Set) -> tuple[tuple[Effect, ...], np.ndarray]:

@@ -14,7 +14,7 @@ import numpy as np
 from effects.base import Effect
 from workbench.believed import MOST, PLAIN
 from workbench.errors import WorkbenchError
-from workbench.explain.beside import weigh, weigh_unknown
+from workbench.explain.beside import less_one_beside, weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
 from workbench.explain.hypotheses import Hypothesis, exact, null_of
 from workbench.explain.neighbours import exchange, less_one
@@ -64,6 +64,9 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
     weigh_unknown(search, progress)
     _exactly(search, progress)
     _leader_beside(search, progress)
+    less_one_beside(search, progress)
+    if search.ranked[0] not in search.exact:  # a part that was found only now
+        _exactly(search, progress)
     return search
 
 

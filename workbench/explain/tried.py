@@ -195,8 +195,13 @@ class Search:
         return self.log_evidence_beside(names) + self.beliefs.log_prior(names)
 
     @property
+    def leader_beside(self) -> Set:
+        """The best set beside an unknown function, of those that were weighed so far; none where none was."""
+        return max(self.beside, key=self.log_posterior_beside, default=frozenset())
+
+    @property
     def best_beside(self) -> float:
-        """ln posterior of the best set beside an unknown function, of those that were weighed so far [nats]."""
+        """Its ln posterior [nats]."""
         return max(map(self.log_posterior_beside, self.beside), default=-np.inf) + self.beliefs.log_unknown
 
     def log_posterior(self, names: Set) -> float:
@@ -222,8 +227,7 @@ class Search:
         the last effect of what leads gained, as the next one is believed to gain less."""
         if not self.is_beaten:
             return False
-        beside_none = not max(self.beside, key=self.log_posterior_beside, default=frozenset())
-        return beside_none or self.best_beside - self.log_posterior(self.ranked[0]) > self.last_gain
+        return not self.leader_beside or self.best_beside - self.log_posterior(self.ranked[0]) > self.last_gain
 
     @property
     def last_gain(self) -> float:

@@ -20,7 +20,7 @@ from tests.workbench.toy_bench import LIBRARY, RATE, Bump, Hardening, Spring, Sp
 from workbench.believed import TAILS
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
-from workbench.explain.beside import weigh
+from workbench.explain.beside import less_one_beside, weigh
 from workbench.explain.explore import beliefs_of
 from workbench.explain.hypotheses import (
     Beside,
@@ -658,6 +658,19 @@ def test_no_fit_is_taken_apart_twice(tmp_path):
     assert len(asked) == 2
 
 
+def test_what_leads_beside_an_unknown_function_is_weighed_there_without_each_of_its_effects(tmp_path):
+    """A pair was fitted where neither was hidden, but a law that none of the effects can imitate."""
+    bench = sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.sin(900 * x))
+    pair = fitted_from(bench, (WAVES["wave2"](), WAVES["wave5"]()), bench.null.x, np.array([0.1, 0.1]))
+    search = searching(bench, {frozenset(): null_of(bench), pair.names: pair})
+    search.shapes = shapes_of(bench.fit.stack, bench.fit.white, bench.fit.predictor.predict(bench.null.x))
+    weigh(search, pair.names)
+    assert search.leader_beside == pair.names
+    less_one_beside(search, lambda words: None)
+    assert search.leader_beside == frozenset()
+    assert set(search.beside) == {frozenset(), frozenset(("wave2",)), frozenset(("wave5",)), pair.names}
+
+
 def searching(bench, fitted):
     """A search that has fitted some sets, of the named effects."""
     signatures = signatures_of(bench, [wave() for wave in WAVES.values()])
@@ -1059,7 +1072,7 @@ def test_what_an_exact_model_brings_to_the_lead_in_the_end_is_weighed_beside_an_
     monkeypatch.setattr(search_module, "weigh_unknown", lambda *asked: None)
     monkeypatch.setattr(search_module, "_exactly", fallen)
     search = searched(bench, WAVES)
-    assert search.ranked[0] == {"wave2"} and len(exactly) == 2
+    assert search.ranked[0] == {"wave2"} and len(exactly) == 3, "of what is promised, of it, and of its parts"
     assert search.is_beaten, "by an unknown function beside it"
 
 
