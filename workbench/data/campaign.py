@@ -157,7 +157,7 @@ class _Reader:
         rule, name = self.content.campaign.holdout, whole.name
         none = np.zeros(whole.raw.rows, dtype=bool)
         if rule == LAST_REPEAT:
-            usable = whole.repeat[whole.complete]
+            usable = whole.repeat[whole.complete & ~whole.is_copy]
             if len(np.unique(usable)) > 1:
                 return whole.repeat == usable.max()
             self.complaints.append(
@@ -211,7 +211,29 @@ class _WholeTable:
             complaints.append(f"{self.name}: {number} have a gap or no number (first in {first}) and are left out")
         if len(groups) > 1:
             complaints += [self._apart(names, rows) for names, rows in groups.values() if not rows.all()]
-        return list(groups.values())
+        complaints += [self._copied(*pair) for pair in self.copies.items()]
+        return [(names, rows & ~self.is_copy) for names, rows in groups.values()]
+
+    @cached_property
+    def copies(self) -> dict[int, int]:
+        """Every repeat that is a copy to the last digit of one before, which it says nothing beside -> that one; so
+        few rows as may be alike by chance are none."""
+        taken = [self.values(c) for c in self.columns if c.role in ("condition", "group", "response")]
+        seen, found = dict[bytes, int](), dict[int, int]()
+        for repeat in np.unique(self.repeat[self.complete]).tolist():
+            rows = self.complete & (self.repeat == repeat)
+            first = seen.setdefault(np.array([values[rows] for values in taken]).tobytes(), repeat)
+            if first != repeat and rows.sum() >= FEW_ROWS:
+                found[repeat] = first
+        return found
+
+    @cached_property
+    def is_copy(self) -> np.ndarray:
+        """Rows of such repeats (n,)."""
+        return np.isin(self.repeat, list(self.copies))
+
+    def _copied(self, repeat: int, of: int) -> str:
+        return f"{self.name}: repeat {repeat} is an exact copy of repeat {of}; it says nothing new and is left out"
 
     def _counted(self, gaps: np.ndarray) -> tuple[str, str]:
         """("3 of 40 rows", "line 7")."""

@@ -19,7 +19,7 @@ LONG_RUN = 0.05  # share of the rows that a run of equal readings must reach to 
 def suspicions(table: Table, lines: np.ndarray) -> list[str]:
     """Sentences about a table; lines: where its rows stand in the file (n,)."""
     found = []
-    for check in (_few, _copied_rows, _copied_repeats, _same_in_every_row, _stuck, _copied_columns, _still, _backwards):
+    for check in (_few, _copied_rows, _same_in_every_row, _stuck, _copied_columns, _still, _backwards):
         found += check(table, lines)
     return [f"{table.file}: {words}" for words in found]
 
@@ -40,17 +40,6 @@ def _copied_rows(table: Table, lines: np.ndarray) -> list[str]:
     first = int(lines[np.flatnonzero(copies)[0]])
     said = f"{int(copies.sum())} of {table.rows} rows are exact copies of an earlier row (first in line {first})"
     return [f"{said}; they count as readings of their own: delete what was pasted twice"]
-
-
-def _copied_repeats(table: Table, lines: np.ndarray) -> list[str]:
-    """A repeat that was pasted says that there is no noise."""
-    found, frame, seen = [], _frame(table), {}
-    for repeat in np.unique(table.repeat):
-        content = frame[table.repeat == repeat].to_numpy().tobytes()
-        if content in seen:
-            found.append(f"repeat {repeat} is an exact copy of repeat {seen[content]}")
-        seen.setdefault(content, repeat)
-    return found
 
 
 def _same_in_every_row(table: Table, lines: np.ndarray) -> list[str]:

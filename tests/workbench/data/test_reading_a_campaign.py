@@ -72,6 +72,20 @@ def test_the_last_repeat_is_held_out(tmp_path):
     assert np.array_equal(table.held_out, table.repeat == 2)
 
 
+@pytest.mark.parametrize("rows, is_left_out", [(12, True), (11, False)])
+def test_a_repeat_that_is_a_copy_is_left_out_and_not_held_out(tmp_path, rows, is_left_out):
+    """To the last digit, the order of the rows included; few readings in coarse digits may be alike by chance."""
+    one = [f"{k},{10 * k % 7}," for k in range(rows)]
+    other = [f"{k},{10 * k % 7 + 1}," for k in range(rows)]
+    lines = [line + str(repeat) for repeat, part in enumerate((one, other, one)) for line in part]
+    toml = DECLARED[: DECLARED.index("sweep =")] + 'again = { role = "repeat" }\n'
+    toml = toml.replace('"column:holdout"', '{ rule = "last repeat of every table" }')
+    found = read_campaign(declared(tmp_path, toml, "\n".join(["angle,load,again", *lines, ""])))
+    said = any("repeat 2 is an exact copy of repeat 0" in words for words in found.complaints)
+    assert said is is_left_out and found.repeats == (2 if is_left_out else 3)
+    assert set(found.tables[0].repeat[found.tables[0].held_out]) == {1 if is_left_out else 2}
+
+
 def test_a_complex_response_shares_the_size_of_both_parts(tmp_path):
     toml = DECLARED.split("[[table]]")[0].replace('"column:holdout"', '"none"')
     toml += (

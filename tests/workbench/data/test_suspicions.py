@@ -29,16 +29,10 @@ def copied_rows():
     return said(TORQUE[place], OTHER[place], ANGLE[place], np.zeros(N, dtype=int))
 
 
-def copied_repeat():
-    place = np.r_[0:30, 0:30]
-    return said(TORQUE[place], OTHER[place], ANGLE[place])
-
-
 @pytest.mark.parametrize(
     "words, wrong",
     [
         ("10 of 60 rows are exact copies of an earlier row (first in line 32)", copied_rows()),
-        ("repeat 1 is an exact copy of repeat 0", copied_repeat()),
         ("torque has the same value in every row", said(torque=np.full(N, 0.1))),
         ("torque has the same value in 10 rows from line 22 on", said(torque=TORQUE[np.r_[0:20, [20] * 9, 20:51]])),
         ("torque and force are equal in every row", said(force=TORQUE)),
