@@ -40,11 +40,15 @@ _SURE = {",": _sure(",", "."), ".": _sure(".", ",")}
 _EITHER = {s: re.compile(rf"{_EDGE}[1-9]\d{{0,2}}{re.escape(s)}\d{{3}}{_END}") for s in (",", ".")}
 
 
+class UntoldSign(WorkbenchError):
+    """Nothing in a text shows whether 1,234 is one or a thousand."""
+
+
 def decimal_sign(text: str, where: str) -> str:
     """ "," or ".", whichever the numbers of a text use; its delimiter is not the comma, or numbers are in quotes.
 
     Raises:
-        WorkbenchError: both are used, or nothing shows whether 1,234 is one or a thousand.
+        WorkbenchError: both are used; UntoldSign: either may be.
     """
     comma = _SURE[","].search(text) if "," in text else None
     point = _SURE["."].search(text) if "." in text else None
@@ -54,7 +58,7 @@ def decimal_sign(text: str, where: str) -> str:
             "write one of them everywhere."
         )
     if not comma and not point and "," in text and (either := _EITHER[","].search(text)):
-        raise WorkbenchError(
+        raise UntoldSign(
             f'{where}: {either.group()} may be a decimal number or thousands; say decimal = "," or decimal = "." in '
             "its [[table]], or --decimal to airgap import."
         )

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from disk import write_atomically
+from workbench.data.cells import UntoldSign
 from workbench.data.column_units import FACTORS
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
 from workbench.data.guess import (
@@ -56,6 +57,7 @@ class _Sheet:
 
     files: names, that of the first repeat first;  beside: headings of the repeats beside a response, by its own
     before: what another campaign says of the same headings;  decimal: sign that has to be declared
+    kind_is: where the kind is from
     """
 
     files: tuple[str, ...]
@@ -65,6 +67,7 @@ class _Sheet:
     beside: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     before: Mapping[str, ColumnEntry] = field(default_factory=dict)
     decimal: str | None = None
+    kind_is: str = "a guess"
 
     @property
     def entry(self) -> TableEntry:
@@ -82,7 +85,8 @@ def draft_of(paths: Sequence[Path], like: Path | None = None, decimal: str | Non
     Raises:
         WorkbenchError: a file is not there, is no table, or lies in another folder.
     """
-    tables, read = [] if like is None else campaign_file(like).table, [_sheet(path, decimal) for path in paths]
+    tables = [] if like is None else campaign_file(like).table
+    read = _sheets(paths, decimal, tables)
     folder = paths[0].resolve().parent
     if any(path.resolve().parent != folder for path in paths):
         raise WorkbenchError(f"all files of a campaign lie in one folder; put them beside {paths[0]}.")
@@ -124,6 +128,22 @@ def write_draft(paths: Sequence[Path], like: Path | None = None, decimal: str | 
 
 def _is_open(line: str) -> bool:
     return '= "?"' in line.partition("#")[0] or 'unit = "?"' in line.partition(" # ")[0]
+
+
+def _sheets(paths: Sequence[Path], decimal: str | None, tables: Sequence[TableEntry]) -> list[_Sheet]:
+    """The files; one that does not show its decimal sign has a comma where another one has, or had before."""
+    read = {path: _shown(path, decimal) for path in paths}
+    commas = {table.decimal for table in tables} | {sheet.raw.decimal for sheet in read.values() if sheet is not None}
+    sign = "," if "," in commas else None
+    return [sheet or _sheet(path, sign) for path, sheet in read.items()]
+
+
+def _shown(path: Path, decimal: str | None) -> _Sheet | None:
+    """None where a file does not show its decimal sign."""
+    try:
+        return _sheet(path, decimal)
+    except UntoldSign:
+        return None
 
 
 def _sheet(path: Path, decimal: str | None) -> _Sheet:
@@ -182,13 +202,19 @@ def _below(sheets: Sequence[_Sheet]) -> _Sheet:
 
 
 def _as_before(sheet: _Sheet, tables: Sequence[TableEntry]) -> _Sheet:
-    """Read as the table of another campaign that has most of its headings; its kind, where it has two or more."""
+    """Read as the table of another campaign that is most like it by its headings; its kind, where the file has most of
+    these headings, and two or more."""
     headings = {guess.heading.written for guess in sheet.columns}
-    shared = [{h: entry for h, entry in (t.columns or {}).items() if h in headings} for t in tables]
-    most = max(shared, key=len, default={})
-    kind = tables[shared.index(most)].kind if len(most) > 1 else sheet.kind
-    columns = tuple(replace(guess, quantity=_known_as(guess, most)) for guess in sheet.columns)
-    return replace(sheet, columns=columns, kind=kind, before=most)
+    known = [table.columns or {} for table in tables]
+    likeness = [len(headings & columns.keys()) / max(len(headings | columns.keys()), 1) for columns in known]
+    if not any(likeness):
+        return sheet
+    nearest = int(np.argmax(likeness))
+    shared = {heading: entry for heading, entry in known[nearest].items() if heading in headings}
+    is_same = len(shared) > max(1, len(known[nearest]) / 2)
+    columns = tuple(replace(guess, quantity=_known_as(guess, shared)) for guess in sheet.columns)
+    sheet = replace(sheet, columns=columns, before=shared)
+    return replace(sheet, kind=tables[nearest].kind, kind_is="as before") if is_same else sheet
 
 
 def _known_as(guess: Guess, before: Mapping[str, ColumnEntry]) -> str:
@@ -294,8 +320,7 @@ def _text(value: str) -> str:
 
 
 def _table(sheet: _Sheet) -> str:
-    source = "as before" if sheet.before else "a guess"
-    kind = f"kind = {_text(sheet.kind)}  # what was measured, {source}; the kinds stand in docs/campaign.md"
+    kind = f"kind = {_text(sheet.kind)}  # what was measured, {sheet.kind_is}; the kinds stand in docs/campaign.md"
     sign = [f"decimal = {_text(sheet.decimal)}"] if sheet.decimal else []
     more = [f"repeats = {_value(sheet.files[1:])}  # the same measured again, a guess"] if sheet.files[1:] else []
     lines = ["", "[[table]]", f"file = {_text(sheet.files[0])}", *more, *sign, kind, *_constants(sheet)]

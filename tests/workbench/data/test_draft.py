@@ -13,7 +13,7 @@ from workbench.data.campaign import read_campaign
 from workbench.data.checks import checks_of
 from workbench.data.draft import draft_of, write_draft
 from workbench.data.guess import guesses, likely_kind
-from workbench.data.raw_table import table_of_text
+from workbench.data.raw_table import Layout, read_raw, table_of_text
 from workbench.data.scatter import noise_of
 from workbench.errors import WorkbenchError
 from workbench.explain.diagnosis import diagnose
@@ -242,6 +242,41 @@ def test_headings_that_another_campaign_knows_are_read_as_there(tmp_path):
         assert one.kind == other.kind and list(one.responses) == list(other.responses) == ["force"]
         np.testing.assert_array_equal(one.responses["force"].random, other.responses["force"].random)
         np.testing.assert_array_equal(one.repeat, other.repeat)
+
+
+def of_two_tables(folder, name):
+    """Load points and a drag run of one machine, in German."""
+    (folder / name).mkdir()
+    loads = "".join(f"{500 * k};0;{10 * k};{0.3 * k:.4f}\n".replace(".", ",") for k in range(1, 9))
+    headings = "Drehzahl [1/min];Strom Id [A];Strom Iq [A];Drehmoment [Nm]\n"
+    (folder / name / "last.csv").write_text(headings + loads, encoding="utf-8")
+    drag = "".join(f"{500 * k};{1.234 + k:.3f}\n".replace(".", ",") for k in range(1, 9))
+    (folder / name / "drag.csv").write_text("Drehzahl [1/min];Drehmoment [Nm]\n" + drag, encoding="utf-8")
+    return [folder / name / file for file in ("last.csv", "drag.csv")]
+
+
+def test_a_file_is_like_the_table_that_has_its_headings_and_no_more(tmp_path):
+    """Both headings of the drag run are in the table of load points, too; its commas may be those of thousands, which
+    only the other file tells."""
+    write_draft(of_two_tables(tmp_path, "old"))
+    text = write_draft(of_two_tables(tmp_path, "new"), like=tmp_path / "old")[0].read_text(encoding="utf-8")
+    assert re.findall(r'kind = "(\w+)"  # what was measured, (as before|a guess)', text) == [
+        ("dq_operation", "as before"), ("drag", "as before"),
+    ]  # fmt: skip
+    torque = read_raw(tmp_path / "new" / "drag.csv", Layout(decimal=",")).values(1)
+    assert text.count('decimal = ","') == 1 and torque[0] == 2.234
+    alone = write_draft(of_two_tables(tmp_path, "third")[1:], like=tmp_path / "old")[0].read_text(encoding="utf-8")
+    assert 'decimal = ","' in alone, "as before"
+
+
+def test_a_kind_is_not_taken_over_for_a_few_of_its_headings(tmp_path):
+    loads, _ = of_two_tables(tmp_path, "old")
+    rows = loads.read_text(encoding="utf-8").replace("Strom Iq [A]", "Strom Iq [A];Spannung Ud [V];Spannung Uq [V]")
+    loads.write_text(re.sub(r"(?m)^(\d+;\d+;\d+);", r"\1;1,5;2,5;", rows), encoding="utf-8")
+    write_draft([loads])
+    _, drag = of_two_tables(tmp_path, "new")
+    text = write_draft([drag], like=tmp_path / "old", decimal=",")[0].read_text(encoding="utf-8")
+    assert 'kind = "drag"  # what was measured, a guess' in text
 
 
 @pytest.mark.parametrize(
