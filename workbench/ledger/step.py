@@ -12,7 +12,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from math import log, log1p
+from math import exp, log, log1p
 from pathlib import Path
 
 import numpy as np
@@ -155,7 +155,7 @@ def best_fit(bench: Bench, cls: type[Effect]) -> Hypothesis:
 def decide(before: Bench, after: Bench, odds: float) -> tuple[str, str]:
     """Accepted or refused, and why. odds: ln of those for what is added, after the data"""
     old, new = (predicted(bench.fit, bench.null) for bench in (before, after))
-    words = f"the data speak {_nats(odds)} the effect"
+    words = f"the data speak {'for' if odds > 0 else 'against'} the effect, {_to_one(abs(odds))} to 1"
     if old.blocks:
         words += (
             f"; chi2/n of conditions left out of the fit, region by region, goes from {old.chi2_per_n:.4g} to "
@@ -170,8 +170,8 @@ def decide(before: Bench, after: Bench, odds: float) -> tuple[str, str]:
     return ACCEPTED, words
 
 
-def _nats(odds: float) -> str:
-    return f"{'for' if odds > 0 else 'against'} (odds 10^{abs(odds) / log(10):.1f})"
+def _to_one(log_odds: float) -> str:
+    return f"{exp(log_odds):.2g}" if log_odds < log(100) else f"10^{log_odds / log(10):.1f}"
 
 
 def start_step(bench: Bench) -> LedgerStep:

@@ -210,7 +210,7 @@ def diagnosis():
     )  # fmt: skip
 
 
-FOR = "the data speak for (odds 10^13.0) the effect"
+FOR = "the data speak for the effect, 10^13.0 to 1"
 
 
 def step(number, effect, decision, chi2, held_out, reason=FOR):

@@ -131,7 +131,7 @@ def test_it_is_said_where_effects_may_only_fill_what_the_unknown_function_lacks(
 
 
 def test_reasons_of_every_step_stay_visible(pages):
-    assert "was refused: the data speak for (odds 10^13.0) the effect; chi²/n left out goes from" in pages["ledger"]
+    assert "was refused: the data speak for the effect, 10^13.0 to 1; chi²/n left out goes from" in pages["ledger"]
     assert len(re.findall(r"Step \d, [a-z ]+, was accepted: the data speak for", pages["ledger"])) == 3
 
 
