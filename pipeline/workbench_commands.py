@@ -198,7 +198,7 @@ def _diagnose(options: argparse.Namespace) -> None:
         with _progress() as progress:
             diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
         _write_diagnosis(out, diagnosis)
-        _print_diagnosis(diagnosis, campaign, out)
+        _print_diagnosis(diagnosis, out)
 
 
 def _add(options: argparse.Namespace) -> None:
@@ -224,7 +224,7 @@ def _ledger(options: argparse.Namespace) -> None:
         if ledger.steps:
             _write_ledger(out, ledger)
             _print_ledger(ledger)
-        _print_diagnosis(diagnosis, campaign, out)
+        _print_diagnosis(diagnosis, out)
 
 
 def _validate(options: argparse.Namespace) -> None:
@@ -327,8 +327,8 @@ def _print_comparison(c: Comparison, out: Path) -> None:
     print(f"results in {out}")
 
 
-def _print_diagnosis(d: Diagnosis, campaign: Campaign, out: Path) -> None:
-    print("", *(f"! {words}" for words in (*d.checks, *campaign.complaints)), sep="\n")
+def _print_diagnosis(d: Diagnosis, out: Path) -> None:
+    print("", *(f"! {words}" for words in d.checks + d.complaints), sep="\n")
     if d.verdict != "convention":
         _print_found(d)
     print(verdict_sentence(d), meaning(d), *bound_sentences(d), *d.contradictions, *conclusions(d), sep="\n")

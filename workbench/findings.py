@@ -339,7 +339,7 @@ class Diagnosis:
     abstention_power: share of unknown discrepancies that these data would flag, by their size in u, such as
         {3.0: 0.4, 10.0: 1.0}
     fix: of a convention, the text for campaign.toml;  conventions: what the columns look like, a sentence each
-    checks: of the data alone, before any model
+    checks: of the data alone, before any model;  not_tried: effects without an answer here, and why
     before, after: the failing channel without and with the leading effect, the same rows
     contradictions: declared tolerances that speak against what is named, and sealed rows that took a name back, a
         sentence each
@@ -370,6 +370,7 @@ class Diagnosis:
     posteriors: tuple[SizePosterior, ...] = ()
     complaints: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
+    not_tried: tuple[str, ...] = ()
     fix: str = ""
     conventions: tuple[str, ...] = ()
     contradictions: tuple[str, ...] = ()

@@ -108,6 +108,12 @@ def test_repeats_that_disagree_and_clipping():
     assert "clipped?" in said(clipped)
 
 
+def test_one_wild_reading_is_no_disagreement_of_the_repeats():
+    repeat, v = np.repeat([0, 1], len(SPEED)), np.tile(SPEED, 2)
+    wild = table("damping_velocity", {"velocity": v}, {"force": 20 * v + 8.0 * (np.arange(len(v)) == 5)}, 0.2, repeat)
+    assert "disagree by" not in said(wild)
+
+
 def test_a_coarse_converter_is_not_taken_for_a_clipped_reading():
     v = np.tile(SPEED, 2)
     coarse = table("damping_velocity", {"velocity": v}, {"force": np.round(20 * v / 3.0) * 3.0}, 1e-12)

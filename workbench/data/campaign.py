@@ -119,8 +119,8 @@ class _Reader:
         masks = whole.masks(self.complaints)
         held_out = self._held_out(whole)
         parts = [whole.part(names, rows, held_out) for names, rows in masks]
-        for part, (_, rows) in zip(parts, masks):
-            self.complaints += suspicions(part, np.asarray(raw.lines)[rows])
+        for part in parts:
+            self.complaints += suspicions(part)
         return parts
 
     def predictions(self) -> tuple[Prediction, ...]:
@@ -307,6 +307,7 @@ class _WholeTable:
             {c.name: self._random(c, rows) for c in self.of_role("condition") if c.random is not None},
             self.entry.bandwidth_Hz,
             {c.name: c.unit for c in self.of_role("condition", "group")},
+            np.asarray(self.raw.lines)[rows],
         )
 
     def _inside(self, column: Column) -> np.ndarray:

@@ -64,11 +64,12 @@ def _repeats_agree(table: Table) -> list[str]:
 
 
 def _scatter(table: Table, r: Response, stations: np.ndarray) -> tuple[np.ndarray, float]:
-    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size; less
-    what comes of conditions that were not met alike, by a curved surface over them."""
+    """Deviations from the mean of the repeats over the declared uncertainty (stations, repeats), and their size, single
+    wild ones cut; less what comes of conditions that were not met alike, by a curved surface over them."""
     values = (r.values - _surface(table, r))[stations]
     z = (values - values.mean(axis=1, keepdims=True)) / r.random[stations]
-    return z, float(np.sqrt(np.mean(z**2) * stations.shape[1] / (stations.shape[1] - 1)))
+    most = LOUD * max(1.4826 * float(np.median(np.abs(z))), QUIET)
+    return z, float(np.sqrt(np.mean(np.minimum(z**2, most**2)) * stations.shape[1] / (stations.shape[1] - 1)))
 
 
 def _surface(table: Table, r: Response) -> np.ndarray:

@@ -9,6 +9,7 @@ from workbench.data.table import Table
 
 NEAR = 0.02  # of the range of the conditions: readings that are no further apart were taken at the same place
 LOGGED_WITHIN = 10.0  # K; a temperature that varies by less was logged, not set, and says nothing of the place
+SAME_WARMTH = 25.0  # K that readings at one place differ by, where their temperature was logged and varies by more
 
 
 def follows(table: Table) -> np.ndarray:
@@ -29,10 +30,20 @@ def matched_rows(table: Table) -> np.ndarray | None:
 
 
 def places_of(table: Table) -> np.ndarray:
-    """Conditions over their range (n, c)."""
-    set_ones = {n: v for n, v in table.conditions.items() if np.ptp(v) > (LOGGED_WITHIN if n.endswith("_T") else 0.0)}
-    columns = [_spread(v) / np.ptp(_spread(v)) for v in set_ones.values()]
-    return np.array(columns).T if columns else np.zeros((table.rows, 1))
+    """Conditions over their range (n, c); temperatures that were only logged by what they may differ by."""
+    varied = {n: v for n, v in table.conditions.items() if np.ptp(v) > (LOGGED_WITHIN if n.endswith("_T") else 0.0)}
+    columns = {n: _spread(v) / np.ptp(_spread(v)) for n, v in varied.items()}
+    warm = [name for name in columns if name.endswith("_T")]
+    if warm and _tell_apart(table, [column for name, column in columns.items() if name not in warm]):
+        columns |= {name: varied[name] * NEAR / SAME_WARMTH for name in warm}
+    return np.array(list(columns.values())).T if columns else np.zeros((table.rows, 1))
+
+
+def _tell_apart(table: Table, columns: list[np.ndarray]) -> bool:
+    """Whether conditions without temperatures tell all rows of a repeat apart: then no temperature was set, but the
+    device became warm as it was loaded, and warmer in the next repeat."""
+    cells = np.array([table.repeat, *(np.round(column / NEAR) for column in columns)])
+    return len(np.unique(cells, axis=1).T) == table.rows
 
 
 def _spread(values: np.ndarray) -> np.ndarray:

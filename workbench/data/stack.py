@@ -104,6 +104,7 @@ def rows_of(table: Table, chosen: np.ndarray) -> Table:
         repeat=table.repeat[chosen],
         held_out=table.held_out[chosen],
         condition_random={name: v[chosen] for name, v in table.condition_random.items()},
+        lines=table.lines[chosen] if len(table.lines) else table.lines,
     )
 
 

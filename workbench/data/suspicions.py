@@ -16,15 +16,15 @@ FALSE_ALARM = 1e-3  # chance that a column of a sound sensor is called stuck
 LONG_RUN = 0.05  # share of the rows that a run of equal readings must reach to be called stuck
 
 
-def suspicions(table: Table, lines: np.ndarray) -> list[str]:
-    """Sentences about a table; lines: where its rows stand in the file (n,)."""
+def suspicions(table: Table) -> list[str]:
+    """Sentences about a table."""
     found = []
     for check in (_few, _copied_rows, _same_in_every_row, _stuck, _copied_columns, _still, _backwards):
-        found += check(table, lines)
+        found += check(table)
     return [f"{table.file}: {words}" for words in found]
 
 
-def _few(table: Table, lines: np.ndarray) -> list[str]:
+def _few(table: Table) -> list[str]:
     return [f"only {table.rows} rows; its noise and its residuals say little"] if table.rows < FEW_ROWS else []
 
 
@@ -33,16 +33,16 @@ def _frame(table: Table) -> pd.DataFrame:
     return pd.DataFrame({**table.conditions, **readings})
 
 
-def _copied_rows(table: Table, lines: np.ndarray) -> list[str]:
+def _copied_rows(table: Table) -> list[str]:
     copies = _frame(table).assign(scan=table.scan, repeat=table.repeat).duplicated().to_numpy()
     if not copies.any():
         return []
-    first = int(lines[np.flatnonzero(copies)[0]])
+    first = int(table.lines[np.flatnonzero(copies)[0]])
     said = f"{int(copies.sum())} of {table.rows} rows are exact copies of an earlier row (first in line {first})"
     return [f"{said}; they count as readings of their own: delete what was pasted twice"]
 
 
-def _same_in_every_row(table: Table, lines: np.ndarray) -> list[str]:
+def _same_in_every_row(table: Table) -> list[str]:
     return [
         f"{name} has the same value in every row; is it stuck?"
         for name, response in table.responses.items()
@@ -50,7 +50,7 @@ def _same_in_every_row(table: Table, lines: np.ndarray) -> list[str]:
     ]
 
 
-def _stuck(table: Table, lines: np.ndarray) -> list[str]:
+def _stuck(table: Table) -> list[str]:
     """Long runs of readings that are equal to the last digit, which the other readings make unlikely."""
     found = []
     for name, response in table.responses.items():
@@ -60,7 +60,7 @@ def _stuck(table: Table, lines: np.ndarray) -> list[str]:
         unlikely = len(same) * others**length < FALSE_ALARM
         if unlikely and length >= max(4, LONG_RUN * table.rows) and np.ptp(response.values) > 0:
             found.append(
-                f"{name} has the same value in {length + 1} rows from line {int(lines[start])} on; is it stuck?"
+                f"{name} has the same value in {length + 1} rows from line {int(table.lines[start])} on; is it stuck?"
             )
     return found
 
@@ -72,7 +72,7 @@ def _longest_run(same: np.ndarray) -> tuple[int, int]:
     return (int(starts[np.argmax(lengths)]), int(lengths.max())) if lengths.size else (0, 0)
 
 
-def _copied_columns(table: Table, lines: np.ndarray) -> list[str]:
+def _copied_columns(table: Table) -> list[str]:
     found, seen = [], {}
     for name, response in table.responses.items():
         content = response.values.tobytes()
@@ -82,7 +82,7 @@ def _copied_columns(table: Table, lines: np.ndarray) -> list[str]:
     return found
 
 
-def _still(table: Table, lines: np.ndarray) -> list[str]:
+def _still(table: Table) -> list[str]:
     """Nothing that the kind varies has been varied."""
     axes = [n for n in table.conditions if any(fnmatch(n, pattern) for pattern in KINDS[table.kind].axes)]
     if table.rows < FEW_ROWS or not axes or any(np.ptp(table.conditions[name]) > 0 for name in axes):
@@ -90,8 +90,8 @@ def _still(table: Table, lines: np.ndarray) -> list[str]:
     return [f"{' and '.join(axes)} {'has' if len(axes) == 1 else 'have'} the same value in every row; stuck?"]
 
 
-def _backwards(table: Table, lines: np.ndarray) -> list[str]:
+def _backwards(table: Table) -> list[str]:
     if "time" not in table.conditions:
         return []
     back = np.flatnonzero((np.diff(table.conditions["time"]) < 0) & (np.diff(table.scan) == 0))
-    return [f"time runs backwards in line {int(lines[back[0] + 1])}"] if back.size else []
+    return [f"time runs backwards in line {int(table.lines[back[0] + 1])}"] if back.size else []

@@ -57,6 +57,7 @@ class Table:
     scan, repeat: numbers of the scan and of the repeat (n,); autocorrelation never crosses a scan
     held_out: rows that no fit may see (n,) bool
     bandwidth: frequency above which the recorder of the table lets nothing pass [Hz], None where it is not known
+    lines: where each row stands in its file (n,); empty where that is not known
     """
 
     kind: str
@@ -69,6 +70,7 @@ class Table:
     condition_random: Mapping[str, np.ndarray] = field(default_factory=dict)
     bandwidth: float | None = None
     condition_units: Mapping[str, str] = field(default_factory=dict)
+    lines: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
     @property
     def rows(self) -> int:

@@ -104,8 +104,9 @@ def diagnosis_of(
         before=_failing_fit(bench, null_of(bench)),
         after=_failing_fit(bench, best),
         posteriors=_posteriors(search, said),
-        complaints=bench.complaints + _not_tried(search.failed),
+        complaints=bench.complaints,
         checks=checks_of(bench.campaign) + bench.model.base.doubts(bench.model.design),
+        not_tried=_not_tried(search.failed),
         contradictions=_contradictions(search, ranked, said.names) + refutations(search, worse),
         provenance=dict(bench.campaign.file_hashes),
     )

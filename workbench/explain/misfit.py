@@ -111,7 +111,7 @@ def _many(table: Table, offsets: np.ndarray) -> Table:
     tiled = {n: np.tile(v, len(offsets)) for n, v in table.conditions.items()}
     tiled[ANGLE] = (table.conditions[ANGLE] - offsets[:, None]).ravel()
     rows = {n: np.tile(getattr(table, n), len(offsets)) for n in ("scan", "repeat", "held_out")}
-    return replace(table, conditions=tiled, **rows)
+    return replace(table, conditions=tiled, lines=np.zeros(0, dtype=int), **rows)
 
 
 def _passive(found: np.ndarray, table: Table) -> np.ndarray:

@@ -14,12 +14,12 @@ from workbench.believed import PLAIN
 from workbench.data.campaign import columns_of_systematics
 from workbench.data.repeats import matched_rows, places_of
 from workbench.data.schema import BY_REGION
-from workbench.data.stack import Stack, part_of, rows_in, stacked, thinned
+from workbench.data.stack import Channel, Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.conditions import with_conditions
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted, with_parameters
-from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
+from workbench.likelihood.noise import WILD, Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.predictor import DirectPredictor, answers_only
@@ -31,6 +31,7 @@ MOST_ROWS = 4000  # of a table in a fit; longer tables are thinned, which is sai
 SHARPENINGS = 3  # times a fit is repeated with a base model expanded about its result
 SHARP = 0.3  # change of the objective [nats] that is none
 DECIMALS = 4  # of standard normal numbers, to which the place that such a model is expanded about is rounded
+WILDEST = 3  # wild readings of a channel that are named
 PULLED = 6.0  # standard deviations of a tolerance from where it is declared, which chance does not explain
 
 
@@ -55,7 +56,7 @@ class Bench:
     @property
     def complaints(self) -> tuple[str, ...]:
         """What a reader must know of the readings."""
-        return self.remarks + _wildness(self.noise)
+        return self.remarks + _wildness(self.stack, self.noise)
 
     @cached_property
     def centre(self) -> Fit:
@@ -277,9 +278,20 @@ def _untested(campaign: Campaign, tables: Sequence[Table]) -> tuple[str, ...]:
     return (f"no row is sealed{why}: prediction beyond the conditions of the fit was not tested",)
 
 
-def _wildness(noise: Noise) -> tuple[str, ...]:
-    return tuple(
-        f"{channel.channel}: {channel.wild} wild readings (off their repeats by 4.5 standard deviations) count less"
-        for channel in noise.channels
-        if channel.wild
-    )
+def _wildness(stack: Stack, noise: Noise) -> tuple[str, ...]:
+    """The wildest readings of every channel, where they stand, and how many more there are."""
+    counts = zip(stack.channels, (found.wild for found in noise.channels))
+    return tuple(words for channel, count in counts for words in _wild(stack, noise, channel, count))
+
+
+def _wild(stack: Stack, noise: Noise, channel: Channel, count: int) -> list[str]:
+    table, off = stack.tables[channel.table], noise.inflation[channel.rows]
+    read = stack.y[channel.rows] / channel.scale
+    places = table.lines if len(table.lines) else np.arange(1, table.rows + 1)
+    said = [
+        f"{table.file}: {channel.response} in line {places[row]}, repeat {table.repeat[row]} ({read[row]:.5g} "
+        f"{channel.unit}), is off its repeats by {off[row] * WILD:.2g} standard deviations and counts less"
+        for row in np.argsort(-off, kind="stable")[: min(count, WILDEST)]
+    ]
+    left = [f"{table.file}: {count - WILDEST} more readings of {channel.response} are wild and count less"]
+    return said + left * (count > WILDEST)

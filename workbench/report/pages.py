@@ -255,7 +255,7 @@ def _found_sections(d: Diagnosis) -> tuple[Section, ...]:
         *_ranking(d),
         *_can_be_seen(d),
         *_next(d),
-        *_limits((), d.complaints),
+        *_limits((), d.complaints + d.not_tried),
     )
 
 

@@ -19,9 +19,10 @@ def said(torque=TORQUE, force=OTHER, angle=ANGLE, repeat=None, **conditions):
     n = len(torque)
     scan = np.zeros(n, dtype=int)
     table = Table(
-        "cogging", "f.csv", {"angle_mech": angle, **conditions}, responses, scan, repeat[:n], scan.astype(bool)
-    )
-    return " ".join(suspicions(table, np.arange(2, n + 2)))
+        "cogging", "f.csv", {"angle_mech": angle, **conditions}, responses, scan, repeat[:n], scan.astype(bool),
+        lines=np.arange(2, n + 2),
+    )  # fmt: skip
+    return " ".join(suspicions(table))
 
 
 def copied_rows():
