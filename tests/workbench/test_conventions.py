@@ -317,8 +317,10 @@ def test_a_temperature_is_not_exchanged_for_what_no_temperature_can_be():
     assert mistakes._can_be_exchanged(warm, "speed", "room_T")
 
 
-@pytest.mark.parametrize("shown, found", [(294.2, ["winding_T"]), (21.0, []), (230.0, [])])
-def test_a_winding_that_would_burn_is_one_in_kelvin(shown, found):
+@pytest.mark.parametrize("shown, scale", [(294.2, "kelvin"), (21.0, None), (230.0, None), (-252.15, "celsius")])
+def test_a_winding_that_would_burn_is_one_in_kelvin_and_one_that_would_freeze_is_none(shown, scale):
     """Four rows are too few for a model to tell it by."""
     warm = table({"resistance": np.ones(4)}, 0.01, np.zeros(4, int), np.zeros(4, int), winding_T=shown + np.arange(4.0))
-    assert [fix.column for fix in mistakes.kelvins(warm)] == found
+    found = list(mistakes.wrong_kelvins(warm))
+    assert [(fix.column, fix.scale) for fix in found] == ([("winding_T", scale)] if scale else [])
+    assert all(20 < fix.apply(warm).conditions["winding_T"].max() < 25 for fix in found)

@@ -60,7 +60,8 @@ ANGLE = "angle_mech"
 LINES = {"v_a": "v_ab", "v_b": "v_bc", "v_c": "v_ca"}
 TURNING = ("speed", "direction", "torque")  # what changes its sign with the sense of rotation, besides the angle
 KELVIN = 273.15
-SCALES = {"kelvin": (1.0, KELVIN), "fahrenheit": (5 / 9, 32.0)}  # degC = a * (reading - b)
+# degC = a * (reading - b); the reading was declared in degrees Celsius, that of the last scale in kelvin
+SCALES = {"kelvin": (1.0, KELVIN), "fahrenheit": (5 / 9, 32.0), "celsius": (1.0, -KELVIN)}
 HALF_ULP = 1e-9  # relative; two readings that are nearer are the same number
 
 

@@ -52,13 +52,13 @@ from workbench.explain.mistakes import (
     compatible,
     cost_of_zero,
     factors_of_constant,
-    kelvins,
     nearest,
     of_the_table,
     orders,
     quantity,
     scaled_groups,
     slack,
+    wrong_kelvins,
     zero_grid,
 )
 from workbench.explain.verdict import CONVENTION
@@ -141,7 +141,7 @@ def settle(model: Model, campaign: Campaign, progress: Progress = lambda words: 
     """
     progress("settling conventions")
     model = replace(model, base=model.base.anywhere(model.design), effects=())
-    told = tuple(fix for table in campaign.tables for fix in kelvins(table))
+    told = tuple(fix for table in campaign.tables for fix in wrong_kelvins(table))
     declared, campaign = campaign, applied(campaign, told)
     readers = [_Reader(model, campaign, table) for table in campaign.tables if table.responses]
     readings = _readings_of_all(readers)

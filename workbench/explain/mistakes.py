@@ -13,6 +13,7 @@ from units import DEGREE
 from workbench.data.column_units import split_unit
 from workbench.data.conventions import (
     ANGLE,
+    KELVIN,
     LINES,
     AngleDirection,
     AngleUnit,
@@ -193,11 +194,14 @@ def _temperatures(table: Table) -> Iterator[tuple[Fix, float]]:
             yield TemperatureScale(table.file, column, "fahrenheit"), COMMON
 
 
-def kelvins(table: Table) -> Iterator[TemperatureScale]:
-    """Temperatures that no winding and no magnet withstands, be it in one row: no model has to be asked."""
+def wrong_kelvins(table: Table) -> Iterator[TemperatureScale]:
+    """Temperatures that no winding and no magnet withstands, or no room has, be it in one row: no model has to be
+    asked."""
     for column, values in table.conditions.items():
         if column.endswith("_T") and values.min() > UNBEARABLE and values.max() < HOTTEST:
             yield TemperatureScale(table.file, column, "kelvin")
+        if column.endswith("_T") and values.max() < COLDEST and values.min() + KELVIN > COLDEST:
+            yield TemperatureScale(table.file, column, "celsius")
 
 
 # ---- readings of the responses that do not --------------------------------------------------------------------------
