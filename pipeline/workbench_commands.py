@@ -44,6 +44,7 @@ from workbench.report.sentences import (
     conclusions,
     left_out_sentence,
     meaning,
+    open_questions,
     readings,
     sealed_sentence,
     verdict_sentence,
@@ -354,7 +355,7 @@ def _print_found(d: Diagnosis) -> None:
     print(left_out_sentence(d), f"Rows that no fit has seen: {sealed_sentence(d)}", sep="\n")
     for option in (m for m in d.next_measurements[:3] if m.gain_nats >= NO_GAIN):
         print(f"next: {option.words} (expected {factor_text(option.gain_nats)} in the odds)")
-    print()
+    print(*open_questions(d), "", sep="\n")
 
 
 def _left_out(r: Ranked) -> str:

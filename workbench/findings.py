@@ -261,6 +261,7 @@ class Ranked:
     log_evidence: ln p of the fitted rows gained by its best explanation over nothing [nats]
     parameters: of that explanation;  at_bound: those that end on a bound of what is possible
     as_believed: those of which the readings tell next to nothing, so that their interval is what was believed before
+    shown_by: measurements, calibrations among them, that show such an effect
     """
 
     name: str
@@ -274,6 +275,7 @@ class Ranked:
     held_out_chi2_per_n_after: float | None
     at_bound: tuple[str, ...] = ()
     as_believed: tuple[str, ...] = ()
+    shown_by: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

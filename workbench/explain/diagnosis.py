@@ -199,16 +199,17 @@ def _gains(search: Search) -> dict[str, float]:
 
 
 def _ranked(search: Search, name: str, probability: float, gain: float, before: tuple[float, float | None]) -> Ranked:
-    title = search.signatures.found[name][0].effect.title
+    known = search.signatures.found[name][0].effect
     best = next((names for names in search.ranked if name in names), None)
     if best is None:
-        return Ranked(name, title, probability, gain, {}, before[0], before[0], before[1], before[1])
+        nothing = Ranked(name, known.title, probability, gain, {}, before[0], before[0], before[1], before[1])
+        return replace(nothing, shown_by=known.remedy)
     hypothesis = search.fitted[best]
     after = _errors(hypothesis)
     (effect,) = (one for one in hypothesis.effects if one.name() == name)
     sizes = estimates(hypothesis, search.weights(name))[name]
-    said = on_bounds(effect), as_believed(effect, sizes)
-    return Ranked(name, title, probability, gain, sizes, before[0], after[0], before[1], after[1], *said)
+    said = on_bounds(effect), as_believed(effect, sizes), known.remedy
+    return Ranked(name, known.title, probability, gain, sizes, before[0], after[0], before[1], after[1], *said)
 
 
 def _errors(hypothesis: Hypothesis) -> tuple[float, float | None]:

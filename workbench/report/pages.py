@@ -24,6 +24,7 @@ from workbench.report.sentences import (
     ledger_sentence,
     left_out_sentence,
     meaning,
+    open_questions,
     power_sentence,
     readings,
     sealed_sentence,
@@ -421,16 +422,20 @@ def _concluded(d: Diagnosis) -> tuple[Section, ...]:
 
 
 def _next(d: Diagnosis) -> tuple[Section, ...]:
+    said = (*_best_measurement(d), *open_questions(d))
+    return (Section("What to measure next", said),) if said else ()
+
+
+def _best_measurement(d: Diagnosis) -> tuple[str | Picture, ...]:
     if not d.next_measurements:
         return ()
     best = max(d.next_measurements, key=lambda m: m.gain_nats / m.cost)
     if best.gain_nats < NO_GAIN:
-        said = "No measurement that was weighed is expected to change the odds by 10 %."
-        return (Section("What to measure next", (said,)),)
+        return ("No measurement that was weighed is expected to change the odds by 10 %.",)
     gain = f"expected to change the odds by {factor_text(best.gain_nats)} at cost {amount(best.cost)}"
     said = f"Best: {best.words or plain(best.kind)}, {gain}."
     caption = "Expected factor in the odds of the right explanation against the others, averaged over their logarithm."
-    return (Section("What to measure next", (said, Picture(beliefs.next_measurements(d.next_measurements), caption))),)
+    return (said, Picture(beliefs.next_measurements(d.next_measurements), caption))
 
 
 # ---- ledger ---------------------------------------------------------------------------------------------------------

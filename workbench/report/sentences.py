@@ -49,6 +49,7 @@ ALARMING_P = 0.01  # probability that noise alone gives what a view shows
 ALARMING_COSINE = 0.7  # half of the residual's square lies along the signature
 IMPROBABLE = 0.05  # probability of "nothing is missing" below which something is
 POOR = 2.0  # chi2/n of fitted rows above which an effect does not explain them
+OPEN, OPEN_ONES = 0.1, 3  # probability from which it is said how an effect that is not sure could be shown; of so many
 NO_GAIN = 0.1  # nats, 10 % of the odds, below which a measurement is not worth its cost
 NEGLIGIBLE = 1e-3  # probability that is not worth a word
 ALARMING_PART = 1.5  # odd or even part over what noise alone gives
@@ -406,7 +407,7 @@ def _size(d: Diagnosis) -> str:
 
 
 def _unlearned(as_believed: bool) -> str:
-    return ", which is what was believed before and not what these data tell" if as_believed else ""
+    return ", of which these data tell next to nothing" if as_believed else ""
 
 
 def set_words(words: str) -> str:
@@ -537,6 +538,15 @@ def power_sentence(d: Diagnosis) -> str:
         " A definite name from data this weak must not be trusted: a set like this cannot abstain." if weak else ""
     )
     return f"Of unknown smooth discrepancies these data would flag {said}, u being that of one reading.{closing}"
+
+
+def open_questions(d: Diagnosis) -> tuple[str, ...]:
+    """What would show the likeliest effects of which these data are not sure."""
+    open_ones = [r for r in d.ranking if r.shown_by and r.name not in d.names and r.probability >= OPEN]
+    return tuple(
+        f"Whether {plain(r.name)} is there ({percent(r.probability)}) would be shown by: {listed(r.shown_by, 'or')}."
+        for r in open_ones[:OPEN_ONES]
+    )
 
 
 def conclusions(d: Diagnosis) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from workbench.report.sentences import (
     ledger_sentence,
     left_out_sentence,
     meaning,
+    open_questions,
     power_sentence,
     readings,
     sealed_sentence,
@@ -306,9 +307,19 @@ def test_parameters_on_a_bound_are_said_where_they_are_named(diagnosis):
 
 
 def test_a_size_that_the_data_leave_as_it_was_believed_says_so(diagnosis):
-    assert "believed before" not in verdict_sentence(diagnosis)
+    assert "next to nothing" not in verdict_sentence(diagnosis)
     untold = tuple(replace(r, as_believed=("force",)) for r in diagnosis.ranking)
-    assert "not what these data tell" in verdict_sentence(replace(diagnosis, ranking=untold))
+    assert "of which these data tell next to nothing" in verdict_sentence(replace(diagnosis, ranking=untold))
+
+
+def test_what_would_show_an_effect_that_is_not_sure_is_said(diagnosis):
+    """The named one is sure, one of 2 % is no question; where one of 20 % is, its calibration is said."""
+    with_remedy = [replace(r, shown_by=("hang a weight on the cell", "zero it")) for r in diagnosis.ranking]
+    assert open_questions(replace(diagnosis, ranking=tuple(with_remedy))) == ()
+    with_remedy[1] = replace(with_remedy[1], probability=0.2)
+    assert open_questions(replace(diagnosis, ranking=tuple(with_remedy))) == (
+        "Whether stribeck is there (20 %) would be shown by: hang a weight on the cell or zero it.",
+    )
 
 
 def test_an_unknown_law_that_could_stand_for_the_names_is_said(diagnosis):
