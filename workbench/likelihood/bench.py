@@ -290,7 +290,7 @@ def _wild(stack: Stack, noise: Noise, channel: Channel, count: int) -> list[str]
     places = table.lines if len(table.lines) else np.arange(1, table.rows + 1)
     said = [
         f"{table.file}: {channel.response} in line {places[row]}, repeat {table.repeat[row]} ({read[row]:.5g} "
-        f"{channel.unit}), is off its repeats by {off[row] * WILD:.2g} standard deviations and counts less"
+        f"{channel.unit}), is off its repeats by {off[row] * WILD:.0f} standard deviations and counts less"
         for row in np.argsort(-off, kind="stable")[: min(count, WILDEST)]
     ]
     left = [f"{table.file}: {count - WILDEST} more readings of {channel.response} are wild and count less"]
