@@ -1,4 +1,5 @@
-"""Where a declared tolerance speaks against an effect that moves the same input."""
+"""Where a declared tolerance speaks against what was found: against an effect that moves the same input, or against the
+fit itself."""
 
 from __future__ import annotations
 
@@ -7,7 +8,10 @@ from collections.abc import Iterable, Mapping
 from effects.base import Effect
 from workbench.data.column_units import split_unit
 from workbench.data.table import Tolerance
+from workbench.explain.hypotheses import Hypothesis
 from workbench.findings import Estimate
+from workbench.likelihood.bench import PULLED
+from workbench.likelihood.nuisance import TolerancedInput
 
 EXCEEDED = 4.0  # declared standard deviations, beyond which a tolerance contradicts an effect
 
@@ -28,3 +32,23 @@ def contradiction(effect: type[Effect], sizes: Mapping[str, Estimate], tolerance
         f"[tolerance] {tolerance.name} says otherwise: {effect.title}, by {size:.0f} of its standard deviations. One "
         "of the two is wrong, or something else looks like it."
     )
+
+
+def exceeded(hypothesis: Hypothesis) -> tuple[str, ...]:
+    """A sentence for each input of the device that a fit needs further off its tolerance than chance brings it."""
+    moved = zip(hypothesis.problem.predictor.nuisances, hypothesis.fit.x)
+    inputs = ((n.tolerance, float(z)) for n, z in moved if isinstance(n, TolerancedInput) and abs(z) > PULLED)
+    return tuple(
+        f"[tolerance] {tolerance.name} says otherwise: without anything unknown the best fit needs it {_signed(z)} of "
+        f"its standard deviations off what [device] states{_share(tolerance, z)}. Look whether [device] is what was "
+        "measured: a unit, a value between lines for one of a phase, another specimen."
+        for tolerance, z in inputs
+    )
+
+
+def _share(tolerance: Tolerance, z: float) -> str:
+    return f" ({_signed(100 * tolerance.sigma * z)} %)" if tolerance.relative else ""
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.0f}".replace("-", "\N{MINUS SIGN}")

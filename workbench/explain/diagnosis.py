@@ -17,7 +17,7 @@ from workbench.compare.views import channel_fit, channel_views, describe
 from workbench.data.checks import checks_of
 from workbench.data.table import Campaign
 from workbench.explain.calibrate import Simulator, detection_limits, plainly_nothing, thresholds_of
-from workbench.explain.contradictions import contradiction
+from workbench.explain.contradictions import contradiction, exceeded
 from workbench.explain.conventions import diagnosis_of as of_conventions
 from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior, beside_the_unknown
@@ -31,6 +31,7 @@ from workbench.findings import ChannelFit, Diagnosis, Estimate, Ranked, SizePost
 from workbench.likelihood.bench import Bench, bench_of
 from workbench.likelihood.prediction import predicted
 from workbench.likelihood.signatures import nearest
+from workbench.likelihood.unknown_laws import LAWS
 from workbench.models.model import Model
 
 SEED = 20261
@@ -147,7 +148,12 @@ def _contradictions(search: Search, ranked: Sequence[Ranked], names: Collection[
     named = {row.name: row.parameters for row in ranked if row.name in names}
     classes = {name: type(search.signatures.found[name][0].effect) for name in named}
     found = (contradiction(classes[name], sizes, search.bench.campaign.tolerances) for name, sizes in named.items())
-    return tuple(filter(None, found))
+    return tuple(filter(None, found)) + exceeded(_best_known(search))
+
+
+def _best_known(search: Search) -> Hypothesis:
+    """The most probable fit without an unknown law, which could stand for a wrong constant of the device."""
+    return search.fitted[next(names for names in search.ranked if LAWS.keys().isdisjoint(names))]
 
 
 def leading(search: Search, said: Verdict, struck: frozenset[str] = frozenset()) -> Hypothesis:

@@ -1,12 +1,19 @@
-"""A gauged gap speaks against an effect that opens it far beyond the gauge."""
+"""A gauged gap speaks against an effect that opens it far beyond; a stated device, against a fit that needs another."""
+
+import re
 
 import pytest
 
 from effects.machine.airgap_change import AirgapChange
 from effects.machine.end_leakage import EndLeakage
+from tests.workbench.toy_bench import LIBRARY, SpringModel, written
+from workbench.data.campaign import read_campaign
 from workbench.data.table import Tolerance
-from workbench.explain.contradictions import contradiction
+from workbench.explain.contradictions import contradiction, exceeded
+from workbench.explain.hypotheses import null_of
 from workbench.findings import Estimate
+from workbench.likelihood.bench import bench_of
+from workbench.models.model import Model
 
 SIZE = {"change": Estimate(2.3e-4, 2e-5, 2e-4, 2.6e-4, "m")}
 
@@ -23,3 +30,13 @@ SIZE = {"change": Estimate(2.3e-4, 2e-5, 2e-4, 2.6e-4, "m")}
 def test_a_tolerance_of_the_same_input_is_said(effect, sigma, relative, says):
     said = contradiction(effect, SIZE, [Tolerance("airgap_mm", sigma, relative)])
     assert says in said and bool(says) == bool(said)
+
+
+@pytest.mark.parametrize("stiffness, says", [(850.0, "stiffness says otherwise"), (1003.0, "")])
+def test_a_device_that_is_another_one_is_said(tmp_path, stiffness, says):
+    """Of 850 N/m where 1000 are stated, to 1 %."""
+    campaign = read_campaign(written(tmp_path, stiffness=stiffness))
+    model = Model(SpringModel(), SpringModel().design(campaign.device))
+    said = " ".join(exceeded(null_of(bench_of(model, campaign, LIBRARY))))
+    assert says in said and bool(says) == bool(said)
+    assert not says or float(re.search(r"\(−(\d+) %\)", said)[1]) == pytest.approx(15, abs=1)
