@@ -123,3 +123,18 @@ MAY_BE_NEGATIVE = ("_T", "_temperature", "_coefficient", "_reference", "_zero", 
 def _short(value: object) -> str:
     text = "a number of many digits" if isinstance(value, int) and abs(value) >= 10**20 else repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+# Inductance over resistance of windings [s]: ironless ones of motors as thin as a pencil have microseconds, those of
+# direct-drive wind generators about one second.
+QUICKEST, SLOWEST = 1e-6, 5.0
+
+
+def doubts_of_winding(inductance: float, resistance: float) -> tuple[str, ...]:
+    """A sentence where no winding has such an inductance [H] at such a resistance [ohm]; nothing where one is zero."""
+    if not (inductance and resistance) or QUICKEST < inductance / resistance < SLOWEST:
+        return ()
+    return (
+        f"[device]: {inductance:.3g} H over {resistance:.3g} ohm are {inductance / resistance:.2g} s, windings have "
+        "microseconds to a second: check the units of both",
+    )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from effects.damper_design import Damper
 from effects.dq_design import DqMachine
 from effects.electrical.copper_drift import CopperDrift
 from effects.electrical.cross_saturation import CrossSaturation
@@ -21,6 +22,7 @@ from electrical.synchronous_machine import SynchronousMachine
 from tests.workbench.likelihood import tables
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
+from workbench.models.damper.model import BASE as DAMPER
 from workbench.models.dq.control import least_current
 from workbench.models.dq.model import BASE
 from workbench.models.dq.operation import Operation, newton
@@ -295,3 +297,12 @@ def test_newton_halves_a_step_that_makes_a_row_worse():
     np.testing.assert_allclose(y, 1.0)
     with pytest.raises(WorkbenchError, match=r"row \d: no such"):
         newton(lambda x, y: (x**2 + 1.0, y), start, np.zeros(2), np.ones(2), np.ones(2), "no such")
+
+
+@pytest.mark.parametrize("factor, says", [(1.0, ""), (1e-3, "8 s"), (1e5, "8e-08 s"), (0.0, "")])
+def test_a_winding_that_no_machine_has_is_said(factor, says):
+    """Milliohms for ohms; of a resistance of none nothing is known."""
+    found = BASE.doubts(replace(PLAIN, resistance=factor * PLAIN.resistance))
+    assert bool(found) == bool(says) and says in " ".join(found)
+    damper = Damper(60.0, 1.2 * factor, 2.0, 20.0, 4e-3 / 0.5 * 1.2)
+    assert bool(DAMPER.doubts(damper)) == bool(says)

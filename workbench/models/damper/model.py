@@ -55,6 +55,10 @@ class DamperModel(BaseModel):
         """The damper with one constant moved by z standard deviations."""
         return device.moved(design, tolerance, z, _REQUIRED + _OPTIONAL)
 
+    def doubts(self, design: Damper) -> tuple[str, ...]:
+        """Of inductance over resistance."""
+        return device.doubts_of_winding(design.inductance, design.internal_resistance)
+
     def respond(self, design: Damper, kind: str, conditions: Columns) -> dict[str, np.ndarray]:
         """Response columns of one table, see the module."""
         if kind not in _ANSWERS:

@@ -77,6 +77,10 @@ class DqModel(BaseModel):
         values = tuple((name, column.tobytes()) for name, column in conditions.items())
         return dict(_answered(_Question(design, kind, values, conditions)))
 
+    def doubts(self, design: DqMachine) -> tuple[str, ...]:
+        """Of inductance over resistance."""
+        return device.doubts_of_winding(max(design.inductance_d, design.inductance_q), design.resistance)
+
     def options(self, design: DqMachine, campaign: Campaign) -> Sequence[Option]:
         """What could be measured next, with the instruments that the campaign shows."""
         return options(campaign.tables)
