@@ -343,7 +343,8 @@ def _print_found(d: Diagnosis) -> None:
     print(f"{'effect':28} {'is there':>8} {'best with it':>12} {'left out':>16}  size [90 % interval]")
     for r in d.ranking[:8]:
         sizes = ", ".join(
-            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}] {e.unit}{' on a bound' * (n in r.at_bound)}"
+            f"{n} {e.value:.4g} [{e.low90:.4g}, {e.high90:.4g}]{f' {e.unit}' * (e.unit != '1')}"
+            f"{' on a bound' * (n in r.at_bound)}"
             for n, e in r.parameters.items()
         )
         print(f"{r.name:28} {r.probability:8.3f} {odds_text(r.log_evidence):>12} {_left_out(r):>16}  {sizes}")

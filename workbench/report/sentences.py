@@ -266,7 +266,7 @@ def _scalings(c: Comparison):
 
 def _parities(c: Comparison):
     if not c.parities:
-        return "Nothing was measured in both directions or with both signs.", None
+        return "Nothing was measured both ways: in both directions, or at the same value of both signs.", None
     worst = max(c.parities, key=_part)
     if _part(worst) < ALARMING_PART:
         return "Odd and even parts are what noise alone gives.", False
