@@ -108,6 +108,14 @@ def test_repeats_that_disagree_and_clipping():
     assert "clipped?" in said(clipped)
 
 
+def test_a_force_loop_over_nobody_knows_what_shunt_counts_as_open_and_is_said():
+    v = np.tile(SPEED, 2)
+    loop = table("force_loop", {"velocity": v}, {"force": 20 * v}, 0.2)
+    assert "so that they count as open" in said(loop)
+    shunted = replace(loop, conditions={"velocity": v, "shunt": np.full(len(v), 2.0)})
+    assert "so that they count as open" not in said(shunted)
+
+
 def test_one_wild_reading_is_no_disagreement_of_the_repeats():
     repeat, v = np.repeat([0, 1], len(SPEED)), np.tile(SPEED, 2)
     wild = table("damping_velocity", {"velocity": v}, {"force": 20 * v + 8.0 * (np.arange(len(v)) == 5)}, 0.2, repeat)

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from labelled import pd
 from workbench.data.column_units import difference, factor, split_unit, to_inside
 from workbench.data.columns import BOOKKEEPING, Column, columns_of
 from workbench.data.constants import with_constants
@@ -211,7 +212,7 @@ class _WholeTable:
             complaints.append(f"{self.name}: {number} have a gap or no number (first in {first}) and are left out")
         if len(groups) > 1:
             complaints += [self._apart(names, rows) for names, rows in groups.values() if not rows.all()]
-        complaints += [self._copied(*pair) for pair in self.copies.items()]
+        complaints += [self._copied(*pair) for pair in self.copies.items()] + self._pasted()
         return [(names, rows & ~self.is_copy) for names, rows in groups.values()]
 
     @cached_property
@@ -231,6 +232,16 @@ class _WholeTable:
     def is_copy(self) -> np.ndarray:
         """Rows of such repeats (n,)."""
         return np.isin(self.repeat, list(self.copies))
+
+    def _pasted(self) -> list[str]:
+        """A sentence where rows are those of before in all cells, those that are not read included: else readings in
+        coarse digits would be."""
+        again = pd.DataFrame(dict(enumerate(self.raw.columns))).duplicated().to_numpy()
+        if not again.any():
+            return []
+        number, first = self._counted(again)
+        said = f"{self.name}: {number} are exact copies of an earlier row (first in {first})"
+        return [f"{said}; they count as readings of their own: delete what was pasted twice"]
 
     def _copied(self, repeat: int, of: int) -> str:
         return f"{self.name}: repeat {repeat} is an exact copy of repeat {of}; it says nothing new and is left out"

@@ -37,7 +37,8 @@ def checks_of(campaign: Campaign) -> tuple[str, ...]:
 
 
 def _unsaid_shunt(table: Table) -> list[str]:
-    if "shunt" not in KINDS[table.kind].axes or "shunt" in table.conditions:
+    kind = KINDS[table.kind]
+    if "shunt" not in kind.axes + kind.besides or "shunt" in table.conditions:
         return []
     return [
         f"{table.file}: nothing says what was connected to the terminals, so that they count as open; give shunt_ohm "

@@ -57,7 +57,7 @@ class _Sheet:
 
     files: names, that of the first repeat first;  beside: headings of the repeats beside a response, by its own
     before: what another campaign says of the same headings;  decimal: sign that has to be declared
-    kind_is: where the kind is from
+    kind_is: where the kind is from;  constants: what was the same in all rows of another campaign
     """
 
     files: tuple[str, ...]
@@ -68,6 +68,7 @@ class _Sheet:
     before: Mapping[str, ColumnEntry] = field(default_factory=dict)
     decimal: str | None = None
     kind_is: str = "a guess"
+    constants: Mapping[str, object] = field(default_factory=dict)
 
     @property
     def entry(self) -> TableEntry:
@@ -156,7 +157,7 @@ def _sheet(path: Path, decimal: str | None) -> _Sheet:
         if count > 1:
             raise used_twice(path.name, count, heading)
     columns = tuple(guesses(raw))
-    kind = likely_kind([guess.quantity for guess in columns])
+    kind = likely_kind([guess.quantity for guess in columns], path.stem)
     return _Sheet((path.name,), raw, columns, kind, side_by_side(columns, KINDS[kind]), decimal=decimal)
 
 
@@ -214,7 +215,9 @@ def _as_before(sheet: _Sheet, tables: Sequence[TableEntry]) -> _Sheet:
     is_same = len(shared) > max(1, len(known[nearest]) / 2)
     columns = tuple(replace(guess, quantity=_known_as(guess, shared)) for guess in sheet.columns)
     sheet = replace(sheet, columns=columns, before=shared)
-    return replace(sheet, kind=tables[nearest].kind, kind_is="as before") if is_same else sheet
+    if not is_same:
+        return sheet
+    return replace(sheet, kind=tables[nearest].kind, kind_is="as before", constants=tables[nearest].constants or {})
 
 
 def _known_as(guess: Guess, before: Mapping[str, ColumnEntry]) -> str:
@@ -333,8 +336,10 @@ _OFTEN_CONSTANT = {"shunt": "shunt_ohm", "frequency": "frequency_Hz", "amplitude
 
 def _constants(sheet: _Sheet) -> list[str]:
     """Conditions of the kind that no column holds, to be filled in."""
-    there = {guess.quantity for guess in sheet.columns}
-    missing = [key for axis, key in _OFTEN_CONSTANT.items() if axis in KINDS[sheet.kind].axes and axis not in there]
+    if sheet.constants:
+        return [f"constants = {_value(dict(sheet.constants))}  # as before"]
+    there, kind = {guess.quantity for guess in sheet.columns}, KINDS[sheet.kind]
+    missing = [k for axis, k in _OFTEN_CONSTANT.items() if axis in kind.axes + kind.besides and axis not in there]
     listed = ", ".join(f"{key} = ?" for key in missing)
     return [f"# constants = {{ {listed} }}  # what was the same in all rows and no column holds"] if missing else []
 

@@ -14,7 +14,7 @@ from units import QUANTITIES
 from workbench.data.kinds import KINDS, Kind
 from workbench.data.raw_table import Heading, RawTable
 
-_PLAIN: Final = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
+_PLAIN: Final = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "η": "eta", "φ": "phi"})
 _PHASES: Final = {
     "a": "a", "b": "b", "c": "c", "u": "a", "v": "b", "w": "c", "1": "a", "2": "b", "3": "c", "l1": "a", "l2": "b",
     "l3": "c", "ua": "a", "ub": "b", "uc": "c", "ia": "a", "ib": "b", "ic": "c", "u1": "a", "u2": "b", "u3": "c",
@@ -63,7 +63,10 @@ _SHAFT: Final = {"mech", "mechanical", "mechanisch", "mechanische", "shaft", "we
 _SHAFT_POWER: Final = "power of the shaft"  # follows from torque, and beside none is that of a drive
 _LINE_VOLTAGES: Final = {"v_ab", "v_bc", "v_ca"}
 _PHASE_VOLTAGES: Final = {"v_a", "v_b", "v_c"}
-_RMS: Final = {"rms", "eff", "effektiv"}
+# Words of a file's name -> its kind, where columns alone do not tell: an inverter's map has a current over speed and
+# torque, too.
+_FILES: Final = {"kurzschluss": "short_circuit", "short": "short_circuit", "schlepp": "drag", "rast": "cogging"}
+_RMS: Final = {"rms", "eff", "effektiv", "arms", "vrms", "aeff", "veff"}
 _MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _AT_END: Final = re.compile(r"[\s_.#-]*(\d{1,2})$")  # the number that a name ends in
@@ -136,8 +139,11 @@ def _usual_unit(quantity: str, heading: Heading) -> str:
 
 
 def _of_a_sine(found: list[Guess]) -> list[Guess]:
-    """Size and angle over a frequency are no damping and no place of a rotor: an impedance has re and im."""
+    """Size and angle over a frequency are no damping and no place of a rotor: an impedance has re and im. Beside a
+    force and what moves, an angle is that of the sine."""
     there = {g.quantity for g in found}
+    if "force" in there and {"displacement", "velocity"} & there:
+        return [replace(g, quantity="phase") if g.quantity == "angle_mech" else g for g in found]
     if "frequency" not in there or "re" in there:
         return found
     return [replace(g, quantity="") if g.quantity in ("damping", "angle_mech") else g for g in found]
@@ -188,7 +194,7 @@ def is_driven(columns: Sequence[Guess]) -> bool:
 
 def is_rms(heading: Heading) -> bool:
     """Whether a heading says that its values are RMS."""
-    return bool(_RMS & set(_words(heading.name)))
+    return bool(_RMS & set(_words(heading.written)))
 
 
 def _of_shaft(heading: Heading) -> bool:
@@ -278,9 +284,12 @@ def _base(unit: str) -> str:
     return unit if unit in _UNITS else _BASES.get(unit, unit)
 
 
-def likely_kind(quantities: Sequence[str]) -> str:
-    """The kind whose responses and axes cover most of the columns, and of equal ones the one that has least besides."""
-    return max(KINDS, key=lambda name: (_cover(KINDS[name], quantities), name == "generic"))
+def likely_kind(quantities: Sequence[str], file: str = "") -> str:
+    """The kind whose responses and axes cover most of the columns, and of equal ones the one that has least besides;
+    first one that the name of the file names, where it has any of them."""
+    covers = {name: _cover(kind, quantities) for name, kind in KINDS.items()}
+    named = {kind for word, kind in _FILES.items() if word in file.lower() and covers[kind][0]}
+    return max(KINDS, key=lambda name: (name in named, covers[name], name == "generic"))
 
 
 def _cover(kind: Kind, quantities: Sequence[str]) -> tuple[int, float]:

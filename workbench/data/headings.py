@@ -16,7 +16,6 @@ _OTHERWISE: Final[dict[str, str]] = {
     "min^-1": "rpm", "U/min": "rpm", "rev/min": "rpm", "r/min": "rpm", "upm": "rpm", "RPM": "rpm", "Rpm": "rpm",
     "°mech": "deg", "°mech.": "deg", "deg mech": "deg",
     "1/K": "per_K", "sec": "s", "Sek": "s", "Volt": "V", "Ampere": "A",
-    "Aeff": "A", "Arms": "A", "A_rms": "A", "Veff": "V", "Vrms": "V", "V_rms": "V",
     "kp": "kgf", "lbs": "lbf", "lb-ft": "lbf_ft", "ft-lb": "lbf_ft", "lb-in": "lbf_in", "in-lb": "lbf_in",
     "Newton": "N", "Ohms": "ohm", "OHM": "ohm", "HZ": "Hz", "hz": "Hz", "KN": "kN", "NM": "Nm",
 }  # fmt: skip
@@ -27,12 +26,14 @@ _PARTS: Final = (
 _IN_BRACKETS = re.compile(
     r"^(?P<name>.*?)\s*(?:\[(?P<a>[^][]*)\]|\((?P<b>[^()]*)\)|<(?P<c>[^<>]*)>|\{(?P<d>[^{}]*)\})$"
 )
+# Which value of a quantity is meant, and no part of its unit: A rms, Veff.
+_RMS = re.compile(r"(?<=[^\s_])[ _]*\(?(?:rms|eff|effektiv)\.?\)?$", re.IGNORECASE)
 _BEHIND = re.compile(r"^(?P<name>.+?)(?:\s*/\s*|\s+in\s+|\s*,\s*)(?P<unit>\S.*)$")
 
 
 def known_unit(written: str) -> str | None:
     """The unit of the one table that a spelling means, ``m_per_s`` of ``m/s``; None where there is none."""
-    text = unicodedata.normalize("NFKC", written).strip()
+    text = _RMS.sub("", unicodedata.normalize("NFKC", written).strip())
     found = _OTHERWISE.get(text, text)
     for sign, word in _PARTS:
         found = found.replace(sign, word) if found not in FACTORS else found

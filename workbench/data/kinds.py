@@ -12,7 +12,7 @@ from workbench.errors import WorkbenchError
 class Kind:
     """responses: patterns of response columns, of which a table has any;  axes: patterns of its natural conditions
     cost: of measuring once more;  says: what was done and what the columns mean, for a manual
-    needs: axes without which it was another kind
+    needs: axes without which it was another kind;  besides: conditions that are mostly the same in all rows
     """
 
     responses: tuple[str, ...]
@@ -20,6 +20,7 @@ class Kind:
     cost: float = 1.0
     says: str = ""
     needs: tuple[str, ...] = ()
+    besides: tuple[str, ...] = ()
 
     def is_response(self, column: str) -> bool:
         return any(fnmatch(column, pattern) for pattern in self.responses)
@@ -106,7 +107,9 @@ KINDS: dict[str, Kind] = {
         ("force", "torque"),
         ("displacement", "velocity"),
         cost=2.0,
-        says="Force over a driven motion. Of a damper at frequency, amplitude, shunt and phase, x = A sin(phase).",
+        says="Force over a driven motion. Of a damper at frequency, amplitude, shunt and phase, x = A sin(phase), or "
+        "displacement and velocity for the phase.",
+        besides=("frequency", "amplitude", "shunt"),
     ),
     "dq_operation": Kind(
         ("v_d", "v_q", "torque"),

@@ -6,7 +6,6 @@ from __future__ import annotations
 from fnmatch import fnmatch
 
 import numpy as np
-import pandas as pd
 
 from workbench.data.kinds import KINDS
 from workbench.data.table import Table
@@ -19,27 +18,13 @@ LONG_RUN = 0.05  # share of the rows that a run of equal readings must reach to 
 def suspicions(table: Table) -> list[str]:
     """Sentences about a table."""
     found = []
-    for check in (_few, _copied_rows, _same_in_every_row, _stuck, _copied_columns, _still, _backwards):
+    for check in (_few, _same_in_every_row, _stuck, _copied_columns, _still, _backwards):
         found += check(table)
     return [f"{table.file}: {words}" for words in found]
 
 
 def _few(table: Table) -> list[str]:
     return [f"only {table.rows} rows; its noise and its residuals say little"] if table.rows < FEW_ROWS else []
-
-
-def _frame(table: Table) -> pd.DataFrame:
-    readings = {f"response {name}": r.values for name, r in table.responses.items()}
-    return pd.DataFrame({**table.conditions, **readings})
-
-
-def _copied_rows(table: Table) -> list[str]:
-    copies = _frame(table).assign(scan=table.scan, repeat=table.repeat).duplicated().to_numpy()
-    if not copies.any():
-        return []
-    first = int(table.lines[np.flatnonzero(copies)[0]])
-    said = f"{int(copies.sum())} of {table.rows} rows are exact copies of an earlier row (first in line {first})"
-    return [f"{said}; they count as readings of their own: delete what was pasted twice"]
 
 
 def _same_in_every_row(table: Table) -> list[str]:

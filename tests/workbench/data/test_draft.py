@@ -97,6 +97,8 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
         ("U_uv [V],Uv [V],R_wv [mOhm],n [rpm]", ["v_ab", "v_b", "r_bc", "speed"], "back_emf"),
         ("Kraft [kN],zweite Kraft [N],v [m/s]", ["force", "", "velocity"], "damping_velocity"),
         ("Antriebsdrehzahl,Reibmoment [Ncm]", ["speed", "torque"], "drag"),
+        ("f [Hz],Phase [deg],Weg [mm],Kraft [N]", ["frequency", "phase", "displacement", "force"], "force_loop"),
+        ("n (rpm),M_Nm,η [%],P_el [W]", ["speed", "torque", "efficiency", "power"], "dyno_map"),
         ("f [Hz],A [mm],Weg [mm],Kraft [N]", ["frequency", "amplitude", "displacement", "force"], "force_loop"),
     ],
 )
@@ -105,6 +107,11 @@ def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
     found = guesses(table_of_text(f"{text}\n{row}\n", "f.csv"))
     assert [guess.quantity for guess in found] == quantities
     assert likely_kind(quantities) == kind
+
+
+@pytest.mark.parametrize("file, kind", [("Kurzschluss 2", "short_circuit"), ("map", "dyno_map")])
+def test_the_name_of_a_file_tells_a_short_circuit_from_a_map(file, kind):
+    assert likely_kind(["speed", "torque", "current"], file) == kind
 
 
 @pytest.mark.parametrize("power, role", [("P_mech", "response"), ("P_el", "condition")])
@@ -267,6 +274,21 @@ def test_a_file_is_like_the_table_that_has_its_headings_and_no_more(tmp_path):
     assert text.count('decimal = ","') == 1 and torque[0] == 2.234
     alone = write_draft(of_two_tables(tmp_path, "third")[1:], like=tmp_path / "old")[0].read_text(encoding="utf-8")
     assert 'decimal = ","' in alone, "as before"
+
+
+def test_what_was_the_same_in_all_rows_is_asked_for_and_taken_over(tmp_path):
+    """A damper's shunt, which counts as an open circuit where nobody says it."""
+    for name in ("old", "new"):
+        (tmp_path / name).mkdir()
+        rows = "".join(f"{k},{k % 3},{k % 5},1,1\n" for k in range(20))
+        (tmp_path / name / "f.csv").write_text("x_mm,v_m_per_s,force_N,A_mm,f_Hz\n" + rows, encoding="utf-8")
+    path = write_draft([tmp_path / "old" / "f.csv"])[0]
+    text = path.read_text(encoding="utf-8")
+    asked = next(line for line in text.splitlines() if line.startswith("# constants"))
+    assert "shunt_ohm = ?" in asked
+    path.write_text(text.replace(asked, "constants = { shunt_ohm = 2.0 }"), encoding="utf-8")
+    again = write_draft([tmp_path / "new" / "f.csv"], like=tmp_path / "old")[0].read_text(encoding="utf-8")
+    assert "constants = { shunt_ohm = 2.0 }" in again
 
 
 def test_a_kind_is_not_taken_over_for_a_few_of_its_headings(tmp_path):

@@ -58,6 +58,7 @@ def test_titles_headings_and_units_in_lines_of_their_own():
      ("F, kN", "F", "kN"), ("torque_Nm", "torque", "Nm"), ("v [m/s]", "v", "m_per_s"), ("n [1/min]", "n", "rpm"),
      ("T (°C)", "T", "degC"), ("phi [°]", "phi", "deg"), ("R [mΩ]", "R", "mohm"), ("x [µm]", "x", "um"),
      ("c [N·s/m]", "c", "Ns_per_m"), ("torque (filtered)", "torque (filtered)", ""), ("Phase A", "Phase A", ""),
+     ("I_1 [A rms]", "I_1", "A"), ("U [V eff.]", "U", "V"), ("I [Arms]", "I", "A"), ("x [rms]", "x", "rms"),
      ("magnet_T", "magnet_T", ""), ("x [furlong]", "x", "furlong"), ("eta [-]", "eta", "1")],
 )  # fmt: skip
 def test_units_in_headings(heading, name, unit):

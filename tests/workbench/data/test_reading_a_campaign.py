@@ -86,6 +86,15 @@ def test_a_repeat_that_is_a_copy_is_left_out_and_not_held_out(tmp_path, rows, is
     assert set(found.tables[0].repeat[found.tables[0].held_out]) == {1 if is_left_out else 2}
 
 
+def test_rows_that_were_pasted_twice_are_said_unless_a_column_that_is_not_read_tells_them_apart(tmp_path):
+    lines = [f"{k},{10 * k % 7},{0.1 * n:.1f}" for n, k in enumerate([*range(8), *range(3)])]
+    toml = DECLARED[: DECLARED.index("sweep =")].replace("column:holdout", "none")
+    for clock, is_said in ((slice(None), False), (slice(0, -4), True)):
+        rows = "\n".join(["angle,load,clock"[: -6 if is_said else None], *(line[clock] for line in lines), ""])
+        said = " ".join(read_campaign(declared(tmp_path, toml, rows)).complaints)
+        assert ("3 of 11 rows are exact copies of an earlier row (first in line 10)" in said) is is_said
+
+
 def test_a_complex_response_shares_the_size_of_both_parts(tmp_path):
     toml = DECLARED.split("[[table]]")[0].replace('"column:holdout"', '"none"')
     toml += (

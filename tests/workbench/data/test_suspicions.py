@@ -25,15 +25,9 @@ def said(torque=TORQUE, force=OTHER, angle=ANGLE, repeat=None, **conditions):
     return " ".join(suspicions(table))
 
 
-def copied_rows():
-    place = np.r_[0:30, 10:20, 40:60]
-    return said(TORQUE[place], OTHER[place], ANGLE[place], np.zeros(N, dtype=int))
-
-
 @pytest.mark.parametrize(
     "words, wrong",
     [
-        ("10 of 60 rows are exact copies of an earlier row (first in line 32)", copied_rows()),
         ("torque has the same value in every row", said(torque=np.full(N, 0.1))),
         ("torque has the same value in 10 rows from line 22 on", said(torque=TORQUE[np.r_[0:20, [20] * 9, 20:51]])),
         ("torque and force are equal in every row", said(force=TORQUE)),

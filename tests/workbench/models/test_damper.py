@@ -187,6 +187,14 @@ def test_force_loop_encloses_the_power_of_the_impedance():
     assert np.mean(loop * top * np.cos(phase)) == pytest.approx(0.5 * re * top**2, rel=2e-4)
 
 
+def test_the_phase_of_a_loop_is_that_of_displacement_and_velocity():
+    phase, same = np.linspace(0, 2 * pi, 50, endpoint=False), np.ones(50)
+    sine = {"frequency": 5 * same, "amplitude": 2e-3 * same, "shunt": same}
+    moved = {"displacement": 2e-3 * np.sin(phase), "velocity": 2e-3 * 2 * pi * 5 * np.cos(phase)}
+    told, found = (BASE.respond(PLAIN, "force_loop", sine | more)["force"] for more in ({"phase": phase}, moved))
+    assert found == pytest.approx(told, abs=1e-9)
+
+
 @dataclass(frozen=True)
 class Row:
     """A model of table 5.1 and its values [N s/m] at 465, 135, 55, 0 mohm in an independent computation."""

@@ -44,6 +44,7 @@ from workbench.models.actuator.design import (
 )
 from workbench.models.base import BaseModel
 from workbench.models.damper.steady_circuit import circuit_current, coupling_factor
+from workbench.models.sine import phase_of
 
 CREEP = 0.05  # m/s or rad/s, at which the friction of a held output is read: beyond presliding, before viscosity
 SLOW = 0.1  # 2 pi f L over R + shunt up to which a force loop is answered; it errs by half its square
@@ -169,8 +170,8 @@ def _loop(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
         raise WorkbenchError("force_loop of an actuator is answered for a rigid mount without free play")
     omega = 2 * pi * frequency
     velocity, acceleration = (
-        amplitude * omega * np.cos(conditions["phase"]),
-        -amplitude * omega**2 * np.sin(conditions["phase"]),
+        amplitude * omega * np.cos(phase_of(conditions)),
+        -amplitude * omega**2 * np.sin(phase_of(conditions)),
     )
     return _named(design, steady_force(design, velocity, shunt) + design.moving_mass * acceleration)
 

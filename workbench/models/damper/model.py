@@ -29,6 +29,7 @@ from workbench.models.base import BaseModel
 from workbench.models.damper.harmonic_balance import Drive, force_over_a_period, fundamental
 from workbench.models.damper.play import change_by_play, is_linear
 from workbench.models.damper.steady_circuit import circuit_current, coupling_factor
+from workbench.models.sine import phase_of
 
 SLOPE_POINTS = np.linspace(0.1, 1.0, 10)  # velocities of the straight line of damping_shunt, of the top velocity
 LOOP_POINTS = 256  # steps of a period of a force loop; linear in between: 8e-5 of the amplitude
@@ -166,7 +167,7 @@ def _loop(design: Damper, conditions: Columns) -> dict[str, np.ndarray]:
         raise WorkbenchError("force_loop is not answered for a mount with free play: use impedance tables")
     points, rows = _points(_drive(design, conditions))
     force = force_over_a_period(design, Drive(*points), LOOP_POINTS)  # all phases of a sine share their period
-    place = np.mod(conditions["phase"] / (2 * np.pi), 1.0) * LOOP_POINTS - 0.5
+    place = np.mod(phase_of(conditions) / (2 * np.pi), 1.0) * LOOP_POINTS - 0.5
     below = np.floor(place).astype(int)
     left, right = force[rows, below % LOOP_POINTS], force[rows, (below + 1) % LOOP_POINTS]
     return {"force": left + (place - below) * (right - left)}
