@@ -8,12 +8,12 @@ import numpy as np
 
 from units import percent
 from workbench.data.column_units import factor, split_unit
+from workbench.data.device_keys import COPPER
 from workbench.data.kinds import KINDS
 from workbench.data.repeats import matched_rows, places_of
 from workbench.data.table import Campaign, Response, Table
 
 LOUD = 4.0  # standard errors from which a check speaks
-COPPER = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
 FREQUENCIES = 8  # of a sweep that says something about causality
 NOT_CAUSAL = 3.0  # uncertainties that a sweep may miss a causal linear device by
 FEWEST_SHARED, SHARED = 10, 0.8  # readings of two tables, and the share of the shorter one, that are no chance

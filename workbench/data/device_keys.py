@@ -6,14 +6,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+COPPER: Final = 0.00393  # 1/K at 20 degC, annealed copper (IEC 60028)
+
 
 @dataclass(frozen=True)
 class DeviceKey:
-    """key: as a file may spell it, any other unit of the quantity goes as well;  needed: no answer without it"""
+    """key: as a file may spell it, any other unit of the quantity goes as well;  needed: no answer without it
+
+    usual: value that a draft gives it, what that is of, and the condition that a table must have for it
+    """
 
     key: str
     meaning: str
     needed: bool = True
+    usual: tuple[float, str, str] | None = None
 
 
 _DIMENSIONS: Final = (
@@ -47,7 +53,8 @@ DEVICE_KEYS: Final[dict[str, tuple[DeviceKey, ...]]] = {
         DeviceKey("inductance_q_mH", "inductance across the magnets"),
         DeviceKey("resistance_mohm", "resistance of one phase"),
         DeviceKey("reference_T_degC", "temperature at which flux linkage and resistance hold; default 20", False),
-        DeviceKey("copper_coefficient_per_K", "relative change of the resistance with winding_T; default 0", False),
+        DeviceKey("copper_coefficient_per_K", "relative change of the resistance with winding_T; default 0", False,
+                  (COPPER, "copper", "winding_T")),
         DeviceKey("remanence_coefficient_per_K", "relative change of psi_m with magnet_T; default 0", False),
         DeviceKey("iron_conductance", "1/ohm, in parallel with the induced voltage; default 0", False),
         DeviceKey("voltage_per_dc", "largest peak phase voltage over v_dc; default 0.577, six steps 0.637", False),

@@ -16,7 +16,7 @@ import numpy as np
 from disk import write_atomically
 from workbench.data.cells import UntoldSign
 from workbench.data.column_units import FACTORS
-from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, Spread
+from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, DeviceKey, Spread
 from workbench.data.guess import (
     UNTOLD_INDUCTANCE,
     Guess,
@@ -253,7 +253,7 @@ def _device(model: str, quantities: Sequence[str], zeros: Sequence[Spread]) -> s
     """
     if model in DEVICE_KEYS:
         keys = [f'{key.key} = "?"  # {key.meaning}' for key in DEVICE_KEYS[model] if key.needed]
-        keys += [f"# {key.key} =   # {key.meaning}" for key in DEVICE_KEYS[model] if not key.needed]
+        keys += [_optional(key, quantities) for key in DEVICE_KEYS[model] if not key.needed]
         lines = ["[device]  # as drawn", *_OTHER_MACHINES.get(model, ()), f"model = {_text(model)}", *keys]
     else:
         lines = ["[device]", f'model = "?"  # {", ".join(DEVICE_KEYS)}, and the keys it needs']
@@ -261,6 +261,12 @@ def _device(model: str, quantities: Sequence[str], zeros: Sequence[Spread]) -> s
     gains = [spread for read, spread in CALIBRATIONS.items() if _reads(read, quantities)]
     lines += ["", _SYSTEMATIC, *map(_spread, [*gains, *zeros])]
     return "\n" + "\n".join(lines) + "\n"
+
+
+def _optional(key: DeviceKey, quantities: Sequence[str]) -> str:
+    if key.usual is not None and key.usual[2] in quantities:
+        return f"{key.key} = {key.usual[0]}  # {key.meaning}; that of {key.usual[1]}"
+    return f"# {key.key} =   # {key.meaning}"
 
 
 def _spread(spread: Spread) -> str:

@@ -291,6 +291,17 @@ def test_what_was_the_same_in_all_rows_is_asked_for_and_taken_over(tmp_path):
     assert "constants = { shunt_ohm = 2.0 }" in again
 
 
+@pytest.mark.parametrize(
+    "heading, line", [("T_Wicklung [°C]", "copper_coefficient_per_K = 0.00393"), ("x", "# copper")]
+)
+def test_the_resistance_of_a_winding_whose_temperature_was_read_rises_as_copper(tmp_path, heading, line):
+    """Where nobody says so it would stay the same, and the readings of a hot winding would be a riddle."""
+    rows = "".join(f"{k},{k},{k % 3},{k % 5},{20 + k}\n" for k in range(20))
+    (tmp_path / "f.csv").write_text(f"n [rpm],i_d [A],i_q [A],M [Nm],{heading}\n" + rows, encoding="utf-8")
+    text = write_draft([tmp_path / "f.csv"])[0].read_text(encoding="utf-8")
+    assert any(written.startswith(line) for written in text.splitlines())
+
+
 def test_a_kind_is_not_taken_over_for_a_few_of_its_headings(tmp_path):
     loads, _ = of_two_tables(tmp_path, "old")
     rows = loads.read_text(encoding="utf-8").replace("Strom Iq [A]", "Strom Iq [A];Spannung Ud [V];Spannung Uq [V]")
