@@ -11,6 +11,7 @@ from workbench.data.column_units import factor, split_unit
 from workbench.data.device_keys import COPPER
 from workbench.data.kinds import KINDS
 from workbench.data.repeats import matched_rows, places_of
+from workbench.data.robust import size_of
 from workbench.data.table import Campaign, Response, Table
 
 LOUD = 4.0  # standard errors from which a check speaks
@@ -69,8 +70,7 @@ def _scatter(table: Table, r: Response, stations: np.ndarray) -> tuple[np.ndarra
     wild ones cut; less what comes of conditions that were not met alike, by a curved surface over them."""
     values = (r.values - _surface(table, r))[stations]
     z = (values - values.mean(axis=1, keepdims=True)) / r.random[stations]
-    most = LOUD * max(1.4826 * float(np.median(np.abs(z))), QUIET)
-    return z, float(np.sqrt(np.mean(np.minimum(z**2, most**2)) * stations.shape[1] / (stations.shape[1] - 1)))
+    return z, size_of(z.ravel()) * float(np.sqrt(stations.shape[1] / (stations.shape[1] - 1)))
 
 
 def _surface(table: Table, r: Response) -> np.ndarray:

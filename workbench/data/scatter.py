@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.optimize import nnls
 
+from workbench.data.robust import size_of
+
 _FEWEST_ROWS = 12  # whose third differences show a noise
 _FEWEST_REPEATS = 6  # differences between repeated rows that do
 _FEWEST_TO_GROW = 20  # of them that show whether it grows with the reading
@@ -78,7 +80,7 @@ def _of_repeats(values: np.ndarray, places: np.ndarray) -> tuple[str, str] | Non
     if again.sum() < _FEWEST_REPEATS:
         return None
     apart, level = np.diff(values[order])[again] / np.sqrt(2.0), np.abs(values[order])[1:][again]
-    size, least = _robust(apart), _of_digits(values)
+    size, least = size_of(apart), _of_digits(values)
     floor, share = _growing(np.abs(apart), level) if again.sum() >= _FEWEST_TO_GROW else (size, 0.0)
     if size > least and share * level.max() > floor:
         return f'"{max(floor, least):.2g} + {share:.2g}*abs(y)"', "repeated rows"

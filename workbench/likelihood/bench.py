@@ -13,13 +13,14 @@ from effects.base import Effect
 from workbench.believed import PLAIN
 from workbench.data.campaign import columns_of_systematics
 from workbench.data.repeats import matched_rows, places_of
+from workbench.data.robust import WILD
 from workbench.data.schema import BY_REGION
 from workbench.data.stack import Channel, Stack, part_of, rows_in, stacked, thinned
 from workbench.data.table import Campaign, Table
 from workbench.errors import WorkbenchError
 from workbench.likelihood.conditions import with_conditions
 from workbench.likelihood.fit import Fit, Problem, fitted, linearised, refitted, with_parameters
-from workbench.likelihood.noise import WILD, Noise, measured_noise, noise_on_rows, with_wild_readings
+from workbench.likelihood.noise import Noise, measured_noise, noise_on_rows, with_wild_readings
 from workbench.likelihood.nuisance import nuisances_of
 from workbench.likelihood.own_errors import left_open
 from workbench.likelihood.predictor import DirectPredictor, answers_only

@@ -17,12 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from workbench.data.repeats import follows, matched_rows, near_rows
+from workbench.data.robust import ROUNDS, WILD, size_of
 from workbench.data.stack import Channel, Stack
 from workbench.data.table import Table
 from workbench.likelihood.restricted import DECLARED_WEIGHT, Repeated, Size, sizes_of
 
-WILD = 2.5  # standard deviations of disagreement from which a reading counts less: u grows with the disagreement
-TAME_SHARE = 0.9749  # mean of min(d^2, WILD^2) of a standard normal d
 REPORTED = 4.5  # standard deviations of disagreement from which a reading is called wild
 DOF_WITHOUT_REPEATS = 20.0  # degrees of freedom of the size where there are no repeats
 MOST_STATIONS = 4000  # that are asked how large the noise of a channel is; so many know it to 1 %
@@ -30,7 +29,6 @@ MOST_SHUFFLED = 250  # of them where repeats go through them in other orders: ea
 ORDERED = 50  # stations that neighbours in a scan are apart at most, where repeats go through them in one order
 MOST_SCANS = 80  # that are asked what a scan as a whole is off by; so many know it to 6 %
 RUN = 50  # neighbouring stations of a longer table that are kept together
-ROUNDS = 20  # in which the size of what is not cut is found
 SHORTEST_SCAN = 6  # rows of a scan in which an offset and a slope can be told from noise
 
 
@@ -245,14 +243,9 @@ def scan_shapes(u: np.ndarray) -> np.ndarray:
 
 
 def _size(deviation: _Deviation) -> float:
-    """Standard deviation with disagreements cut at WILD times it (Huber's proposal 2)."""
+    """Standard deviation of what repeats disagree by, wild ones cut; that declared where nothing was repeated."""
     d = deviation.spread[np.isfinite(deviation.spread)]
-    if len(d) == 0:
-        return 1.0
-    size = np.sqrt(np.mean(d**2)) + 1e-12
-    for _ in range(ROUNDS):
-        size = np.sqrt(np.mean(np.minimum(d**2, (WILD * size) ** 2)) / TAME_SHARE) + 1e-12
-    return float(size)
+    return size_of(d) if len(d) else 1.0
 
 
 def drawn_noise(stack: Stack, noise: Noise, random: np.random.Generator, count: int) -> np.ndarray:
