@@ -140,6 +140,14 @@ def test_units_that_headings_leave_out_are_the_usual_ones():
     assert [guess.unit for guess in found] == ["1", "1", "degC", "A", ""]
 
 
+def test_few_repeats_tell_the_noise_nearly_as_well_as_an_rms():
+    """Three repeats of eight readings: 16 differences, whose rms is off by 20 %, their median by 30 %."""
+    random, place = np.random.default_rng(8), np.tile(np.arange(8.0), 3)
+    draws = (20 * place + random.standard_normal(24) for _ in range(300))
+    found = np.array([float(noise_of(values, {"speed": place})[0]) for values in draws])
+    assert np.mean(found) == pytest.approx(1.0, abs=0.05) and np.std(found) < 0.24
+
+
 @pytest.mark.parametrize("floor, share", [(0.3, 0.008), (1.0, 0.0)])
 @pytest.mark.parametrize("wild", [0.0, 30.0])
 def test_repeated_rows_show_the_noise_and_whether_it_grows(floor, share, wild):
