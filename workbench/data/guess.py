@@ -65,7 +65,9 @@ _LINE_VOLTAGES: Final = {"v_ab", "v_bc", "v_ca"}
 _PHASE_VOLTAGES: Final = {"v_a", "v_b", "v_c"}
 # Words of a file's name -> its kind, where columns alone do not tell: an inverter's map has a current over speed and
 # torque, too.
-_FILES: Final = {"kurzschluss": "short_circuit", "short": "short_circuit", "schlepp": "drag", "rast": "cogging"}
+_FILES: Final = {
+    "kurzschluss": "short_circuit", "shortcircuit": "short_circuit", "schlepp": "drag", "rastmoment": "cogging",
+}  # fmt: skip
 _RMS: Final = {"rms", "eff", "effektiv", "arms", "vrms", "aeff", "veff"}
 _MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
@@ -288,7 +290,8 @@ def likely_kind(quantities: Sequence[str], file: str = "") -> str:
     """The kind whose responses and axes cover most of the columns, and of equal ones the one that has least besides;
     first one that the name of the file names, where it has any of them."""
     covers = {name: _cover(kind, quantities) for name, kind in KINDS.items()}
-    named = {kind for word, kind in _FILES.items() if word in file.lower() and covers[kind][0]}
+    letters = re.sub("[^a-z]", "", file.lower())
+    named = {kind for word, kind in _FILES.items() if word in letters and covers[kind][0]}
     return max(KINDS, key=lambda name: (name in named, covers[name], name == "generic"))
 
 

@@ -109,7 +109,10 @@ def test_columns_are_guessed_by_words_and_units(text, quantities, kind):
     assert likely_kind(quantities) == kind
 
 
-@pytest.mark.parametrize("file, kind", [("Kurzschluss 2", "short_circuit"), ("map", "dyno_map")])
+@pytest.mark.parametrize(
+    "file, kind",
+    [("Kurzschluss 2", "short_circuit"), ("short-circuit_1", "short_circuit"), ("short run", "dyno_map")],
+)
 def test_the_name_of_a_file_tells_a_short_circuit_from_a_map(file, kind):
     assert likely_kind(["speed", "torque", "current"], file) == kind
 
