@@ -15,7 +15,7 @@ import numpy as np
 
 from disk import write_atomically
 from workbench.data.cells import UntoldSign
-from workbench.data.column_units import FACTORS
+from workbench.data.column_units import FACTORS, split_unit
 from workbench.data.device_keys import CALIBRATIONS, DEVICE_KEYS, TOLERANCES, ZERO_DRIFT, ZEROS, DeviceKey, Spread
 from workbench.data.guess import (
     UNTOLD_INDUCTANCE,
@@ -341,10 +341,10 @@ _OFTEN_CONSTANT = {"shunt": "shunt_ohm", "frequency": "frequency_Hz", "amplitude
 
 
 def _constants(sheet: _Sheet) -> list[str]:
-    """Conditions of the kind that no column holds, to be filled in."""
-    if sheet.constants:
-        return [f"constants = {_value(dict(sheet.constants))}  # as before"]
+    """Conditions of the kind that no column holds, as before or to be filled in."""
     there, kind = {guess.quantity for guess in sheet.columns}, KINDS[sheet.kind]
+    if known := {key: value for key, value in sheet.constants.items() if split_unit(key)[0] not in there}:
+        return [f"constants = {_value(known)}  # as before"]
     missing = [k for axis, k in _OFTEN_CONSTANT.items() if axis in kind.axes + kind.besides and axis not in there]
     listed = ", ".join(f"{key} = ?" for key in missing)
     return [f"# constants = {{ {listed} }}  # what was the same in all rows and no column holds"] if missing else []

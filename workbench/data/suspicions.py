@@ -1,4 +1,4 @@
-"""What looks wrong in a table before any model is asked: copied rows, stuck or copied columns, a clock that runs
+"""What looks wrong in a table before any model is asked: few rows, stuck or copied columns, a clock that runs
 backwards. Nothing is left out for it; each is one sentence."""
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from effects.base import Effect
+from units import percent
 from workbench.data.column_units import split_unit
 from workbench.data.table import Tolerance
 from workbench.explain.hypotheses import Hypothesis
@@ -39,16 +40,12 @@ def exceeded(hypothesis: Hypothesis) -> tuple[str, ...]:
     moved = zip(hypothesis.problem.predictor.nuisances, hypothesis.fit.x)
     inputs = ((n.tolerance, float(z)) for n, z in moved if isinstance(n, TolerancedInput) and abs(z) > PULLED)
     return tuple(
-        f"[tolerance] {tolerance.name} says otherwise: without anything unknown the best fit needs it {_signed(z)} of "
-        f"its standard deviations off what [device] states{_share(tolerance, z)}. Look whether [device] is what was "
-        "measured: a unit, a value between lines for one of a phase, another specimen."
+        f"[tolerance] {tolerance.name} says otherwise: without anything unknown the best fit needs it {abs(z):.0f} of "
+        f"its standard deviations {'higher' if z > 0 else 'lower'} than [device] states{_share(tolerance, z)}. Look "
+        "whether [device] is what was measured: a unit, a value between lines for one of a phase, another specimen."
         for tolerance, z in inputs
     )
 
 
 def _share(tolerance: Tolerance, z: float) -> str:
-    return f" ({_signed(100 * tolerance.sigma * z)} %)" if tolerance.relative else ""
-
-
-def _signed(value: float) -> str:
-    return f"{value:+.0f}".replace("-", "\N{MINUS SIGN}")
+    return f", by {percent(abs(tolerance.sigma * z))}" if tolerance.relative else ""

@@ -201,8 +201,10 @@ class Search:
 
     @property
     def best_beside(self) -> float:
-        """Its ln posterior [nats]."""
-        return max(map(self.log_posterior_beside, self.beside), default=-np.inf) + self.beliefs.log_unknown
+        """Its ln posterior [nats]; infinitely little where none was weighed."""
+        if not self.beside:
+            return -np.inf
+        return self.log_posterior_beside(self.leader_beside) + self.beliefs.log_unknown
 
     def log_posterior(self, names: Set) -> float:
         """Up to what all share [nats]."""

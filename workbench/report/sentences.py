@@ -542,7 +542,7 @@ def power_sentence(d: Diagnosis) -> str:
 
 def open_questions(d: Diagnosis) -> tuple[str, ...]:
     """What would show the likeliest effects of which these data are not sure."""
-    open_ones = [r for r in d.ranking if r.shown_by and r.name not in d.names and r.probability >= OPEN]
+    open_ones = [r for r in d.ranking if r.shown_by and OPEN <= r.probability < d.sure]
     return tuple(
         f"Whether {plain(r.name)} is there ({percent(r.probability)}) would be shown by: {listed(r.shown_by, 'or')}."
         for r in open_ones[:OPEN_ONES]

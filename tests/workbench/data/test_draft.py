@@ -300,6 +300,9 @@ def test_what_was_the_same_in_all_rows_is_asked_for_and_taken_over(tmp_path):
     path.write_text(text.replace(asked, "constants = { shunt_ohm = 2.0 }"), encoding="utf-8")
     again = write_draft([tmp_path / "new" / "f.csv"], like=tmp_path / "old")[0].read_text(encoding="utf-8")
     assert "constants = { shunt_ohm = 2.0 }" in again
+    (tmp_path / "new" / "g.csv").write_text("x_mm,v_m_per_s,force_N,A_mm,f_Hz,shunt_ohm\n" + rows.replace("\n", ",3\n"))
+    measured = draft_of([tmp_path / "new" / "g.csv"], like=tmp_path / "old")
+    assert "shunt_ohm = 2.0" not in measured, "now a column holds it"
 
 
 @pytest.mark.parametrize(

@@ -168,11 +168,8 @@ def _loop(design: BenchActuator, conditions: Columns) -> dict[str, np.ndarray]:
         raise WorkbenchError("force_loop of an actuator is answered where 2 pi f L is a tenth of R + shunt at most")
     if design.mount_clearance or not isinf(design.mount_stiffness):
         raise WorkbenchError("force_loop of an actuator is answered for a rigid mount without free play")
-    omega = 2 * pi * frequency
-    velocity, acceleration = (
-        amplitude * omega * np.cos(phase_of(conditions)),
-        -amplitude * omega**2 * np.sin(phase_of(conditions)),
-    )
+    omega, phase = 2 * pi * frequency, phase_of(conditions)
+    velocity, acceleration = amplitude * omega * np.cos(phase), -amplitude * omega**2 * np.sin(phase)
     return _named(design, steady_force(design, velocity, shunt) + design.moving_mass * acceleration)
 
 
