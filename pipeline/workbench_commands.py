@@ -19,11 +19,13 @@ from effects.parameter import parameters_of
 from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from workbench.compare.comparison import compare
 from workbench.data.campaign import read_campaign
+from workbench.data.conventions import accepted
 from workbench.data.draft import write_draft
 from workbench.data.table import Campaign
 from workbench.errors import WorkbenchError
 from workbench.explain.conventions import settle
 from workbench.explain.diagnosis import SEED, diagnose
+from workbench.explain.verdict import CONVENTION
 from workbench.findings import Comparison, Diagnosis, Ledger, LedgerStep, Ranked, Validation
 from workbench.ledger.model_file import NAME, read_model, with_effects
 from workbench.ledger.skeleton import write_new
@@ -196,10 +198,17 @@ def _diagnose(options: argparse.Namespace) -> None:
     with exit_on_wrong_campaign():
         campaign, effects, model, out = _set_up(options)
         campaign, model = _settled(options, campaign, model)
-        with _progress() as progress:
-            diagnosis = diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
+        diagnosis = _diagnosed(options, model, campaign, effects)
+        if options.accept_conventions and diagnosis.verdict == CONVENTION:  # it showed beside an effect only
+            print("accepted:", diagnosis.conventions[0], "", diagnosis.fix, sep="\n")
+            diagnosis = _diagnosed(options, model, accepted(campaign, diagnosis.fix), effects)
         _write_diagnosis(out, diagnosis)
         _print_diagnosis(diagnosis, out)
+
+
+def _diagnosed(options: argparse.Namespace, model: Model, campaign: Campaign, effects: Library) -> Diagnosis:
+    with _progress() as progress:
+        return diagnose(model, campaign, effects, SEED if options.seed is None else options.seed, progress)
 
 
 def _add(options: argparse.Namespace) -> None:

@@ -32,6 +32,7 @@ class AcWindingLoss(StateEffect):
         Touches("dq_supply.*"),
     )
     model_error = 0.002
+    size_error = 0.006
     model_error_source = "benchmarks/law_errors.py: against Dowell's law of four layers"
     base_rate = 0.02
     base_rate_source = "engineering judgement: thick wire or hairpins at high speed, one machine in fifty"

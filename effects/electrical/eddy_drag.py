@@ -27,7 +27,7 @@ class EddyDrag(ForceEffect):
         Touches("impedance.re"),
     )
     model_error = 0.018
-    size_error = 0.017
+    size_error = 0.059
     model_error_source = "benchmarks/law_errors.py: against brake curve with another power above the corner"
     base_rate = 0.02
     base_rate_source = "engineering judgement: solid back iron or housing near the magnets, one damper in fifty"

@@ -24,7 +24,7 @@ class ForceConstantSaturation(CouplingEffect):
         Touches("impedance.re"),
     )
     model_error = 0.015
-    size_error = 0.042
+    size_error = 0.048
     model_error_source = "benchmarks/law_errors.py: against K / sqrt(1 + (i / i_s)^2)"
     base_rate = 0.01
     base_rate_source = "engineering judgement: rated currents are chosen below it, one damper in a hundred"

@@ -31,7 +31,7 @@ class QuadratureSaturation(FluxEffect):
         Touches("dq_supply.*"),
     )
     model_error = 0.008
-    size_error = 0.032
+    size_error = 0.052
     model_error_source = "benchmarks/law_errors.py: against logarithmic saturation"
     base_rate = 0.06
     base_rate_source = "engineering judgement: usual with buried magnets, seldom otherwise, one in seventeen"

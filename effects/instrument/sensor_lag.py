@@ -34,6 +34,7 @@ class SensorLag(InstrumentEffect):
         Touches("back_emf.v_?"),
     )
     model_error = 0.035
+    size_error = 0.008
     model_error_source = "benchmarks/law_errors.py: against Bessel's filter of two poles, up to 1 ms"
     base_rate = 0.02
     base_rate_source = "engineering judgement: a filter setting forgotten, one bench in fifty"

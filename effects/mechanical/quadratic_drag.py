@@ -27,7 +27,7 @@ class QuadraticDrag(ForceEffect):
         Touches("damping_shunt.damping"),
     )
     model_error = 0.009
-    size_error = 0.034
+    size_error = 0.022
     model_error_source = "benchmarks/law_errors.py: against |v|^1.97"
     base_rate = 0.01
     base_rate_source = "engineering judgement: needs enclosed air or oil, one damper in a hundred"

@@ -25,6 +25,7 @@ Each is a frozen dataclass, a pure change of a table. Names of what may be wrong
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -49,6 +50,7 @@ NAMES: dict[str, str] = {
     "unit_factor": "numbers are in another unit than declared",
     "line_or_phase": "line and phase quantities are confused",
     "rms_or_peak": "RMS and peak values are confused",
+    "peak_to_peak": "amplitudes and what they are from peak to peak are confused",
     "zero": "the zero of an instrument was not set",
     "swapped_columns": "two columns stand under each other's names",
     "shifted_column": "a column is off by rows",
@@ -213,6 +215,7 @@ _FACTOR_WORDS = {
     "unit_factor": "another unit",
     "line_or_phase": "line for phase values or the reverse",
     "rms_or_peak": "peak for RMS values or the reverse",
+    "peak_to_peak": "peak to peak for an amplitude or the reverse",
     "electrical_or_mechanical": "electrical for mechanical or the reverse",
     "poles": "poles for pole pairs or the reverse",
 }
@@ -552,6 +555,18 @@ def fixes_of(campaign: Campaign) -> tuple[Fix, ...]:
         for key, value in entry.items():
             found += _fixes(campaign, table, key, value)
     return tuple(found)
+
+
+def accepted(campaign: Campaign, text: str) -> Campaign:
+    """The campaign with the text of a further section ``[conventions]`` applied to its tables."""
+    more = tomllib.loads(text)["conventions"]
+    fixes = fixes_of(replace(campaign, conventions=more))
+    return replace(applied(campaign, fixes), conventions=merged(campaign.conventions, more))
+
+
+def merged(have: Mapping[str, Mapping[str, object]], more: Mapping[str, Mapping[str, object]]) -> dict:
+    """Both sections; keys of a file that both have stay with what was found last."""
+    return {file: {**have.get(file, {}), **more.get(file, {})} for file in dict.fromkeys([*have, *more])}
 
 
 def stated_factors(campaign: Campaign, file: str) -> frozenset[str]:

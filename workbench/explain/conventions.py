@@ -34,6 +34,7 @@ from workbench.data.conventions import (
     TemperatureScale,
     angle_factors,
     applied,
+    merged,
     pole_pairs,
     section_of,
     section_text,
@@ -602,20 +603,33 @@ SETTLED = 0.75  # probability that a convention is wrong, below which effects ar
 
 
 def _conventions(campaign, readers, readings, best: list[_Whole], fixes, broken) -> Conventions:
-    checks = checks_of(campaign)
     everything = fixes + broken
     if not everything or not broken and _p_wrong(best) < SETTLED:
-        return Conventions((), campaign, _p_wrong(best), checks=checks)
+        return Conventions((), campaign, _p_wrong(best), checks=checks_of(campaign))
     others = _equivalents(best)
-    section = section_of(everything)
-    repaired = applied(campaign, everything)
-    of_files = {file: entry for file, entry in section.items() if file != DEVICE}
-    repaired = replace(repaired, conventions=_merged(campaign.conventions, of_files))
     found = tuple(Found(fix, *_odds(fix, best, fixes)) for fix in everything)
+    simple = [other.fixes for other in others if _as_simple(other, best[0])]
     probability = 1.0 if broken else _p_wrong(best)
-    names = _names_of(everything, [o for o in others if _as_simple(o, best[0])])
-    sentences = _sentences(everything, others)
-    return Conventions(found, repaired, probability, names, sentences, _text(section, others), checks)
+    return said_of(campaign, found, probability, [other.fixes for other in others], simple)
+
+
+def said_of(
+    campaign: Campaign,
+    found: Sequence[Found],
+    probability: float,
+    others: Sequence[tuple[Fix, ...]],
+    simple: Sequence[tuple[Fix, ...]],
+) -> Conventions:
+    """What is said where fixes are needed. others: what the data cannot tell from these;  simple: of that, what is as
+    simple and likely"""
+    fixes = tuple(one.fix for one in found)
+    section, repaired = section_of(fixes), applied(campaign, fixes)
+    of_files = {file: entry for file, entry in section.items() if file != DEVICE}
+    repaired = replace(repaired, conventions=merged(campaign.conventions, of_files))
+    names, sentences = _names_of([fixes, *simple]), _sentences(fixes, others)
+    return Conventions(
+        tuple(found), repaired, probability, names, sentences, _text(section, others), checks_of(campaign)
+    )
 
 
 def _p_wrong(best: list[_Whole]) -> float:
@@ -662,13 +676,12 @@ def _as_simple(other: _Whole, lead: _Whole) -> bool:
     return len(other.habits) <= len(lead.habits) and other.net > lead.net - alike
 
 
-def _names_of(fixes: Iterable[Fix], others: Iterable[_Whole]) -> tuple[str, ...]:
-    named = [name for fix in fixes for name in fix.names]
-    named += [name for other in others for fix in other.fixes for name in fix.names]
+def _names_of(readings: Iterable[tuple[Fix, ...]]) -> tuple[str, ...]:
+    named = [name for fixes in readings for fix in fixes for name in fix.names]
     return tuple(name for name in dict.fromkeys(named) if name in NAMES)
 
 
-def _sentences(fixes: tuple[Fix, ...], others: list[_Whole]) -> tuple[str, ...]:
+def _sentences(fixes: tuple[Fix, ...], others: Sequence[tuple[Fix, ...]]) -> tuple[str, ...]:
     said = [f"{_files(fixes, words)}: {words}." for words in dict.fromkeys(fix.words for fix in fixes)]
     if others:
         same = "; ".join(map(_words, others[:SAID]))
@@ -676,21 +689,16 @@ def _sentences(fixes: tuple[Fix, ...], others: list[_Whole]) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _words(other: _Whole) -> str:
-    return " and ".join(dict.fromkeys(fix.words for fix in other.fixes))
+def _words(fixes: tuple[Fix, ...]) -> str:
+    return " and ".join(dict.fromkeys(fix.words for fix in fixes))
 
 
-def _text(section: Mapping[str, Mapping[str, object]], others: Iterable[_Whole]) -> str:
+def _text(section: Mapping[str, Mapping[str, object]], others: Sequence[tuple[Fix, ...]]) -> str:
     """The section for campaign.toml; below it, as comments, what to write instead where another reading is right."""
-    instead = [f"or, {_words(other)}:\n{section_text(section_of(other.fixes))}" for other in list(others)[:SAID]]
+    instead = [f"or, {_words(fixes)}:\n{section_text(section_of(fixes))}" for fixes in others[:SAID]]
     comments = [f"# {line}" for text in instead for line in text.splitlines() if line != "[conventions]"]
     return "\n".join([section_text(section).rstrip("\n"), *comments]) + "\n"
 
 
 def _files(fixes: Iterable[Fix], words: str) -> str:
     return ", ".join(dict.fromkeys(fix.file for fix in fixes if fix.words == words))
-
-
-def _merged(have: Mapping[str, Mapping[str, object]], more: Mapping[str, Mapping[str, object]]) -> dict:
-    """Both sections; keys of a file that both have stay with what was found last."""
-    return {file: {**have.get(file, {}), **more.get(file, {})} for file in dict.fromkeys([*have, *more])}

@@ -22,6 +22,7 @@ from workbench.explain.conventions import diagnosis_of as of_conventions
 from workbench.explain.conventions import settle
 from workbench.explain.explore import Posterior, beside_the_unknown
 from workbench.explain.hypotheses import Hypothesis, density_of, estimates, null_of
+from workbench.explain.misread import misread
 from workbench.explain.recommend import next_measurements
 from workbench.explain.sealed import opened, refutations, refuted, with_sealed
 from workbench.explain.search import searched
@@ -61,6 +62,8 @@ def diagnose(
         return of_conventions(conventions, model, seed, perf_counter() - start)
     progress("fitting tolerances and calibrations")
     search = searched(bench_of(model, campaign, library, progress=progress), library, progress)
+    if (beside := misread(search, library, progress)) is not None:
+        return of_conventions(beside, model, seed, perf_counter() - start)
     progress("simulating campaigns of this bench")
     simulator = Simulator(search.bench, search.signatures, search.beliefs, search.shapes, np.random.default_rng(seed))
     thresholds, power = thresholds_of(simulator)

@@ -73,7 +73,7 @@ _BY_QUANTITY: dict[str, list[Nice]] = {
     "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL),
     "shunt": _TENS,
     "frequency": _both(2 * pi, COMMON) + _both(60.0, USUAL) + _both(1e3, USUAL),
-    "amplitude": _both(1e3, COMMON) + _TWO + _PEAK,
+    "amplitude": _both(1e3, COMMON) + _both(2.0, COMMON, "peak_to_peak") + _PEAK,
 }
 _SAME = {"voltage": "v", "current": "i", "re": "force", "im": "force", "damping": "force"}
 
@@ -122,8 +122,9 @@ def nearest(column: str, value: float, pole_pairs: float | None, alone: bool) ->
 
 def of_the_table(table: Table, pole_pairs: float | None, angles: dict[str, float]) -> list[tuple[Fix, float]]:
     """Fixes of single columns with what each costs; angles: what the angle may hold -> factor."""
-    found = [*_scales(table, pole_pairs), *_signs(table), *_exchanges(table), *_shifts(table), *_temperatures(table)]
+    found = [*scales(table, pole_pairs), *_signs(table), *_exchanges(table), *_shifts(table), *_temperatures(table)]
     found += [(AngleUnit(table.file, what, f), COMMON) for what, f in angles.items() if abs(log(f)) > NEAR]
+    found += power_flow(table)
     if ANGLE in table.conditions:
         found.append((AngleDirection(table.file), COMMON + 1.5))
     if set(LINES) <= set(table.responses):
@@ -144,7 +145,8 @@ def _asked(table: Table) -> list[str]:
     return [name for name, values in table.conditions.items() if np.any(values) and name != "direction"]
 
 
-def _scales(table: Table, pole_pairs: float | None) -> Iterator[tuple[Fix, float]]:
+def scales(table: Table, pole_pairs: float | None) -> Iterator[tuple[Scaled, float]]:
+    """Factors on conditions, with what each costs."""
     for group in _groups(_asked(table)):
         for nice in factors(group[0], pole_pairs):
             yield Scaled(table.file, group, nice.value, nice.means), nice.cost
@@ -156,6 +158,13 @@ def _signs(table: Table) -> Iterator[tuple[Fix, float]]:
             yield InvertedColumns(table.file, group), COMMON
             for column in group if len(group) > 1 else ():
                 yield InvertedColumns(table.file, (column,)), COMMON
+
+
+def power_flow(table: Table) -> Iterator[tuple[Fix, float]]:
+    """Power at the shaft and at the terminals both counted as a generator gives them."""
+    columns = tuple(n for n in ("torque", "power") if n in table.conditions or n in table.responses)
+    if len(columns) == 2:
+        yield InvertedColumns(table.file, columns), COMMON
 
 
 def _exchanges(table: Table) -> Iterator[tuple[Fix, float]]:

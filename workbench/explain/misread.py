@@ -1,0 +1,157 @@
+"""Conventions that show only beside an effect.
+
+How large a sine is, a linear damper does not feel, but friction does: peak to peak in the place of an amplitude looks
+like guides that rub beside friction, beyond doubt. What ``conventions`` cannot see in the nominal device is weighed
+here as effects are, by ln p of the rows to fit, beside what leads and beside its parts;
+one that nearly suffices has a search of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+from scipy.special import expit
+
+from effects.base import Effect
+from workbench.data.conventions import Fix, applied, pole_pairs, stated_factors
+from workbench.data.stack import stacked
+from workbench.data.table import Campaign
+from workbench.explain.conventions import ALIKE, Conventions, Found, said_of
+from workbench.explain.hypotheses import Hypothesis
+from workbench.explain.misfit import ALLOWANCE, TINY
+from workbench.explain.mistakes import power_flow, scales
+from workbench.explain.search import searched
+from workbench.explain.tried import NO_FIT, Progress, Search, Set
+from workbench.likelihood.bench import bench_of
+from workbench.likelihood.fit import Problem, prior_cost, refitted
+
+LEADERS = 8  # fitted sets beside which a convention is tried, and those of them with an effect less
+REFITTED = 3  # of these, which promise most
+SHARE = 0.3  # of what was explained, from which on a convention is worth a search of its own
+
+
+@dataclass(frozen=True, eq=False)
+class _Habit:
+    """The same mistake in all tables that can have it. cost: minus ln of what is believed of it [nats]"""
+
+    fixes: tuple[Fix, ...]
+    cost: float
+
+    def on(self, problem: Problem) -> Problem:
+        """The same rows as they were meant."""
+        tables = problem.stack.tables
+        for fix in self.fixes:
+            tables = tuple(fix.apply(table) if table.file == fix.file else table for table in tables)
+        stack = replace(problem.stack, tables=tables, y=stacked(tables).y)
+        return replace(problem, stack=stack, predictor=problem.predictor.on(stack))
+
+
+def misread(
+    search: Search, library: Mapping[str, type[Effect]], progress: Progress = lambda words: None
+) -> Conventions | None:
+    """The convention that is more likely than all that effects and unknown functions explain without it; None where
+    none is. An expansion about a drawing is not asked: it knows the conditions of its tables only."""
+    if search.bench.model.base.is_expansion or not (search.ranked[0] or search.is_beaten):
+        return None
+    nothing, best = search.log_posterior(frozenset()), _best(search)
+    odds = {habit: _log_posterior(search, habit) - habit.cost - best for habit in _unseen(search)}
+    ranked = sorted(odds, key=lambda habit: -odds[habit])
+    if ranked and (SHARE - 1) * (best - nothing) < odds[ranked[0]] <= 0:
+        odds[ranked[0]] = _best(_searched_again(search, ranked[0], library, progress)) - ranked[0].cost - best
+    if not ranked or odds[ranked[0]] <= 0:
+        return None
+    return _said(search.bench.campaign, {habit: odds[habit] for habit in ranked})
+
+
+def _best(search: Search) -> float:
+    """ln posterior of what explains most [nats]."""
+    return max(search.log_posterior(search.ranked[0]), search.best_beside)
+
+
+def _searched_again(search: Search, habit: _Habit, library: Mapping[str, type[Effect]], progress: Progress) -> Search:
+    """The search with the readings as they would have been meant."""
+    progress("effects beside another convention")
+    campaign = applied(search.bench.campaign, habit.fixes)
+    return searched(bench_of(search.bench.model, campaign, library), library, progress)
+
+
+def _said(campaign: Campaign, odds: Mapping[_Habit, float]) -> Conventions:
+    """odds: over all that needs no habit, the largest first [nats]"""
+    first, *others = odds
+    likely = float(np.logaddexp.reduce(list(odds.values())))
+    found = [Found(fix, odds[first], float(expit(odds[first]))) for fix in first.fixes]
+    alike = [habit.fixes for habit in others if odds[habit] > odds[first] - ALIKE]
+    return said_of(campaign, found, float(expit(likely)), alike, alike)
+
+
+def _unseen(search: Search) -> Iterator[_Habit]:
+    """Those with which the nominal device misses its readings no more than without, but for what any device may."""
+    problem = search.bench.fit
+    missed = _missed(problem)
+    for habit in _doubted(search):
+        try:
+            more = _missed(habit.on(problem)) - missed
+        except NO_FIT:
+            continue
+        if np.all(more <= ALLOWANCE):
+            yield habit
+
+
+def _missed(problem: Problem) -> np.ndarray:
+    """By how much the nominal device misses every channel, relative to its readings (channels,)."""
+    y, stack = problem.stack.y, problem.stack
+    with np.errstate(all="ignore"):  # a wrong reading may ask for what no machine does
+        off = y - problem.predictor.predict(problem.start)
+    return np.sqrt(stack.by_channel(off**2) / np.maximum(stack.by_channel(y**2), TINY))
+
+
+def _doubted(search: Search) -> list[_Habit]:
+    """Factors on conditions that nothing is stated of, and power that counts the other way round."""
+    campaign, found = search.bench.campaign, dict[Fix, _Habit]()
+    for table in search.bench.fit.stack.tables:
+        stated = stated_factors(campaign, table.file)
+        factors = ((f, cost) for f, cost in scales(table, pole_pairs(campaign)) if stated.isdisjoint(f.columns))
+        for fix, cost in chain(factors, power_flow(table)):
+            before = found.get(fix.anywhere, _Habit((), cost))
+            found[fix.anywhere] = replace(before, fixes=(*before.fixes, fix))
+    return list(found.values())
+
+
+def _log_posterior(search: Search, habit: _Habit) -> float:
+    """ln posterior of the best set of effects beside it [nats]: of what leads and its parts, and of what promises."""
+    parts = (names for leading in search.ranked[:LEADERS] for names in _parts(leading))
+    sets = [names for names in (frozenset[str](), *parts) if names in search.fitted]
+    promised = {names: search.log_posterior(names) + _gain(habit, search.fitted[names]) for names in sets}
+    best = sorted(promised, key=lambda names: -promised[names])[:REFITTED]
+    asked = dict.fromkeys([*best, *(names for names in _parts(search.ranked[0]) if names in promised)])
+    return max(search.log_posterior(names) + _refitted_gain(habit, search.fitted[names]) for names in asked)
+
+
+def _parts(names: Set) -> list[Set]:
+    """A set, and what it is without one of its effects."""
+    return [names, *(names - {name} for name in sorted(names))]
+
+
+def _gain(habit: _Habit, hypothesis: Hypothesis) -> float:
+    """What straight lines promise that a fit gains [nats]."""
+    problem, fit = habit.on(hypothesis.problem), hypothesis.fit
+    try:
+        residual = problem.residual(fit.x, fit.at_maximum)
+    except NO_FIT:
+        return -np.inf
+    weights = problem.weights(fit.residual)
+    step = fit.covariance @ (fit.jacobian.T @ (weights * (residual - fit.residual)))
+    x, z = np.split(step, [len(fit.x)])
+    value = problem.misfit(residual - fit.jacobian @ step)
+    return fit.objective - value - 0.5 * float(np.sum((fit.x + x) ** 2)) - prior_cost(fit.z + z)
+
+
+def _refitted_gain(habit: _Habit, hypothesis: Hypothesis) -> float:
+    """What it gains [nats]."""
+    try:
+        return refitted(habit.on(hypothesis.problem), hypothesis.fit).log_evidence - hypothesis.fit.log_evidence
+    except NO_FIT:
+        return -np.inf
