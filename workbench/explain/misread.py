@@ -3,7 +3,7 @@
 How large a sine is, a linear damper does not feel, but friction does: peak to peak in the place of an amplitude looks
 like guides that rub beside friction, beyond doubt. What ``conventions`` cannot see in the nominal device is weighed
 here as effects are, by ln p of the rows to fit, beside what leads and beside its parts;
-one that nearly suffices has a search of its own.
+one that brings a set of them much has a search of its own.
 """
 
 from __future__ import annotations
@@ -56,11 +56,13 @@ def misread(
     none is. An expansion about a drawing is not asked: it knows the conditions of its tables only."""
     if search.bench.model.base.is_expansion or not (search.ranked[0] or search.is_beaten):
         return None
-    nothing, best = search.log_posterior(frozenset()), _best(search)
-    odds = {habit: _log_posterior(search, habit) - habit.cost - best for habit in _unseen(search)}
+    best = _best(search)
+    weighed = [_weighed(search, habit) for habit in _unseen(search)]
+    odds = {one.habit: one.log_posterior - best for one in weighed}
+    most = max(weighed, key=lambda one: one.gain, default=None)
+    if most is not None and max(odds.values()) <= 0 < most.gain - SHARE * (best - search.log_posterior(frozenset())):
+        odds[most.habit] = _best(_searched_again(search, most.habit, library, progress)) - most.habit.cost - best
     ranked = sorted(odds, key=lambda habit: -odds[habit])
-    if ranked and (SHARE - 1) * (best - nothing) < odds[ranked[0]] <= 0:
-        odds[ranked[0]] = _best(_searched_again(search, ranked[0], library, progress)) - ranked[0].cost - best
     if not ranked or odds[ranked[0]] <= 0:
         return None
     return _said(search.bench.campaign, {habit: odds[habit] for habit in ranked})
@@ -120,14 +122,25 @@ def _doubted(search: Search) -> list[_Habit]:
     return list(found.values())
 
 
-def _log_posterior(search: Search, habit: _Habit) -> float:
-    """ln posterior of the best set of effects beside it [nats]: of what leads and its parts, and of what promises."""
+@dataclass(frozen=True, eq=False)
+class _Weighed:
+    """log_posterior: of the best set of effects beside a habit;  gain: what it brought one of them most [nats]"""
+
+    habit: _Habit
+    log_posterior: float
+    gain: float
+
+
+def _weighed(search: Search, habit: _Habit) -> _Weighed:
+    """Beside nothing, what leads and its parts, and what promises."""
     parts = (names for leading in search.ranked[:LEADERS] for names in _parts(leading))
-    sets = [names for names in (frozenset[str](), *parts) if names in search.fitted]
+    sets = [names for names in parts if names in search.fitted]
     promised = {names: search.log_posterior(names) + _gain(habit, search.fitted[names]) for names in sets}
     best = sorted(promised, key=lambda names: -promised[names])[:REFITTED]
-    asked = dict.fromkeys([*best, *(names for names in _parts(search.ranked[0]) if names in promised)])
-    return max(search.log_posterior(names) + _refitted_gain(habit, search.fitted[names]) for names in asked)
+    parts = (names for names in (frozenset[str](), *_parts(search.ranked[0])) if names in search.fitted)
+    gains = {names: _refitted_gain(habit, search.fitted[names]) for names in dict.fromkeys([*best, *parts])}
+    most = max(search.log_posterior(names) + gain for names, gain in gains.items())
+    return _Weighed(habit, most - habit.cost, max(gains.values()))
 
 
 def _parts(names: Set) -> list[Set]:

@@ -89,7 +89,7 @@ def driven(folder: Path, friction: float) -> Path:
 
 def test_power_that_a_generator_gives_is_one_mistake(tmp_path):
     """Torque and power are one habit. What drags besides is found in a search of its own."""
-    found, leading = looked_at(read_campaign(driven(tmp_path / "map", 1.0)))
+    found, leading = looked_at(read_campaign(driven(tmp_path / "map", 0.3)))
     assert leading != {"friction_torque"} and found.names == ("motoring_or_generating",)
     assert '"map.csv" = { invert = ["torque", "power"] }' in found.fix
 
