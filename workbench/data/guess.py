@@ -70,6 +70,8 @@ _FILES: Final = {
 }  # fmt: skip
 _RMS: Final = {"rms", "eff", "effektiv", "arms", "vrms", "aeff", "veff"}
 _MEANS: Final = {*_RMS, "peak", "mean", "avg", "mittel", "ist", "mess", "meas"}  # which value of a quantity it is
+# Words of what was asked for, which is not what was measured where that has a column too.
+_WANTED: Final = {"soll", "sollwert", "set", "setpoint", "target", "ref", "reference", "cmd", "command", "demand"}
 _THERMAL: Final = {"t", "temp", "temperature", "temperatur"}
 _AT_END: Final = re.compile(r"[\s_.#-]*(\d{1,2})$")  # the number that a name ends in
 _BASES: Final = {unit: base for row in QUANTITIES for base in row if base in _UNITS for unit in row}
@@ -86,12 +88,14 @@ class Guess:
 
 
 def guesses(raw: RawTable) -> list[Guess]:
-    """One guess for each column; a quantity is given to the first column that may be it."""
+    """One guess for each column; a quantity is given to the first column that may be it, what was asked for last."""
+    named = ["time" if raw.holds_times(place) else _quantity(h) for place, h in enumerate(raw.headings)]
+    holders: dict[str, int] = {}
+    for place in sorted(range(len(named)), key=lambda place: bool(_WANTED & set(_words(raw.headings[place].name)))):
+        holders.setdefault(named[place], place)
     found: list[Guess] = []
     for place, heading in enumerate(raw.headings):
-        quantity = "time" if raw.holds_times(place) else _quantity(heading)
-        if any(quantity == other.quantity for other in found):
-            quantity = ""
+        quantity = named[place] if holders[named[place]] == place else ""
         unit = "s" if raw.holds_times(place) else heading.unit or _usual_unit(quantity, heading)
         found.append(Guess(place, heading, quantity or _counted(raw, place), unit))
     for settled in (_of_a_sine, _shunted, _of_a_line, _of_lines, _of_a_damper, _of_a_drive):

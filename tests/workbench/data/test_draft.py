@@ -90,6 +90,8 @@ def test_five_lines_lead_from_a_raw_file_to_a_comparison(tmp_path, capsys):
         ("x [°mech.],T [Nm],iU_mes [A],iV_mes [A],ia [A]", ["angle_mech", "torque", "i_a", "i_b", ""], "locked_rotor"),
         ("U_mes [V],Drehzahl", ["voltage", "speed"], "back_emf"),
         ("n (rpm),M_Nm,I1 [A],P_el [W],T_Cu [°C]", ["speed", "torque", "current", "power", "winding_T"], "dyno_map"),
+        ("n_soll [1/min],n_ist [1/min],M_Nm,P_el [W]", ["", "speed", "torque", "power"], "dyno_map"),
+        ("speed set (rpm),U12 [V]", ["speed", "v_ll"], "back_emf"),
         ("n (rpm),U12 [V],P_mech [W]", ["speed", "v_ll", "power"], "no_load"),
         ("v [mm/s],U1 [V]", ["velocity", "voltage"], "back_emf"),
         ("phi [°],L_uv [mH],Lvw [mH],L_wu [mH]", ["angle_mech", "l_ab", "l_?", "l_ca"], "inductance"),
