@@ -34,7 +34,7 @@ class Effect:
     exceeds: input that its first parameter moves, beyond the tolerance that a campaign may declare of it
     signature: what its vanishing size does to readings, to be verified on the model [claims]
     model_error: declared relative error of the effect's own law; zero where the law defines the effect
-    size_error: declared relative error of its first parameter for the same reason
+    size_error: declared relative error of its first parameter for the same reason, where it stands
     model_error_source: what they were measured against, or rest on
     base_rate: how often a bench campaign of such a device has it, before anything is measured [1]
     base_rate_source: why it is believed to be that

@@ -88,7 +88,7 @@ def test_declared_errors_of_laws_are_those_measured(monkeypatch):
     monkeypatch.setattr(law_errors, "MACHINE_TRUTHS", {})
     measured = law_errors.against_truths() | law_errors.against_textbook()
     for name, errors in measured.items():
-        for error, declared in zip(errors, (OWN[name].model_error, OWN[name].size_error)):
+        for error, declared in zip(errors, law_errors.declared(OWN[name])):
             known = declared + (1e-4 if declared else 5e-3)  # errors of sizes below half a per cent are not declared
             assert error <= known, f"{name}: {error:.4f} measured, {declared} declared"
             assert declared <= 1.5 * error + 1e-3, f"{name}: {error:.4f} measured, {declared} declared"

@@ -388,7 +388,7 @@ def estimates(
     weights = among or {hypothesis: 1.0}
     return {
         effect.name(): {name: _estimate(hypothesis, weights, effect, name) for name in parameters_of(effect)}
-        for effect in hypothesis.fit.effects
+        for effect in hypothesis.effects
     }
 
 
