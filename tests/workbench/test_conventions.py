@@ -150,6 +150,43 @@ def test_a_right_campaign_gets_none(bench, group, seed, tmp_path):
     assert found.are_right and found.fix == ""
 
 
+LOOP = """[campaign]
+id = "loop"
+
+[device]
+kind = "electromagnetic damper"
+force_constant_N_per_A = 50
+internal_resistance_ohm = 1.5
+moving_mass_kg = 2
+viscous_damping_Ns_per_m = 20
+
+[tolerance]
+viscous_damping_Ns_per_m = { sigma_rel = 0.15 }
+
+[[table]]
+file = "loop.csv"
+kind = "force_loop"
+constants = { frequency_Hz = 4, amplitude_mm = 3, shunt_ohm = 1 }
+u_random = { force_N = 1 }
+"""
+
+
+@pytest.mark.parametrize("behind, fix", [(0, ""), (90, "-90"), (-90, "90"), (180, "180")])
+def test_a_sine_may_be_counted_from_its_top(behind, fix, tmp_path):
+    """F = (K^2 / (R + R_s) + c) v + m a of x = A sin(phase), with a phase that is read so many degrees less; half a
+    period is a force that counts the other way round as well."""
+    phase, omega, amplitude = np.arange(0.0, 360.0, 7.5), 8 * np.pi, 3e-3
+    v = amplitude * omega * np.cos(np.radians(phase))
+    a = -amplitude * omega**2 * np.sin(np.radians(phase))
+    force = (50**2 / 2.5 + 20) * v + 2 * a + np.random.default_rng(4).standard_normal(len(phase))
+    rows = [f"{angle - behind},{f:.4f}" for angle, f in zip(phase, force)]
+    (tmp_path / "loop.csv").write_text("\n".join(["phase_deg,force_N", *rows]), encoding="utf-8")
+    (tmp_path / "campaign.toml").write_text(LOOP, encoding="utf-8")
+    found = settled(tmp_path)
+    assert set(found.names) == ({"zero", "sign"} if behind == 180 else {"zero"} if behind else set())
+    assert f"{{ offset = {{ phase_deg = {fix}" in found.fix if behind else found.fix == ""
+
+
 # ---- the machine, on a campaign of its own model --------------------------------------------------------------------
 
 DEVICE = {"slots": 12, "poles": 10}

@@ -20,6 +20,7 @@ from workbench.data.conventions import (
     Fix,
     InvertedColumns,
     LineVoltages,
+    Offset,
     Scaled,
     ShiftedColumn,
     SwappedColumns,
@@ -124,7 +125,7 @@ def of_the_table(table: Table, pole_pairs: float | None, angles: dict[str, float
     """Fixes of single columns with what each costs; angles: what the angle may hold -> factor."""
     found = [*scales(table, pole_pairs), *_signs(table), *_exchanges(table), *_shifts(table), *_temperatures(table)]
     found += [(AngleUnit(table.file, what, f), COMMON) for what, f in angles.items() if abs(log(f)) > NEAR]
-    found += power_flow(table)
+    found += [*power_flow(table), *_phases(table)]
     if ANGLE in table.conditions:
         found.append((AngleDirection(table.file), COMMON + 1.5))
     if set(LINES) <= set(table.responses):
@@ -158,6 +159,14 @@ def _signs(table: Table) -> Iterator[tuple[Fix, float]]:
             yield InvertedColumns(table.file, group), COMMON
             for column in group if len(group) > 1 else ():
                 yield InvertedColumns(table.file, (column,)), COMMON
+
+
+def _phases(table: Table) -> Iterator[tuple[Fix, float]]:
+    """A sine that is counted from its top, or the other way, instead of from where it rises."""
+    if "phase" in table.conditions:
+        unit = table.condition_units.get("phase", "")
+        for zero in (-pi / 2, pi / 2, pi):
+            yield Offset(table.file, "phase", zero, unit), COMMON
 
 
 def power_flow(table: Table) -> Iterator[tuple[Fix, float]]:
