@@ -87,6 +87,28 @@ def default_workers() -> int:
     return os.cpu_count() or 1
 
 
+class ThisProcess(Pool):
+    """Runs tasks where they are submitted, one after the other."""
+
+    size = 1
+
+    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
+        """See ``Pool.submit``."""
+        future = Future[Result]()
+        try:
+            future.set_result(function(task))
+        except Exception as error:  # noqa: BLE001 - whoever asks for the result is told
+            future.set_exception(error)
+        return future
+
+    def result(self, future: Future[Result]) -> Result:
+        """See ``Pool.result``."""
+        return future.result()
+
+    def end(self, now: bool = False) -> None:
+        """See ``Pool.end``; there are none."""
+
+
 class Processes(Pool):
     """Processes of this machine, started when the first task comes.
 

@@ -12,7 +12,7 @@ from pipeline.machine_stages import graph_of_machine
 from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.run import Failure, Run
-from pipeline.running import add_pool, page, pool_of, run_all, wanted
+from pipeline.running import add_pool, page, pools_of, run_all, wanted
 from pipeline.sentences import sentences
 from study.machine_file import MachineFile, read_machine
 
@@ -35,8 +35,8 @@ def machine_command(options: argparse.Namespace) -> None:
     graph = graph_of_machine(read)
     folder = PROJECT / "results" / "machines" / read.path.stem if options.out is None else Path(options.out)
     last = wanted(graph, options.to)
-    with sentences(), pool_of(options, graph) as pool:
-        run_all(Run(graph, read, Results(folder), pool), last, _page_of)
+    with sentences(), pools_of(options, graph) as pools:
+        run_all(Run(graph, read, Results(folder), *pools), last, _page_of)
 
 
 def _page_of(read: MachineFile, sections: list[Section], failures: list[Failure]) -> File:

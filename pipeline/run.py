@@ -10,11 +10,12 @@ import subprocess
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from figures.files import File
@@ -26,7 +27,7 @@ from pipeline.graph import Export, Function, Graph, Source, Stage, Step, View, p
 from pipeline.modules import PROJECT
 from pipeline.pools import PooledWorkers, TaskError
 from pipeline.results import Results, ResultsError
-from processes import Pool
+from processes import LostWorker, Pool, ThisProcess
 from study.errors import StudyError
 
 
@@ -50,14 +51,17 @@ class Run:
     """One run of a graph for one study.
 
     study: what the sources read: a ``Study``, or a ``MachineFile``; failures: of this run, in order
+    pool: where tasks run; drawing: where files that people read are made, beside the stages that come next
     """
 
     graph: Graph
     study: Any
     results: Results
     pool: Pool
+    drawing: Pool = field(default_factory=ThisProcess)
     failures: list[Failure] = field(default_factory=list)
     _done: set[str] = field(default_factory=set)  # stages that are current, by this run
+    _drawn: list[_Drawn] = field(default_factory=list)  # in order, until they are kept
     _values: dict[type, Any] = field(default_factory=dict)
     _digests: dict[type, str] = field(default_factory=dict)
 
@@ -133,15 +137,17 @@ class Run:
     # ---- one result -------------------------------------------------------------------------------------------------
 
     def step(self, step: Step) -> None:
-        """Make the artefact of a stage, or the files of an export, where something that it reads changed."""
-
-        def make() -> list[str]:
-            return self._make(step) if isinstance(step, Stage) else self._write_files(step)
-
-        made = self._current(step.name, self.inputs(step.function), make)
-        if isinstance(step, Stage):
-            self._done.add(step.name)
-            self._say(step, made)
+        """Make the artefact of a stage, or begin with the files of an export, where something that it reads changed."""
+        inputs = self.inputs(step.function)
+        if isinstance(step, Export):
+            if self._is_stale(step.name, inputs):
+                task = step.function, self.arguments(step.function), self.results
+                started = self.drawing.submit(draw, task)
+                self._drawn.append(_Drawn(step, inputs, task, started))
+            return
+        made = self._current(step.name, inputs, lambda: self._make(step))
+        self._done.add(step.name)
+        self._say(step, made)
 
     def _say(self, stage: Stage, made: bool) -> None:
         """What a stage has to say at once when it ran, and that it did not."""
@@ -153,18 +159,35 @@ class Run:
 
     def _current(self, name: str, inputs: dict[str, str], make: Callable[[], list[str]]) -> bool:
         """Call ``make`` where the result of this name is not what these inputs give; True when it was called."""
-        record = self.results.record(name)
-        reasons = ["not there"] if record is None else _changes(record["inputs"], inputs)
-        if not reasons:
+        if not self._is_stale(name, inputs):
             return False
-        print(f"{name}: {_listed(reasons)}", flush=True)
-        self.results.forget(name)
         started = time.perf_counter()
         outputs = make()
-        seconds = round(time.perf_counter() - started, 3)
+        self._keep(name, inputs, outputs, time.perf_counter() - started)
+        return True
+
+    def _is_stale(self, name: str, inputs: dict[str, str]) -> bool:
+        """Whether the result of this name is not what these inputs give: that is said, and it looks current no more."""
+        record = self.results.record(name)
+        reasons = ["not there"] if record is None else _changes(record["inputs"], inputs)
+        if reasons:
+            print(f"{name}: {_listed(reasons)}", flush=True)
+            self.results.forget(name)
+        return bool(reasons)
+
+    def _keep(self, name: str, inputs: dict[str, str], outputs: list[str], seconds: float) -> None:
+        seconds = round(seconds, 3)
         self.results.keep(name, outputs, {"result": name, **_circumstances(), "wall_time_s": seconds, "inputs": inputs})
         print(f"{name}: done in {seconds:.1f} s", flush=True)
-        return True
+
+    def _keep_drawn(self, one: _Drawn) -> None:
+        """Files that are finished, or will be; drawn here where whoever did it is lost."""
+        try:
+            outputs, seconds = self.drawing.result(one.started)
+        except LostWorker:
+            self.drawing.recover()
+            outputs, seconds = draw(one.task)
+        self._keep(one.export.name, one.inputs, outputs, seconds)
 
     def _make(self, stage: Stage) -> list[str]:
         kept: list[Checkpoint] = []
@@ -182,29 +205,32 @@ class Run:
             one.remove()
         return outputs
 
-    def _write_files(self, export: Export) -> list[str]:
-        written = []
-        for file in export.function(**self.arguments(export.function)):
-            self.results.write(file.name, file.write)
-            written.append(file.name)
-        return written
-
     # ---- the whole --------------------------------------------------------------------------------------------------
 
     def all(self, stages: tuple[Stage, ...]) -> None:
         """Every stage in order; one that cannot go on is noted, and those that need it are left out."""
         for step in self.graph.steps(stages):
-            try:
-                self.step(step)
-            except Missing as missing:
-                print(f"{step.name}: left out, it needs {missing}", flush=True)
-                if isinstance(step, Stage):  # the files of a stage that failed go without saying
-                    self._note(step, f"left out: it needs {missing}.")
-            except (ResultsError, StudyError):
-                raise
-            except Exception as error:  # noqa: BLE001 - whatever stops a stage must not lose the report
-                self._note(step, self._said(error))
-                print(f"{step.name}: {self.failures[-1].reason}", file=sys.stderr, flush=True)
+            self._try(step, partial(self.step, step))
+            self._keep_all([one for one in self._drawn if one.started.done()])
+        self._keep_all(self._drawn)
+
+    def _keep_all(self, drawn: Sequence[_Drawn]) -> None:
+        for one in tuple(drawn):
+            self._drawn.remove(one)
+            self._try(one.export, partial(self._keep_drawn, one))
+
+    def _try(self, step: Step, go: Callable[[], None]) -> None:
+        try:
+            go()
+        except Missing as missing:
+            print(f"{step.name}: left out, it needs {missing}", flush=True)
+            if isinstance(step, Stage):  # the files of a stage that failed go without saying
+                self._note(step, f"left out: it needs {missing}.")
+        except (ResultsError, StudyError):
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever stops a stage must not lose the report
+            self._note(step, self._said(error))
+            print(f"{step.name}: {self.failures[-1].reason}", file=sys.stderr, flush=True)
 
     def _said(self, error: Exception) -> str:
         """The sentence of a room that refuses what the study asks for; the traceback first for anything else."""
@@ -247,6 +273,29 @@ class Run:
 
         if not self._current("report", self.report_inputs(), make):
             print("report: unchanged, not written again", flush=True)
+
+
+Drawing = tuple[Function, dict[str, Any], Results]  # what makes files, what it is called with, where they go
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Files that are being made. inputs: what they depend on, see ``Run.inputs``"""
+
+    export: Export
+    inputs: dict[str, str]
+    task: Drawing
+    started: Future[tuple[list[str], float]]
+
+
+def draw(task: Drawing) -> tuple[list[str], float]:
+    """Make the files that people read of a stage; their names, and the seconds that it took."""
+    started, written = time.perf_counter(), []
+    function, arguments, results = task
+    for file in function(**arguments):
+        results.write(file.name, file.write)
+        written.append(file.name)
+    return written, time.perf_counter() - started
 
 
 def _changes(old: dict[str, str], new: dict[str, str]) -> list[str]:

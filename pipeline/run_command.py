@@ -23,7 +23,7 @@ from pipeline.machine_command import machine_command
 from pipeline.own_effects import add_own_effects, exit_on_wrong_campaign, own_library
 from pipeline.results import Results, results_of
 from pipeline.run import Failure, Missing, Run
-from pipeline.running import add_pool, page, pool_of, run_all, wanted
+from pipeline.running import add_pool, page, pools_of, run_all, wanted
 from pipeline.sentences import sentences
 from pipeline.stages import graph_of, graph_of_second_design
 from study.errors import StudyError
@@ -58,12 +58,12 @@ def run_command(options: argparse.Namespace) -> None:
     graph = graph_of(study)
     last = wanted(graph, options.to)
     learned = _learned(options)
-    with sentences(), pool_of(options, graph) as pool:
-        first = Run(graph, study, results_of(study), pool)
+    with sentences(), pools_of(options, graph) as pools:
+        first = Run(graph, study, results_of(study), *pools)
         run_all(first, None if learned is not None else last, page_of)
         if learned is not None:
             again = graph_of_second_design(study, learned, first_design(first))
-            run_all(Run(again, study, _results_again(study, options.out), pool), last, page_of)
+            run_all(Run(again, study, _results_again(study, options.out), *pools), last, page_of)
 
 
 def _run_machine(options: argparse.Namespace) -> None:

@@ -51,21 +51,25 @@ def wanted(graph: Graph, name: str | None) -> str | None:
 
 
 @contextmanager
-def pool_of(options: argparse.Namespace, graph: Graph) -> Iterator[Pool]:
-    """Where tasks run, as the arguments of ``add_pool`` say."""
+def pools_of(options: argparse.Namespace, graph: Graph) -> Iterator[tuple[Pool, Pool]]:
+    """Where tasks run, as the arguments of ``add_pool`` say, and where files are drawn meanwhile: plotting libraries
+    are loaded there only."""
     if options.scheduler and options.executor != "dask":
         raise StudyError("--scheduler goes with --executor dask.")
     if options.jobs is not None and options.jobs < 1:
         raise StudyError(f"--jobs {options.jobs}: give one process or more.")
-    modules = modules_of(graph)
+    shared = (*modules_of(graph), *SHARED)
     dask = options.executor == "dask"
-    pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, (*modules, *SHARED))
+    pool: Pool = DaskCluster(options.jobs, options.scheduler) if dask else Processes(options.jobs, shared)
+    pools = pool, Processes(1, shared)
     try:
-        yield pool
+        yield pools
     except BaseException:
-        pool.end(now=True)
+        for one in pools:
+            one.end(now=True)
         raise
-    pool.end()
+    for one in pools:
+        one.end()
 
 
 def modules_of(graph: Graph) -> tuple[str, ...]:

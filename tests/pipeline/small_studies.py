@@ -8,7 +8,6 @@ import re
 from dataclasses import replace
 
 import numpy as np
-from pool_here import Here
 
 from drivetrain.heat_views import mapped_loss
 from optimisation.fits import QUANTITIES, CombinationFits, SectionFits
@@ -18,6 +17,7 @@ from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.run_command import page_of
 from pipeline.stages import graph_of
+from processes import ThisProcess
 from study.inputs_heat import no_loss_data
 from study.read import STUDIES, read_study
 from tests.drivetrain.fitted_machines import NINE, TWELVE, MotorcycleFits
@@ -102,7 +102,7 @@ def _stated(text, section, key, value):
 def here(study, folder, graph=None, last=None):
     """Run the graph of a study up to a stage, or all of it, with its report."""
     graph = graph_of(study) if graph is None else graph
-    run = Run(graph, study, Results(folder), Here())
+    run = Run(graph, study, Results(folder), ThisProcess())
     with run.results.held():
         run.all(graph.usual if last is None else graph.before(graph.stage(last)))
         run.write_report(page_of)

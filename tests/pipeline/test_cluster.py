@@ -6,7 +6,6 @@ import threading
 import time
 
 import pytest
-from pool_here import Here
 from small_studies import fitted, small
 
 from benchmarks import blind_campaigns
@@ -14,6 +13,7 @@ from pipeline.pools import DaskCluster
 from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.stages import graph_of
+from processes import ThisProcess
 
 TINY = {
     "study__id": '"tiny-test-study"',
@@ -72,7 +72,7 @@ def kill_a_worker_after(checkpoint, cluster):
 
 
 def test_the_design_chain_is_the_same_to_the_byte(study, cluster, tmp_path):
-    alone = run_to_the_flux_map(study, tmp_path / "alone", Here())
+    alone = run_to_the_flux_map(study, tmp_path / "alone", ThisProcess())
     killed = kill_a_worker_after(tmp_path / "cluster" / "optima" / "checkpoints" / "sweep, sweep.jsonl", cluster)
     together = run_to_the_flux_map(study, tmp_path / "cluster", cluster)
     assert killed, "no worker was killed on the way"
@@ -82,7 +82,7 @@ def test_the_design_chain_is_the_same_to_the_byte(study, cluster, tmp_path):
 def test_blind_campaigns_are_the_same(cluster, tmp_path):
     chosen = blind_campaigns.wanted("damper", 2, False, ("null", "single"))
     found = []
-    for name, pool in (("here", Here()), ("cluster", cluster)):
+    for name, pool in (("here", ThisProcess()), ("cluster", cluster)):
         blind_campaigns.write_campaigns(tmp_path / name, chosen, pool)
         found.append(blind_campaigns.hashes(tmp_path / name))
     assert len(found[0]) == 3 and found[0] == found[1]

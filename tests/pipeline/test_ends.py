@@ -5,7 +5,6 @@ import html
 import re
 
 import pytest
-from pool_here import Here
 from small_studies import fitted, small
 
 import pipeline.run_command
@@ -14,6 +13,7 @@ from figures.report import Picture, Section
 from pipeline.results import Results
 from pipeline.run import Failure
 from pipeline.run_command import page_of, run_command
+from processes import ThisProcess
 from study.schema import Study
 from study.sentences import section_class
 
@@ -34,7 +34,7 @@ def ended(tmp_path, monkeypatch):
         monkeypatch.setattr("drivetrain.matching.RADII", 4)
         monkeypatch.setattr(pipeline.run_command, "graph_of", lambda study: graph)
         monkeypatch.setattr(pipeline.run_command, "results_of", lambda study: Results(tmp_path / "results"))
-        monkeypatch.setattr(pipeline.running, "Processes", lambda jobs, modules: Here())
+        monkeypatch.setattr(pipeline.running, "Processes", lambda jobs, modules: ThisProcess())
         options = argparse.Namespace(
             study=str(study.path), to=None, jobs=1, executor="processes", scheduler=None, model=None, out=None
         )

@@ -8,7 +8,6 @@ from math import atan2, hypot, pi
 from pathlib import Path
 
 import pytest
-from pool_here import Here
 
 from electrical import turning_stage
 from electrical.point_field import FieldPoints
@@ -22,6 +21,7 @@ from pipeline.machine_stages import graph_of_machine
 from pipeline.modules import PROJECT
 from pipeline.results import Results
 from pipeline.run import Run
+from processes import ThisProcess
 from report.stated_machine import MachineSheet
 from study.machine_file import MACHINES, read_machine
 from study.machine_winding import read_points, read_selection
@@ -106,7 +106,7 @@ def run_to(last, path, folder):
     drawn = [replace(one, files=None) if isinstance(one, Stage) and one.name not in DRAWN else one
              for one in graph.nodes]  # fmt: skip
     graph = replace(graph, nodes=tuple(drawn))
-    run = Run(graph, read_machine(path), Results(folder), Here())
+    run = Run(graph, read_machine(path), Results(folder), ThisProcess())
     run.all(graph.before(graph.stage(last)))
     assert not run.failures
     return run

@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from pool_here import Here
 from toy_graph import (
     GRAPH,
     SQUARES,
@@ -21,6 +20,9 @@ from toy_graph import (
     Squares,
     StudyOfToys,
     Summary,
+    file_of_a_process,
+    file_of_a_survivor,
+    file_of_nobody,
     inputs,
     largest,
 )
@@ -32,10 +34,11 @@ from figures.files import text_file
 from pipeline.graph import Graph, Source, Stage, View
 from pipeline.results import Results, ResultsError
 from pipeline.run import Run
+from processes import Processes, ThisProcess
 
 
-def go(folder, study=StudyOfToys(), graph=GRAPH):
-    run = Run(graph, study, Results(folder), Here())
+def go(folder, study=StudyOfToys(), graph=GRAPH, drawing=ThisProcess()):
+    run = Run(graph, study, Results(folder), ThisProcess(), drawing)
     with run.results.held():
         run.all(graph.stages)
         run.write_report(page)
@@ -104,6 +107,39 @@ def test_what_a_stage_has_to_say_is_said_when_it_ran(tmp_path, capsys):
     assert "summary: the largest is 4, of 3" in said(capsys)
     go(tmp_path, graph=graph)
     assert not any("the largest" in line for line in said(capsys))
+
+
+@pytest.fixture(scope="module")
+def elsewhere():
+    pool = Processes(1)
+    yield pool
+    pool.end()
+
+
+def with_files(function):
+    return replace(GRAPH, nodes=tuple(replace(n, files=function) if n is SUMMARY else n for n in GRAPH.nodes))
+
+
+def test_files_are_drawn_in_a_process_of_their_own(tmp_path, elsewhere, capsys):
+    run = go(tmp_path, graph=with_files(file_of_a_process), drawing=elsewhere)
+    assert int((tmp_path / "summary.txt").read_text()) != os.getpid()
+    assert list(run.results.record("summary.files")["outputs"]) == ["summary.txt"]
+    capsys.readouterr()
+    go(tmp_path, graph=with_files(file_of_a_process), drawing=elsewhere)
+    assert not any("summary.files" in line for line in said(capsys))
+
+
+def test_files_are_drawn_here_where_that_process_dies(tmp_path, elsewhere):
+    run = go(tmp_path, graph=with_files(file_of_a_survivor), drawing=elsewhere)
+    assert int((tmp_path / "summary.txt").read_text()) == os.getpid() and not run.failures
+
+
+def test_files_that_cannot_be_drawn_are_said_and_the_report_is_there(tmp_path, elsewhere, capsys):
+    (failure,) = go(tmp_path, graph=with_files(file_of_nobody), drawing=elsewhere).failures
+    assert failure.stage == "summary.files"
+    assert failure.reason == "a fault of the program: ZeroDivisionError: nothing to divide by"
+    assert "file_of_nobody" in capsys.readouterr().err  # where it was
+    assert (tmp_path / "report.html").read_text().startswith("FAILED summary.files: ")
 
 
 def test_an_equal_value_of_a_view_stops_the_change(tmp_path, capsys):

@@ -5,7 +5,6 @@ from contextlib import contextmanager
 import numpy as np
 import pandas as pd
 import pytest
-from pool_here import Here
 from small_studies import fitted, here, small
 
 from drivetrain.learned import (
@@ -26,6 +25,7 @@ from pipeline.results import Results
 from pipeline.run import Run
 from pipeline.run_command import first_design
 from pipeline.stages import graph_of, graph_of_second_design
+from processes import ThisProcess
 from study.errors import StudyError
 from workbench.data.campaign import read_campaign
 from workbench.errors import WorkbenchError
@@ -77,7 +77,7 @@ def second(study, first, tmp_path_factory):
 
 def test_nothing_learned_leaves_every_input_as_it_was(study, tmp_path):
     graphs = (graph_of(study), graph_of(study, NOTHING_LEARNED), graph_of(study, LEARNED))
-    plain, again, taught = (Run(graph, study, Results(tmp_path), Here()) for graph in graphs)
+    plain, again, taught = (Run(graph, study, Results(tmp_path), ThisProcess()) for graph in graphs)
     for kind in ("FieldCase", "WindingInputs", "LossInputs", "OutcomeInputs"):
         made = next(k for k in _kinds(plain) if k.__name__ == kind)
         assert digest(plain.value(made)) == digest(again.value(made)), kind

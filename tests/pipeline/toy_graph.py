@@ -1,5 +1,7 @@
 """A small graph with everything a large one has: a source, a view, stages with and without tasks, files, sections."""
 
+import multiprocessing
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -83,6 +85,23 @@ def after_stage(summary: Summary) -> Extra:
 
 def summary_files(summary: Summary):
     yield text_file("summary.txt", summary.text + "\n")
+
+
+def file_of_a_process(summary: Summary):
+    """Says who wrote it."""
+    yield text_file("summary.txt", str(os.getpid()))
+
+
+def file_of_a_survivor(summary: Summary):
+    """Says who wrote it; a worker dies of it."""
+    if multiprocessing.parent_process() is not None:
+        os._exit(1)
+    yield from file_of_a_process(summary)
+
+
+def file_of_nobody(summary: Summary):
+    raise ZeroDivisionError("nothing to divide by")
+    yield
 
 
 def squares_section(squares: Squares) -> Section:

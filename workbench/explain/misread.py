@@ -2,8 +2,8 @@
 
 How large a sine is, a linear damper does not feel, but friction does: peak to peak in the place of an amplitude looks
 like guides that rub beside friction, beyond doubt. What ``conventions`` cannot see in the nominal device is weighed
-here as effects are, by ln p of the rows to fit, beside what leads and beside its parts;
-one that brings a set of them much has a search of its own.
+here as effects are, by ln p of the rows to fit, beside what leads and beside its parts; one that turns signs and
+brings a set of them much has a search of its own.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import numpy as np
 from scipy.special import expit
 
 from effects.base import Effect
-from workbench.data.conventions import Fix, applied, pole_pairs, stated_factors
+from workbench.data.conventions import Fix, InvertedColumns, applied, pole_pairs, stated_factors
 from workbench.data.stack import stacked
 from workbench.data.table import Campaign
-from workbench.explain.conventions import ALIKE, Conventions, Found, said_of
+from workbench.explain.conventions import ALIKE, SETTLED, Conventions, Found, said_of
 from workbench.explain.hypotheses import Hypothesis
 from workbench.explain.misfit import ALLOWANCE, TINY
 from workbench.explain.mistakes import power_flow, scales
@@ -40,6 +40,11 @@ class _Habit:
     fixes: tuple[Fix, ...]
     cost: float
 
+    @property
+    def turns(self) -> bool:
+        """Whether it turns signs: effects are others then, while a factor changes their sizes, which fits follow."""
+        return any(isinstance(fix, InvertedColumns) for fix in self.fixes)
+
     def on(self, problem: Problem) -> Problem:
         """The same rows as they were meant."""
         tables = problem.stack.tables
@@ -59,13 +64,11 @@ def misread(
     best = _best(search)
     weighed = [_weighed(search, habit) for habit in _unseen(search)]
     odds = {one.habit: one.log_posterior - best for one in weighed}
-    most = max(weighed, key=lambda one: one.gain, default=None)
-    if most is not None and max(odds.values()) <= 0 < most.gain - SHARE * (best - search.log_posterior(frozenset())):
-        odds[most.habit] = _best(_searched_again(search, most.habit, library, progress)) - most.habit.cost - best
-    ranked = sorted(odds, key=lambda habit: -odds[habit])
-    if not ranked or odds[ranked[0]] <= 0:
-        return None
-    return _said(search.bench.campaign, {habit: odds[habit] for habit in ranked})
+    least = SHARE * (best - search.log_posterior(frozenset()))
+    for habit in (one.habit for one in weighed if one.habit.turns and one.gain > least and odds[one.habit] <= 0):
+        odds[habit] = _best_again(search, habit, library, progress) - habit.cost - best
+    found = _said(search.bench.campaign, odds) if odds else None
+    return found if found is not None and found.probability >= SETTLED else None
 
 
 def _best(search: Search) -> float:
@@ -73,16 +76,19 @@ def _best(search: Search) -> float:
     return max(search.log_posterior(search.ranked[0]), search.best_beside)
 
 
-def _searched_again(search: Search, habit: _Habit, library: Mapping[str, type[Effect]], progress: Progress) -> Search:
-    """The search with the readings as they would have been meant."""
+def _best_again(search: Search, habit: _Habit, library: Mapping[str, type[Effect]], progress: Progress) -> float:
+    """The same of a search with the readings as they would have been meant."""
     progress("effects beside another convention")
     campaign = applied(search.bench.campaign, habit.fixes)
-    return searched(bench_of(search.bench.model, campaign, library), library, progress)
+    try:
+        return _best(searched(bench_of(search.bench.model, campaign, library), library, progress))
+    except NO_FIT:
+        return -np.inf
 
 
 def _said(campaign: Campaign, odds: Mapping[_Habit, float]) -> Conventions:
-    """odds: over all that needs no habit, the largest first [nats]"""
-    first, *others = odds
+    """odds: over all that needs no habit [nats]"""
+    first, *others = sorted(odds, key=lambda habit: -odds[habit])
     likely = float(np.logaddexp.reduce(list(odds.values())))
     found = [Found(fix, odds[first], float(expit(odds[first]))) for fix in first.fixes]
     alike = [habit.fixes for habit in others if odds[habit] > odds[first] - ALIKE]

@@ -74,7 +74,7 @@ _BY_QUANTITY: dict[str, list[Nice]] = {
     "velocity": _both(1e3, COMMON) + _both(100.0, USUAL) + _both(3.6, USUAL),
     "shunt": _TENS,
     "frequency": _both(2 * pi, COMMON) + _both(60.0, USUAL) + _both(1e3, USUAL),
-    "amplitude": _both(1e3, COMMON) + _both(2.0, COMMON, "peak_to_peak") + _PEAK,
+    "amplitude": _both(1e3, COMMON) + _both(2.0, COMMON, "peak_to_peak") + _both(sqrt(2), RARE, "rms_or_peak"),
 }
 _SAME = {"voltage": "v", "current": "i", "re": "force", "im": "force", "damping": "force"}
 

@@ -14,7 +14,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from workbench.likelihood.fit import Fit, Problem
-from workbench.likelihood.marginal import Catalogue
+from workbench.likelihood.marginal import Catalogue, root_beside_one
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ class Gains:
         shift, columns = _added([by_rows for by_rows, _ in felt], len(self.residual))
         behind_shift, behind = _added([by_background for _, by_background in felt], len(self._pull))
         left, pull = self.residual - shift, self._pull - behind_shift
-        root = np.linalg.cholesky(np.eye(columns.shape[1]) + columns.T @ columns - behind.T @ behind)
+        root = root_beside_one((columns.T @ columns - behind.T @ behind)[None])[0]
         moved = np.linalg.solve(root, columns.T @ left - behind.T @ pull)
         least = 0.5 * (left @ left - pull @ pull - moved @ moved)
         spread = self.catalogue.half_log_det + np.log(np.diagonal(root)).sum()

@@ -295,7 +295,7 @@ class Given:
 
     @cached_property
     def _root(self) -> np.ndarray:
-        return _root_beside_one(self._own[None, :, self.inside])[0]
+        return root_beside_one(self._own[None, :, self.inside])[0]
 
     @cached_property
     def of_shifts(self) -> np.ndarray:
@@ -323,14 +323,14 @@ class Given:
         beside = taken[:, places].transpose(1, 2, 0)  # (t, 1 + k, q)
         gram = self.catalogue.blocks[size] - beside @ beside.transpose(0, 2, 1)
         left = on[places] - beside @ own  # (t, 1 + k, R)
-        root = _root_beside_one(gram[:, 1:, 1:])
+        root = root_beside_one(gram[:, 1:, 1:])
         moved = np.linalg.solve(root, left[:, 1:] - gram[:, 1:, :1])
         spread = np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
         gain = left[:, 0] - 0.5 * gram[:, 0, :1] + 0.5 * np.sum(moved**2, axis=1) - spread[:, None]
         return gain - _out_of_reach(root, moved, self.catalogue.reaches[size])
 
 
-def _root_beside_one(gram: np.ndarray) -> np.ndarray:
+def root_beside_one(gram: np.ndarray) -> np.ndarray:
     """Cholesky's factor of 1 + A of products A of columns with one another (t, k, k). None is negative; where columns
     of 1e8 standard deviations leave all but nothing beside others, round-off makes them so."""
     one = np.eye(gram.shape[-1])
