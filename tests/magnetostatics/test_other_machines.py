@@ -76,8 +76,8 @@ def test_two_routes_to_the_torque(name):
 
 
 ROUGH = MeshDensity(gap_edges=192, longest_gap_edge=10.0, gap_layers=2, across_iron=0.5)
-ROUGHER = dict.fromkeys(("outrunner", "Halbach", "consequent", "surface"), replace(ROUGH, gap_edges=144))
-ROUGHER |= {"spoke": replace(ROUGH, gap_edges=96)}
+ROUGHER = dict.fromkeys(("outrunner", "Halbach", "consequent", "surface", "inset"), replace(ROUGH, gap_edges=144))
+ROUGHER |= dict.fromkeys(("spoke", "reluctance"), replace(ROUGH, gap_edges=96))
 
 
 @pytest.mark.slow
