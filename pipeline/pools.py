@@ -113,7 +113,7 @@ def _local_cluster(distributed: ModuleType, size: int, scratch: str) -> Any:
         n_workers=size,
         threads_per_worker=1,
         host="127.0.0.1",
-        dashboard_address=None,
+        dashboard_address=":0",  # any that is free: another cluster may have the usual one
         silence_logs="ERROR",
         local_directory=scratch,
     )
@@ -168,6 +168,11 @@ class PooledWorkers:
         return {name: checkpoint[name] for name in tasks}
 
 
+def _first(names: list[str], most: int = 3) -> str:
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
 def _progress(total: int, done: int, description: str) -> tqdm:
     interval = 0.2 if sys.stderr.isatty() else 10.0  # a log file gets a line now and then
     return tqdm(total=total, initial=done, desc=description, mininterval=interval, dynamic_ncols=True)
@@ -186,23 +191,25 @@ class _Job:
         self.function, self.tasks, self.pool, self.keep = function, tasks, pool, keep
         self.lost: Counter[str] = Counter()  # workers lost while they ran a task
         self.errors: dict[str, BaseException] = {}
+        self.finished = 0
 
     def finish(self, names: list[str]) -> None:
-        """Run the tasks together; after a lost worker run those in flight one by one, which shows who did it."""
+        """Run the tasks together; after a lost worker run those in flight one by one, which shows who did it. Where
+        every one of the first did it, the others are not tried."""
         waiting = list(names)
-        while waiting:
+        while waiting and not self._is_hopeless:
             suspects = self._run_together(waiting, self.pool.size)
-            while suspects:
+            while suspects and not self._is_hopeless:
                 alone = [suspects.pop(0)]
                 suspects = self._run_together(alone, 1) + suspects
 
     def report(self, title: str) -> None:
         """Raise TaskError when a task has no result."""
-        given_up = [name for name, count in self.lost.items() if count >= MOST_LOST_WORKERS]
-        if given_up:
+        if given_up := self._given_up:
+            rest = "all other tasks are finished and kept" if not self._is_hopeless else "no task was finished by any"
             raise TaskError(
-                f"{title}: {', '.join(given_up)} ended its worker process {MOST_LOST_WORKERS} times (out of "
-                "memory, or a crash in a library); all other tasks are finished and kept."
+                f"{title}: {_first(given_up)} ended its worker process {MOST_LOST_WORKERS} times (out of memory, or a "
+                f"crash in a library); {rest}."
             )
         if self.errors:
             name, error = next(iter(self.errors.items()))
@@ -211,6 +218,15 @@ class _Job:
                 f"{title}: {name}{more} failed with {type(error).__name__}: {error}; "
                 "all other tasks are finished and kept."
             ) from error
+
+    @property
+    def _given_up(self) -> list[str]:
+        return [name for name, count in self.lost.items() if count >= MOST_LOST_WORKERS]
+
+    @property
+    def _is_hopeless(self) -> bool:
+        """Whether workers only die: they may not even start."""
+        return not (self.finished or self.errors) and len(self._given_up) >= MOST_LOST_WORKERS
 
     def _run_together(self, waiting: list[str], most: int) -> list[str]:
         """Take tasks from ``waiting`` until it is empty or a worker is lost; then return those to be tried again."""
@@ -246,6 +262,7 @@ class _Job:
             self.errors[name] = error
         else:
             self.keep(name, found)
+            self.finished += 1
             self.lost.pop(name, None)
 
     def _struck(self, names: list[str]) -> list[str]:
