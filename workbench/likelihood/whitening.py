@@ -83,6 +83,8 @@ class Course:
     def _innovations(self) -> tuple[np.ndarray, np.ndarray]:
         """Share of the innovation before and standard deviation of one, of every row (n,), (n,)."""
         echo, variance = np.zeros((2, len(self.rho)))
+        if not self.floor.any():  # the reading before tells all that there is to know
+            return echo, np.sqrt(1 - self.rho**2)
         missed = left = 0.0  # share of the innovation before that is no wandering; variance of it that is left
         for k, (rho, floor) in enumerate(zip(self.rho.tolist(), self.floor.tolist())):
             expected = rho**2 * left + (1 - rho**2) * (1 - floor)
