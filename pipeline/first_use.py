@@ -8,6 +8,10 @@ from __future__ import annotations
 
 import sys
 
+import numpy as np
+
+from actuator.imposed import imposed_motion
+from actuator.model import Actuator
 from geometry.variables import BACK_IRON, ROTOR_RADIUS
 from optimisation.design import Judge
 from optimisation.gradient_optimum import find_optimum_by_gradients
@@ -31,9 +35,11 @@ def fields() -> None:
 
 
 def rides() -> None:
-    """An instant of the study's vehicle at rest."""
+    """An instant of the study's vehicle at rest, and of an actuator that is held."""
     case = ride_case(read_study(_STUDY))
     simulate([Run(case.vehicle, case.curves[0], _INSTANT)])
+    held = np.zeros(3)
+    imposed_motion(Actuator(equivalent_mass=1.0), np.array([0.0, 1e-4, 2e-4]), held, held, held)
 
 
 if __name__ == "__main__":

@@ -52,8 +52,8 @@ def wanted(graph: Graph, name: str | None) -> str | None:
 
 @contextmanager
 def pools_of(options: argparse.Namespace, graph: Graph) -> Iterator[tuple[Pool, Pool]]:
-    """Where tasks run, as the arguments of ``add_pool`` say, and where files are drawn meanwhile: plotting libraries
-    are loaded there only."""
+    """Where tasks run, as the arguments of ``add_pool`` say, and where files are drawn meanwhile: what that loads and
+    leaves behind does not make the process of the stages larger."""
     if options.scheduler and options.executor != "dask":
         raise StudyError("--scheduler goes with --executor dask.")
     if options.jobs is not None and options.jobs < 1:
