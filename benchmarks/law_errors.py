@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from benchmarks.virtual_benches import damper_truth, dq_truth
+from benchmarks.virtual_benches import damper_bench, damper_truth, dq_bench, dq_truth
 from benchmarks.virtual_benches.damper_truth import TrueDamper
 from benchmarks.virtual_benches.dq_truth import TrueMachine
 from effects.base import Effect
@@ -38,7 +38,7 @@ from effects.instrument.sensor_lag import SensorLag
 from effects.library import package_effects
 from effects.mechanical.viscosity_temperature import ViscosityTemperature
 from effects.parameter import parameters_of
-from workbench.data.table import Response, Table
+from workbench.data.table import Response, Table, Tolerance
 from workbench.models.damper.model import DamperModel
 from workbench.models.dq.model import DqModel
 from workbench.models.model import Model
@@ -81,11 +81,7 @@ DQ_TABLES = (
 )
 DAMPER = Model(DamperModel(), Damper(60.0, 1.2, 2.0, 20.0, test_velocity=0.3))
 DQ = Model(DqModel(), DqMachine(4, 0.1, 3e-3, 4e-3, 0.5))
-# Of such devices by the virtual benches, relative.
-TOLERANCES: Mapping[type, Mapping[str, float]] = {
-    Damper: {"force_constant": 0.01, "internal_resistance": 0.01, "moving_mass": 0.02, "viscous_damping": 0.15},
-    DqMachine: {"psi_m": 0.01, "inductance_d": 0.03, "inductance_q": 0.03, "resistance": 0.02},
-}
+TOLERANCES: Mapping[type, Mapping[str, float]] = {Damper: damper_bench.TOLERANCE, DqMachine: dq_bench.TOLERANCE}
 _FLOOR = {"force": 0.3, "voltage": 0.02, "re": 1.5, "im": 1.5, "v_ll": 0.05, "torque": 0.03, "current": 0.03}
 _SHARE = {"force": 0.008, "voltage": 0.003, "re": 0.01, "im": 0.01}
 
@@ -167,9 +163,10 @@ def law_error(effect: type[Effect], model: Model, base: Answers, other: Answers,
 
 def _within(model: Model, x: np.ndarray) -> Model:
     """The model with its tolerances so many standard deviations from the drawing (4,); there for none."""
-    sigmas = zip(TOLERANCES[type(model.design)].items(), x)
-    moved = {name: getattr(model.design, name) * (1 + sigma * z) for (name, sigma), z in sigmas}
-    return replace(model, design=replace(model.design, **moved))
+    design = model.design
+    for (name, sigma), z in zip(TOLERANCES[type(design)].items(), x):
+        design = model.base.with_tolerance(design, Tolerance(name, sigma, relative=True), z)
+    return replace(model, design=design)
 
 
 SIZES = (0.0, 1.0)  # of the first parameter, in standard deviations of its prior

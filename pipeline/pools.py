@@ -168,7 +168,8 @@ class PooledWorkers:
         return {name: checkpoint[name] for name in tasks}
 
 
-def _first(names: list[str], most: int = 3) -> str:
+def first_of(names: list[str], most: int = 3) -> str:
+    """The first of many in words, and how many more there are."""
     more = len(names) - most
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
@@ -208,8 +209,8 @@ class _Job:
         if given_up := self._given_up:
             rest = "all other tasks are finished and kept" if not self._is_hopeless else "no task was finished by any"
             raise TaskError(
-                f"{title}: {_first(given_up)} ended its worker process {MOST_LOST_WORKERS} times (out of memory, or a "
-                f"crash in a library); {rest}."
+                f"{title}: {first_of(given_up)} ended its worker process {MOST_LOST_WORKERS} times (out of memory, or "
+                f"a crash in a library); {rest}."
             )
         if self.errors:
             name, error = next(iter(self.errors.items()))

@@ -25,7 +25,7 @@ from pipeline.closure import code_digest, packages_of
 from pipeline.codec import digest
 from pipeline.graph import Export, Function, Graph, Source, Stage, Step, View, parameters, takes_workers
 from pipeline.modules import PROJECT
-from pipeline.pools import PooledWorkers, TaskError
+from pipeline.pools import PooledWorkers, TaskError, first_of
 from pipeline.results import Results, ResultsError
 from processes import LostWorker, Pool, ThisProcess
 from study.errors import StudyError
@@ -171,7 +171,7 @@ class Run:
         record = self.results.record(name)
         reasons = ["not there"] if record is None else _changes(record["inputs"], inputs)
         if reasons:
-            print(f"{name}: {_listed(reasons)}", flush=True)
+            print(f"{name}: {first_of(reasons)}", flush=True)
             self.results.forget(name)
         return bool(reasons)
 
@@ -300,11 +300,6 @@ def draw(task: Drawing) -> tuple[list[str], float]:
 
 def _changes(old: dict[str, str], new: dict[str, str]) -> list[str]:
     return [f"{name} changed" for name in {**old, **new} if old.get(name) != new.get(name)]
-
-
-def _listed(reasons: list[str], most: int = 3) -> str:
-    rest = len(reasons) - most
-    return ", ".join(reasons[:most]) + (f" and {rest} more" if rest > 0 else "")
 
 
 def _circumstances() -> dict[str, Any]:

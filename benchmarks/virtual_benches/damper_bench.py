@@ -17,6 +17,12 @@ FREQUENCIES = np.geomspace(1.0, 40.0, 12)  # Hz
 SWEEPS = ((1.0, 2e-3), (5.0, 2e-3), (1e6, 2e-3), (1.0, 5e-4))  # shunt, amplitude of an impedance sweep
 COPPER = 0.00393  # 1/K, IEC 60028
 
+TOLERANCE = {  # relative
+    "force_constant_N_per_A": 0.01,
+    "internal_resistance_ohm": 0.01,
+    "moving_mass_kg": 0.02,
+    "viscous_damping_Ns_per_m": 0.15,
+}
 
 @dataclass(frozen=True)
 class State:
@@ -139,9 +145,8 @@ class DamperBench:
             "moving_mass_kg": m,
             "viscous_damping_Ns_per_m": c,
         }
-        tolerance = dict(zip(list(device)[1:], (0.01, 0.01, 0.02, 0.15)))
         systematic = {"force_gain": ("gain", 0.003), "force_offset_N": ("offset", 0.15)}
-        return Setup(device, tolerance, systematic, _layouts(), State(TrueDamper(k, r, m, c)), int(rng.integers(2, 4)))
+        return Setup(device, TOLERANCE, systematic, _layouts(), State(TrueDamper(k, r, m, c)), int(rng.integers(2, 4)))
 
     def moved(self, setup: Setup, state: State, name: str, z: float) -> State:
         if name in setup.systematic:

@@ -19,6 +19,12 @@ I_D, I_Q = np.array([0.0, -8.0, 5.0]), np.array([-16.0, -8.0, 8.0, 16.0, 24.0]) 
 COPPER = 0.00393  # 1/K, IEC 60028
 FUNDAMENTAL = 4 / np.pi  # of a square wave
 
+TOLERANCE = {  # relative
+    "psi_m_Vs": 0.01,
+    "inductance_d_H": 0.03,
+    "inductance_q_H": 0.03,
+    "resistance_ohm": 0.02,
+}
 
 @dataclass(frozen=True)
 class State:
@@ -119,7 +125,6 @@ class DqBench:
             "inductance_q_H": l_q,
             "resistance_ohm": r,
         }
-        tolerance = dict(zip(list(device)[2:], (0.01, 0.03, 0.03, 0.02)))
         systematic = {
             "torque_gain": ("gain", 0.003),
             "torque_offset_Nm": ("offset", 0.02),
@@ -127,7 +132,7 @@ class DqBench:
             "current_gain": ("gain", 0.003),
         }
         state = State(TrueMachine(4, psi, l_d, l_q, r))
-        return Setup(device, tolerance, systematic, _layouts(), state, int(rng.integers(2, 4)))
+        return Setup(device, TOLERANCE, systematic, _layouts(), state, int(rng.integers(2, 4)))
 
     def moved(self, setup: Setup, state: State, name: str, z: float) -> State:
         if name in setup.systematic:

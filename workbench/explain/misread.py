@@ -26,7 +26,7 @@ from workbench.explain.mistakes import power_flow, scales
 from workbench.explain.search import searched
 from workbench.explain.tried import NO_FIT, Progress, Search, Set
 from workbench.likelihood.bench import bench_of
-from workbench.likelihood.fit import Problem, prior_cost, refitted
+from workbench.likelihood.fit import Problem, promised, refitted
 
 LEADERS = 8  # fitted sets beside which a convention is tried, and those of them with an effect less
 REFITTED = 3  # of these, which promise most
@@ -139,10 +139,10 @@ class _Weighed:
 
 def _weighed(search: Search, habit: _Habit) -> _Weighed:
     """Beside nothing, what leads and its parts, and what promises."""
-    parts = (names for leading in search.ranked[:LEADERS] for names in _parts(leading))
-    sets = [names for names in parts if names in search.fitted]
-    promised = {names: search.log_posterior(names) + _gain(habit, search.fitted[names]) for names in sets}
-    best = sorted(promised, key=lambda names: -promised[names])[:REFITTED]
+    near = (names for leading in search.ranked[:LEADERS] for names in _parts(leading))
+    sets = [names for names in near if names in search.fitted]
+    promises = {names: search.log_posterior(names) + _gain(habit, search.fitted[names]) for names in sets}
+    best = sorted(promises, key=lambda names: -promises[names])[:REFITTED]
     parts = (names for names in (frozenset[str](), *_parts(search.ranked[0])) if names in search.fitted)
     gains = {names: _refitted_gain(habit, search.fitted[names]) for names in dict.fromkeys([*best, *parts])}
     most = max(search.log_posterior(names) + gain for names, gain in gains.items())
@@ -155,17 +155,11 @@ def _parts(names: Set) -> list[Set]:
 
 
 def _gain(habit: _Habit, hypothesis: Hypothesis) -> float:
-    """What straight lines promise that a fit gains [nats]."""
-    problem, fit = habit.on(hypothesis.problem), hypothesis.fit
+    """What a fit is promised to gain [nats]."""
     try:
-        residual = problem.residual(fit.x, fit.at_maximum)
+        return promised(habit.on(hypothesis.problem), hypothesis.fit)
     except NO_FIT:
         return -np.inf
-    weights = problem.weights(fit.residual)
-    step = fit.covariance @ (fit.jacobian.T @ (weights * (residual - fit.residual)))
-    x, z = np.split(step, [len(fit.x)])
-    value = problem.misfit(residual - fit.jacobian @ step)
-    return fit.objective - value - 0.5 * float(np.sum((fit.x + x) ** 2)) - prior_cost(fit.z + z)
 
 
 def _refitted_gain(habit: _Habit, hypothesis: Hypothesis) -> float:

@@ -164,6 +164,19 @@ def refitted(problem: Problem, fit: Fit) -> Fit:
     return search.result(p, fit.slopes) if gain < problem.close(value) else _with_new_slopes(search, p)
 
 
+def promised(problem: Problem, fit: Fit) -> float:
+    """What a fit of the same effects is promised to gain by straight lines where the problem is another one [nats].
+
+    Raises:
+        WorkbenchError: the model has no answer there.
+    """
+    residual = problem.residual(fit.x, fit.at_maximum)
+    step = fit.covariance @ (fit.jacobian.T @ (problem.weights(fit.residual) * (residual - fit.residual)))
+    x, z = np.split(step, [len(fit.x)])
+    value = problem.misfit(residual - fit.jacobian @ step)
+    return fit.objective - value - 0.5 * float(np.sum((fit.x + x) ** 2)) - prior_cost(fit.z + z)
+
+
 def _with_new_slopes(search: _Search, p: np.ndarray) -> Fit:
     """The fit from p on, its slopes taken anew until that gains no more: each time by the same share of what the time
     before did; of one that lies far behind what leads, nothing that matters."""

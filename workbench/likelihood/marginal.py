@@ -338,8 +338,9 @@ def root_beside_one(gram: np.ndarray) -> np.ndarray:
         return np.linalg.cholesky(one + gram)
     except np.linalg.LinAlgError:
         sizes, directions = np.linalg.eigh(gram)
-        positive = directions * np.maximum(sizes, 0.0)[:, None] @ directions.transpose(0, 2, 1)
-        return np.linalg.cholesky(one + positive)
+        half = np.sqrt(1.0 + np.maximum(sizes, 0.0))[..., None] * directions.transpose(0, 2, 1)
+        root = np.linalg.qr(half, mode="r").transpose(0, 2, 1)  # of half^T half, which is never formed
+        return root * np.sign(np.diagonal(root, axis1=1, axis2=2))[:, None, :]
 
 
 def _out_of_reach(root: np.ndarray, moved: np.ndarray, reach: np.ndarray) -> np.ndarray:
