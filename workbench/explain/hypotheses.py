@@ -17,7 +17,17 @@ from effects.prior import Uniform
 from workbench.errors import WorkbenchError
 from workbench.findings import Estimate, SizePosterior
 from workbench.likelihood.bench import Bench, sharpened
-from workbench.likelihood.fit import FAR, Fit, Problem, fitted, possible, prior_cost, refitted, with_parameters
+from workbench.likelihood.fit import (
+    FAR,
+    Fit,
+    Problem,
+    fitted,
+    linearised,
+    possible,
+    prior_cost,
+    refitted,
+    with_parameters,
+)
 from workbench.likelihood.own_errors import shapes_of_laws
 from workbench.likelihood.unknown import Seen, Shape, expected, seen
 from workbench.likelihood.whitening import LawError, law_error
@@ -105,6 +115,16 @@ def _fitted_from(
         fit = refitted(problem, fit)
     evidence = fit.log_evidence if len(z) != 1 else _integrated(problem, fit)[2]
     return Hypothesis(fit, problem, evidence - log_det, log_det)
+
+
+def held_at(bench: Bench, fit: Fit, effects: Sequence[Effect], z: np.ndarray) -> Hypothesis:
+    """Some effects of a fit where it ended, the others taken away and nothing fitted again.
+
+    effects: null effects;  z: their parameters one after the other (k,)
+    """
+    problem, log_det = _with_law_error_at(bench, effects, np.concatenate([fit.x, z]))
+    held = linearised(problem, fit.x, effects, z)
+    return Hypothesis(held, problem, held.log_evidence - log_det, log_det)
 
 
 def _with_law_error_at(bench: Bench, effects: Sequence[Effect], place: np.ndarray) -> tuple[Problem, float]:

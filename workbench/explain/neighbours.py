@@ -6,14 +6,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import combinations
 
 import numpy as np
 
 from effects.base import Effect
 from effects.parameter import parameters_of
 from workbench.errors import WorkbenchError
-from workbench.explain.hypotheses import Hypothesis
-from workbench.explain.tried import NEGLIGIBLE, Progress, Promise, Search, Set, fit_set, label_of, start_from
+from workbench.explain.explore import explored
+from workbench.explain.hypotheses import Hypothesis, held_at
+from workbench.explain.tried import (
+    NEGLIGIBLE,
+    REACH,
+    Progress,
+    Promise,
+    Search,
+    Set,
+    additions,
+    fit_set,
+    label_of,
+    start_from,
+)
 from workbench.likelihood.fit import with_parameters
 from workbench.likelihood.predictor import STEP, Predictor
 from workbench.likelihood.signatures import Signature
@@ -21,6 +34,7 @@ from workbench.likelihood.unknown_laws import LAWS
 from workbench.likelihood.whitening import Whitener, law_error
 
 EXCHANGED = 2  # others that are tried in the place of each effect of what leads
+TWO_EXCHANGED = 4  # sets that are tried in the place of what leads, that lack two of its effects
 PULLED = 3.0  # standard deviations of a tolerance, from which its place is offered to effects
 STEPS = 2  # of Gauss and Newton towards the size at which another effect does the same
 ALMOST = 0.7  # of the change by an effect, that another may leave to be tried in its place
@@ -190,6 +204,32 @@ def _twins(
         start_from(search, whole.fit, kept | {other}, (*rest, effect), x, np.concatenate([z_rest, z]))
         for _, other, effect, z in known + laws
     ]
+
+
+def exchange_two(search: Search, leader: Set, progress: Progress) -> None:
+    """What leads is weighed against the few sets that lack two of its effects, have one or two others and promise most:
+    two may do together what two others do, none of which takes the place of one. Promises are made where it ended:
+    beside a fit without both, which pulls tolerances far, they were wrong by tens of nats."""
+    away = combinations(sorted(leader), min(2, len(leader))) if leader else ()
+    starts = sorted(promise for gone in away for promise in _instead_of_two(search, leader, leader.difference(gone)))
+    for promise in starts[:TWO_EXCHANGED]:
+        progress("fitting " + promise.label)
+        fit_set(search, promise)
+
+
+def _instead_of_two(search: Search, leader: Set, kept: Set) -> list[Promise]:
+    """The sets with some effects of what leads that promise about as much as it does by the same linear algebra, each
+    with how much more."""
+    whole = search.fitted[leader]
+    held = held_at(search.bench, whole.fit, *_part_of(whole, kept))
+    added = additions(search, held, held.fit.jacobian, search.signatures_beside(whole))
+    (looked_at,) = explored(added.names, [added.readings], search.beliefs, kept, len(kept) + 2)
+    every = {kept | names: found for names, found in looked_at.items() if names}
+    if leader not in every:
+        return []
+    value = {n: added.gain(e) + search.beliefs.log_prior(n) for n, e in every.items()}
+    more = {n: (e, value[n] - value[leader]) for n, e in every.items() if n not in search.fitted}
+    return added.promises({n: (e, gain) for n, (e, gain) in more.items() if gain >= -REACH})
 
 
 def less_one(search: Search, progress: Progress) -> None:

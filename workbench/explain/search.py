@@ -17,7 +17,7 @@ from workbench.errors import WorkbenchError
 from workbench.explain.beside import less_one_beside, weigh, weigh_unknown
 from workbench.explain.explore import Beliefs, beliefs_of
 from workbench.explain.hypotheses import Hypothesis, exact, null_of
-from workbench.explain.neighbours import exchange, less_one
+from workbench.explain.neighbours import exchange, exchange_two, less_one
 from workbench.explain.tried import (
     NO_FIT,
     REACH,
@@ -39,8 +39,6 @@ FITS = 60  # fits of sets of effects at most
 FIRST_FITS = 8  # after which what leads is asked for the first time which readings are wild
 PATIENCE = 8  # fits for every unknown function that is weighed before the end
 LEAST_FITS = 3  # fits at least: a table of one effect tells nobody what was thought of
-RIVALS = 2  # sets without an effect of what leads, fitted where others are not:
-MODEST = 30.0  # nats behind what leads, that they promise at least: promises were too modest by up to 25
 EXACT = 8  # fits that are repeated exactly, where the base model answers by an expansion, and what leads then
 DOUBT = 8.0  # nats that an exact model may give an effect of which no fit is exact: up to 7.5 were seen
 ROUNDS = 3  # of sets and exact models at most
@@ -162,7 +160,7 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
             if names in search.fitted and names not in search.expanded:
                 expand(search, search.fitted[names], heap)
         exchange(search, leader, progress)
-        _rivals(search, heap, leader, progress)
+        exchange_two(search, leader, progress)
         _best_first(search, heap, progress)
 
 
@@ -170,24 +168,6 @@ def _weigh_leader(search: Search, progress: Progress) -> None:
     """An unknown function beside what leads."""
     progress("an unknown function")
     weigh(search, search.ranked[0])
-
-
-def _rivals(search: Search, heap: list[Promise], leader: Set, progress: Progress) -> None:
-    """What leads is weighed against the most promising sets that lack one of its effects: where tolerances are pulled
-    far and sizes are large, promises are too modest."""
-    for name in sorted(leader):
-        for promise in _most_promising(search, heap, name):
-            progress("fitting " + promise.label)
-            if fit_set(search, promise) and _leads_on(search, promise.every):
-                expand(search, search.fitted[promise.every], heap)
-
-
-def _most_promising(search: Search, heap: list[Promise], name: str) -> list[Promise]:
-    """The rivals that lack an effect of what leads, as they promise now: once the smaller of two sets is fitted, the
-    larger promises less than it did."""
-    least = search.log_posterior(search.ranked[0]) - MODEST
-    _renew(search, heap)
-    return sorted(p for p in heap if name not in p.every and -p.order >= least)[:RIVALS]
 
 
 def _leads_on(search: Search, names: Set) -> bool:

@@ -26,7 +26,7 @@ from workbench.likelihood.gains import Gains
 from workbench.likelihood.marginal import Readings
 from workbench.likelihood.signatures import Signatures
 from workbench.likelihood.unknown import Shape
-from workbench.likelihood.unknown_laws import LAW_ERRORS, LAWS, UnknownLaw
+from workbench.likelihood.unknown_laws import LAWS, UnknownLaw
 
 REACH = 2.0  # nats behind the best, beyond which a set is left at what it promises: promises were good to one nat
 SLACK = 0.2  # of a promised gain, by which a promise may be too modest where the model is not linear
@@ -34,6 +34,7 @@ NOTHING = 1.0  # nat, that is no evidence of anything
 NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
 STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
 MOVED = 3.0  # of the noise of all readings, that one standard deviation of a tolerance makes more or less beside a fit
+IMITATED = 50.0  # times what is left, that an effect explains which stands for no unknown law: those that did, up to 28
 KEPT = 40  # promises beside one fit that are followed up
 NO_FIT = (WorkbenchError, ArithmeticError, np.linalg.LinAlgError)
 
@@ -94,7 +95,7 @@ class Additions:
             effects.append(signature.effect)
             z.append(signature.at(term.place, np.clip(end.weights[place : place + count], -2.0, 2.0)))
             place += count
-        forms = self.search.forms.get(self.parent.names, 0.0) + found.forms
+        forms = self.search.forms.get(self.parent.names, self.search.own_forms(self.parent.names)) + found.forms
         x = np.clip(background[:m], -FAR, FAR)
         return Promise(-promised, label_of(every), every, tuple(effects), x, np.concatenate(z), forms, fit.slopes)
 
@@ -185,6 +186,10 @@ class Search:
             return here
         return known[int(np.argmin(moved))]
 
+    def own_forms(self, names: Set) -> float:
+        """What forms add to ln evidence where only those count that a fit has [nats]."""
+        return -sum(log(len(self.signatures.found[name])) for name in sorted(names))
+
     def log_evidence_beside(self, names: Set) -> float:
         """Of a set beside an unknown function, all its forms together [nats]. An unknown function makes good what an
         expansion lacks: an exact model gives nothing more, but may take."""
@@ -274,13 +279,15 @@ class Search:
 
     def stands_out(self, name: str, names: Set) -> bool:
         """Whether an effect of a set explains so much that it cannot stand for the law of an unknown function beside
-        the set: one that does is followed to a tenth at best, which leaves a hundredth of what it explains, in
-        channels that the effect changes."""
-        if names not in self.fitted:
+        the set: one that does leaves a good part of what it explains, in channels that the effect changes. A set
+        that was only guessed is taken for the most of it that was fitted."""
+        holding = [part for part in self.fitted if name in part and part <= names]
+        if not holding:
             return False
+        nearest = max(holding, key=lambda part: (len(part), self.log_evidence(part)))
         without = max(self.log_evidence(part) for part in self.fitted if part <= names - {name})
-        explained = self.log_evidence(names) - without
-        return explained * LAW_ERRORS[-1] ** 2 > self._left_to_unknown(name, names)
+        explained = self.log_evidence(nearest) - without
+        return explained > IMITATED * self._left_to_unknown(name, nearest)
 
     def _left_to_unknown(self, name: str, names: Set) -> float:
         """What suits best of unknown functions and laws gains beside a set, no less than what is nothing; of functions
@@ -335,8 +342,7 @@ def start_from(
     search: Search, fit: Fit, every: Set, effects: tuple[Effect, ...], x: np.ndarray, z: np.ndarray
 ) -> Promise:
     """A fit of effects of which only the forms that they have count, near another fit."""
-    forms = -sum(log(len(search.signatures.found[name])) for name in sorted(every))
-    return Promise(0.0, label_of(every), every, effects, x, z, forms, fit.slopes)
+    return Promise(0.0, label_of(every), every, effects, x, z, search.own_forms(every), fit.slopes)
 
 
 def promised_of(search: Search, every: Set) -> float:
@@ -444,9 +450,15 @@ def _guesses_beside(search: Search, have: Set, added: Additions) -> dict[Set, tu
     return {n: (e, guess - less[n]) for n, (e, guess) in found.items() if n not in search.fitted}
 
 
-def additions(search: Search, hypothesis: Hypothesis, background: np.ndarray) -> Additions:
-    """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)"""
+def additions(
+    search: Search, hypothesis: Hypothesis, background: np.ndarray, signatures: Signatures | None = None
+) -> Additions:
+    """What may be added beside a fit. background: whitened columns that are in every explanation there (n, m)
+
+    signatures: of all effects near there; those beside the fit where None are given
+    """
     slopes, white = hypothesis.fit.slopes, hypothesis.problem.white
-    names = Names(search.signatures_beside(hypothesis).catalogue_at(slopes, background, white, hypothesis.names))
+    near = signatures or search.signatures_beside(hypothesis)
+    names = Names(near.catalogue_at(slopes, background, white, hypothesis.names))
     gains = Gains(hypothesis.problem, hypothesis.fit, at_zero(hypothesis), names.catalogue)
     return Additions(search, hypothesis, names, gains)

@@ -35,7 +35,7 @@ from workbench.explain.hypotheses import (
     turned,
     with_law_error,
 )
-from workbench.explain.neighbours import exchange, less_one
+from workbench.explain.neighbours import exchange, exchange_two, less_one
 from workbench.explain.search import best_alone, searched
 from workbench.explain.tried import Promise, Search, expand, fit_set
 from workbench.likelihood.bench import SHARP, bench_of, sharpened
@@ -737,18 +737,20 @@ def two_that_explain_much(tmp_path):
     return search, pair.names, beside
 
 
-def test_an_effect_stands_out_that_explains_a_hundred_times_what_is_unknown_beside_it(two_that_explain_much):
-    """An unknown function beside both gains 3.9, then 5, a law 9."""
+def test_an_effect_stands_out_that_explains_fifty_times_what_is_unknown_beside_it(two_that_explain_much):
+    """An unknown function beside both gains 7.9, then 10, a law 17."""
     search, both, beside = two_that_explain_much
 
     def standing_out():
         return [name for name in sorted(both) if search.stands_out(name, both)]
 
     assert standing_out() == [], "nothing is known of what is unknown beside them"
-    for gain, expected in ((3.9, ["wave2", "wave3"]), (5.0, ["wave2"])):
+    for gain, expected in ((7.9, ["wave2", "wave3"]), (10.0, ["wave2"])):
         search.beside[both] = beside(gain, "pull.force")
         assert standing_out() == expected
-    search.fitted[both | {next(iter(LAWS))}] = replace(search.fitted[both], log_evidence=909.0)
+        more = [name for name in sorted(both) if search.stands_out(name, both | {"wave4"})]
+        assert more == expected, "a set that was only guessed is taken for the most of it that was fitted"
+    search.fitted[both | {next(iter(LAWS))}] = replace(search.fitted[both], log_evidence=917.0)
     assert standing_out() == []
     assert not search.stands_out("wave4", frozenset(("wave4",))), "what was not fitted explains nothing"
 
@@ -758,7 +760,7 @@ def test_an_effect_stands_for_no_function_in_channels_that_it_leaves_as_they_are
     for channel, stands_out in (("pull.force", False), ("pull.temperature", True)):
         search.beside[both] = beside(50.0, channel)
         assert search.stands_out("wave2", both) is stands_out
-    search.fitted[both] = replace(search.fitted[both], log_evidence=100.0 + 90.0)
+    search.fitted[both] = replace(search.fitted[both], log_evidence=100.0 + 40.0)
     assert not search.stands_out("wave2", both), "what explains little may be what such a function leaves"
 
 
@@ -835,33 +837,40 @@ def test_a_twin_is_found_of_what_a_tolerance_makes_good_but_for_its_curvature(tm
     assert search.log_evidence(frozenset(("twin",))) == pytest.approx(found.log_evidence, abs=1e-3)
 
 
-def rivals_of(bench, promised):
-    """Sets of one wave that are fitted for they lack what leads, by the waves' numbers. promised: what each promises
-    behind the lead now [nats]; when they were made they all promised the same"""
-    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
-    search = searching(bench, {frozenset(): null_of(bench), one.names: one})
-    sets = {k: frozenset((f"wave{k}",)) for k in promised}
-    for k, names in sets.items():  # of evidence below the null's, a share of which nobody promises
-        search.guessed[names] = search.log_posterior(one.names) - search.beliefs.log_prior(names) - promised[k]
-    heap = [
-        Promise(0.0, f"wave{k}", names, (WAVES[f"wave{k}"](),), bench.null.x, np.zeros(1), 0.0)
-        for k, names in sets.items()
-    ]
-    search_module._rivals(search, heap, one.names, lambda words: None)
-    return {k for k, names in sets.items() if names in search.fitted}
+@pytest.mark.parametrize("wrong_by, is_fitted", ((0.0, True), (0.3, False)))
+def test_what_leads_is_weighed_against_two_that_do_together_what_two_of_its_effects_do(tmp_path, wrong_by, is_fitted):
+    """Two waves, and two effects that are their sum and their difference: neither wave takes the place of one of these.
+    Where another wave is hidden as well, that only the sum has, the two waves promise too little."""
 
+    def mixed(name, sign):
+        def on_response(self, response, conditions, kind, design):
+            x = conditions["displacement"]
+            waves = np.cos(600 * x) + sign * np.cos(900 * x) + wrong_by * np.cos(1500 * x)
+            return {**response, "force": response["force"] + self.size * waves}
 
-def test_what_leads_is_weighed_against_the_best_without_each_of_its_effects(tmp_path):
-    """As they promise now; none that could not lead if it had promised as much too little as was ever seen."""
-    bench = sure_of_noise(tmp_path, extra=lambda x: 0.06 * np.cos(600 * x))
-    assert rivals_of(bench, {3: 25.0, 4: 20.0, 5: 15.0}) == {4, 5}
-    assert rivals_of(bench, {3: 15.0, 4: 20.0, 5: 25.0}) == {3, 4}
-    assert rivals_of(bench, {3: 300.0, 4: 200.0, 5: 15.0}) == {5}
+        return type(name, (Bump,), {"name": classmethod(lambda cls: name), "on_response": on_response})
 
+    library = {"sum": mixed("sum", 1), "difference": mixed("difference", -1)}
+    library |= {name: WAVES[name] for name in ("wave2", "wave3")}
+    hidden = [library["sum"](0.5), library["difference"](0.2)]
 
-def test_a_rival_of_which_the_model_has_no_answer_is_left_at_that(tmp_path, monkeypatch):
-    monkeypatch.setattr(search_module, "fit_set", lambda search, promise: False)
-    assert rivals_of(sure_of_noise(tmp_path), {3: 15.0, 4: 20.0}) == set()
+    def extra(x):
+        found = (e.on_response({"force": 0.0}, {"displacement": x}, "", None)["force"] for e in hidden)
+        return sum(found)
+
+    bench = sure_of_noise(tmp_path, extra=extra)
+    signatures = signatures_of(bench, tuple(effect() for effect in library.values()))
+    effects = [library[name]() for name in ("difference", "sum")]
+    one = fitted_from(bench, effects, bench.null.x, np.array([0.2, 0.5]))
+    beliefs = beliefs_of(library, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), one.names: one})
+    others = frozenset(("wave2", "wave3"))
+    exchange(search, one.names, lambda words: None)
+    assert others not in search.fitted
+    exchange_two(search, one.names, lambda words: None)
+    assert (others in search.fitted) is is_fitted
+    if is_fitted:
+        assert search.log_evidence(others) == pytest.approx(one.log_evidence, abs=1.0)
 
 
 def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):

@@ -183,7 +183,7 @@ def of(diagnosis, verdict):
     """The diagnosis with another verdict and names that fit."""
     names = ("coulomb_friction", "stribeck", "force_offset")
     count = {"effect": 1, "partial": 1, "group": 2, "pair": 2, "several": 3}.get(verdict, 0)
-    return replace(diagnosis, verdict=verdict, names=names[:count])
+    return replace(diagnosis, verdict=verdict, names=names[:count], sure=0.97)
 
 
 def test_every_verdict_is_a_plain_sentence(diagnosis):
