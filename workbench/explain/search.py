@@ -160,8 +160,9 @@ def _effects_alone(search: Search, heap: list[Promise], settled: set[Set], progr
             if names in search.fitted and names not in search.expanded:
                 expand(search, search.fitted[names], heap)
         exchange(search, leader, progress)
-        exchange_two(search, leader, progress)
         _best_first(search, heap, progress)
+        if search.ranked[0] == leader:
+            exchange_two(search, leader, progress)
 
 
 def _weigh_leader(search: Search, progress: Progress) -> None:
