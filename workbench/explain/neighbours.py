@@ -17,6 +17,7 @@ from workbench.explain.explore import explored
 from workbench.explain.hypotheses import Hypothesis, held_at
 from workbench.explain.tried import (
     NEGLIGIBLE,
+    NO_FIT,
     REACH,
     Progress,
     Promise,
@@ -207,9 +208,9 @@ def _twins(
 
 
 def exchange_two(search: Search, leader: Set, progress: Progress) -> None:
-    """What leads is weighed against the few sets that lack two of its effects, have one or two others and promise most:
-    two may do together what two others do, none of which takes the place of one. Promises are made where it ended:
-    beside a fit without both, which pulls tolerances far, they were wrong by tens of nats."""
+    """What leads is weighed against the few sets that lack two of its effects, or its only one, have one or two others
+    and promise most: two may do together what two others do, none of which takes the place of one. Promises are made
+    where it ended: beside a fit without both, which pulls tolerances far, they were wrong by tens of nats."""
     away = combinations(sorted(leader), min(2, len(leader))) if leader else ()
     starts = sorted(promise for gone in away for promise in _instead_of_two(search, leader, leader.difference(gone)))
     for promise in starts[:TWO_EXCHANGED]:
@@ -219,9 +220,12 @@ def exchange_two(search: Search, leader: Set, progress: Progress) -> None:
 
 def _instead_of_two(search: Search, leader: Set, kept: Set) -> list[Promise]:
     """The sets with some effects of what leads that promise about as much as it does by the same linear algebra, each
-    with how much more."""
+    with how much more; none where the model has no answer with these effects alone."""
     whole = search.fitted[leader]
-    held = held_at(search.bench, whole.fit, *_part_of(whole, kept))
+    try:
+        held = held_at(search.bench, whole.fit, *_part_of(whole, kept))
+    except NO_FIT:
+        return []
     added = additions(search, held, held.fit.jacobian, search.signatures_beside(whole))
     (looked_at,) = explored(added.names, [added.readings], search.beliefs, kept, len(kept) + 2)
     every = {kept | names: found for names, found in looked_at.items() if names}

@@ -34,7 +34,7 @@ NOTHING = 1.0  # nat, that is no evidence of anything
 NEGLIGIBLE = 7.0  # nats behind the best, from which a fit says nothing of a size
 STARTS = (1.0, 0.5, 0.2, 0.0)  # shares of the way from the null to a promise, that a fit of it begins at
 MOVED = 3.0  # of the noise of all readings, that one standard deviation of a tolerance makes more or less beside a fit
-IMITATED = 50.0  # times what is left, that an effect explains which stands for no unknown law: those that did, up to 28
+IMITATED = 50.0  # times what is left, that an effect explains which stands for no law: on kinds for tuning 28 at most
 KEPT = 40  # promises beside one fit that are followed up
 NO_FIT = (WorkbenchError, ArithmeticError, np.linalg.LinAlgError)
 

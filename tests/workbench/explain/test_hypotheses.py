@@ -10,6 +10,7 @@ from scipy.stats import multivariate_normal
 from scipy.stats import t as student
 
 import workbench.explain.hypotheses as hypotheses_module
+import workbench.explain.neighbours as neighbours_module
 import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
 from effects.base import ResponseEffect
@@ -871,6 +872,19 @@ def test_what_leads_is_weighed_against_two_that_do_together_what_two_of_its_effe
     assert (others in search.fitted) is is_fitted
     if is_fitted:
         assert search.log_evidence(others) == pytest.approx(one.log_evidence, abs=1.0)
+
+
+def test_a_part_of_what_leads_of_which_the_model_has_no_answer_promises_nothing(tmp_path, monkeypatch):
+    bench = sure_of_noise(tmp_path, extra=lambda x: 0.25 * np.cos(600 * x))
+    one = fitted_from(bench, (WAVES["wave2"](),), bench.null.x, np.array([0.8]))
+    search = searching(bench, {frozenset(): null_of(bench), one.names: one})
+
+    def none(*of):
+        raise WorkbenchError("no steady state")
+
+    monkeypatch.setattr(neighbours_module, "held_at", none)
+    exchange_two(search, one.names, lambda words: None)
+    assert set(search.fitted) == {frozenset(), one.names}
 
 
 def test_what_an_exact_model_gives_is_believed_of_sets_that_are_alike(tmp_path):
