@@ -3,7 +3,7 @@ with an unknown law in the place of all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import combinations
@@ -101,9 +101,9 @@ def _instead_of_effects(search: Search, leading: _Leading, kept: Set) -> list[Pr
 
 def _instead_of_pull(search: Search, leading: _Leading, number: int) -> list[Promise]:
     """Starts of a fit with others in the place of a tolerance that it pulls far."""
-    x = leading.whole.fit.x.copy()
-    x[number] = 0.0
-    return _twins(search, leading, leading.whole.fit.effects, leading.whole.fit.z, x)
+    fit = leading.whole.fit
+    x = np.where(np.arange(len(fit.x)) == number, 0.0, fit.x)
+    return _twins(search, leading, fit.effects, fit.z, x, fit.jacobian[:, number] * fit.x[number])
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +111,13 @@ class _Gap:
     """What a fit does beyond a part of it, which another effect is to fill, tolerances making good what they can.
 
     rest: effects that stay, at their parameters;  x: nuisances beside them (m,)
+    line: what the pull of a tolerance would do as a straight line, whitened (n,), where the gap is one
     """
 
     leading: _Leading
     rest: tuple[Effect, ...]
     x: np.ndarray
+    line: np.ndarray | None = None
 
     @property
     def _predictor(self) -> Predictor:
@@ -156,10 +158,19 @@ class _Gap:
         free, held = self.leading.shifts(signature)
         left, effect, z = signature.nearest(self.free, free, self.leading.free)
         found = [(float(np.linalg.norm(left)), effect, z)]
-        left, effect, z = signature.nearest(self.held, held, self.leading.held)
-        if np.linalg.norm(left) < ALMOST * np.linalg.norm(self.held):
-            found.append(self._by_model(effect, z))
+        found += [self._by_model(effect, z) for z in self._alike(signature, held)]
         return min(found, key=lambda one: one[0])
+
+    def _alike(self, signature: Signature, held: np.ndarray) -> Iterator[np.ndarray]:
+        """z where an effect does nearly the same with the tolerances held: on its grid, and in the place of a pull
+        by straight lines, as the grid begins where the tolerance has ended."""
+        left, _, z = signature.nearest(self.held, held, self.leading.held)
+        if np.linalg.norm(left) < ALMOST * np.linalg.norm(self.held):
+            yield z
+        if self.line is not None:
+            left, z = signature.straight(self.line, self.leading.held)
+            if np.linalg.norm(left) < ALMOST * np.linalg.norm(self.line):
+                yield z
 
     def _by_model(self, effect: Effect, z: np.ndarray) -> tuple[float, Effect, np.ndarray]:
         """The same by steps of Gauss and Newton from z; infinitely much where the model has no answer."""
@@ -183,14 +194,19 @@ class _Gap:
 
 
 def _twins(
-    search: Search, leading: _Leading, rest: tuple[Effect, ...], z_rest: np.ndarray, x: np.ndarray
+    search: Search,
+    leading: _Leading,
+    rest: tuple[Effect, ...],
+    z_rest: np.ndarray,
+    x: np.ndarray,
+    line: np.ndarray | None = None,
 ) -> list[Promise]:
     """Starts with another effect that does most nearly what a fit does beyond what stays of it, nearest first; with
     unknown laws likewise, as two effects may take the place of a law that nobody knows.
 
-    rest, z_rest, x: what stays of the fit
+    rest, z_rest, x: what stays of the fit;  line: see ``_Gap``
     """
-    whole, gap = leading.whole, _Gap(leading, with_parameters(rest, z_rest), x)
+    whole, gap = leading.whole, _Gap(leading, with_parameters(rest, z_rest), x, line)
     kept = frozenset(effect.name() for effect in rest)
     starts = []
     for other in search.signatures.names:

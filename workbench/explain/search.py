@@ -5,7 +5,7 @@ A set is fitted when what it promises is within reach of the best that was fitte
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
@@ -57,7 +57,8 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
         _best_first(search, heap, progress, most)
         again = reweighed(search.bench, _answers(search.fitted[search.ranked[0]], search.bench))
         if again is not search.bench:
-            search, heap = _begun(again, replace(signatures, white=again.fit.white), beliefs, _shapes(again))
+            known = [replace(each, white=again.fit.white) for each in (signatures, *search.elsewhere)]
+            search, heap = _begun(again, known[0], beliefs, _shapes(again), known[1:])
     _until_exact(search, heap, progress)
     weigh_unknown(search, progress)
     _exactly(search, progress)
@@ -79,11 +80,16 @@ def _leader_beside(search: Search, progress: Progress) -> None:
 
 
 def _begun(
-    bench: Bench, signatures: Signatures, beliefs: Beliefs, shapes: tuple[Shape, ...]
+    bench: Bench,
+    signatures: Signatures,
+    beliefs: Beliefs,
+    shapes: tuple[Shape, ...],
+    elsewhere: Sequence[Signatures] = (),
 ) -> tuple[Search, list[Promise]]:
-    """A search that has fitted nothing but the null, and what is promised beside it."""
+    """A search that has fitted nothing but the null, and what is promised beside it. elsewhere: see ``Search``"""
     null, heap = null_of(bench), list[Promise]()
     search = Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed))
+    search.elsewhere.extend(elsewhere)
     expand(search, null, heap)
     return search, heap
 

@@ -128,23 +128,32 @@ def _likelihood(channel: Repeated) -> _Likelihood:
         flat = np.ones((len(COURSES), len(SPREADS)))
         return _Likelihood(0.0 * flat, flat)
     chains = _Chains.of(channel)
-    square, log_det = np.array([_at(chains, *course) for course in COURSES]).transpose(1, 0, 2)
+    square, log_det = _of_spreads(*map(np.array, zip(*(_at(chains, *course) for course in COURSES))))
     known = DECLARED_WEIGHT + channel.free
     return _Likelihood(-0.5 * (known * np.log(DECLARED_WEIGHT + square) + log_det), (DECLARED_WEIGHT + square) / known)
 
 
-def _at(chains: _Chains, rho: float, floor: float) -> tuple[np.ndarray, np.ndarray]:
-    """Sum of squares and ln det of the restricted likelihood at a course, for every spread (T,), (T,)."""
+def _at(chains: _Chains, rho: float, floor: float) -> tuple[np.ndarray, float]:
+    """Products of readings and shapes with one another at a course, stations and independent parts integrated out
+    (1 + q, 1 + q), and ln det of that."""
     products, on, band = chains.at(rho, floor)
     root = cholesky_banded(band, lower=True, check_finite=False)
     taken = dtbtrs(root, on, uplo="L")[0]
-    products = products - taken.T @ taken
     log_det = 2 * np.log(root[0]).sum() + chains.following * np.log(1 - rho**2) + chains.rows * np.log(1 - floor)
-    eigenvalues, turned = np.linalg.eigh(products[1:, 1:])
-    along = np.square(turned.T @ products[1:, 0])
-    more = 1 + np.outer(SPREADS**2, np.maximum(eigenvalues, 0.0))
-    square = products[0, 0] - (SPREADS[:, None] ** 2 * along / more).sum(axis=1)
-    return np.maximum(square, 0.0), log_det + np.log(more).sum(axis=1)
+    return products - taken.T @ taken, float(log_det)
+
+
+def _of_spreads(products: np.ndarray, log_det: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of squares and ln det of the restricted likelihood at every course, for every spread (C, T), (C, T).
+
+    products, log_det: see ``_at``, of every course (C, 1 + q, 1 + q), (C,)
+    """
+    eigenvalues, turned = np.linalg.eigh(products[:, 1:, 1:])
+    along = np.square(turned.transpose(0, 2, 1) @ products[:, 1:, :1])[:, None, :, 0]
+    variance = SPREADS[:, None] ** 2
+    more = 1 + variance * np.maximum(eigenvalues, 0.0)[:, None]
+    square = products[:, 0, 0, None] - (variance * along / more).sum(axis=2)
+    return np.maximum(square, 0.0), log_det[:, None] + np.log(more).sum(axis=2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,9 +100,22 @@ class Signature:
         """
         away = np.linalg.norm(target[:, None] - shifts, axis=0)
         place = int(np.argmin(np.where(np.isfinite(self.log_prior), away, np.inf)))
-        left, slopes = target - shifts[:, place], white(self.tangents[:, :, place].T)
+        left, slopes = target - shifts[:, place], self._slopes(place, white)
         step = np.clip(np.linalg.lstsq(slopes, left, rcond=None)[0], -self.width / 2, self.width / 2)
         return left - slopes @ step, self.effect, self.z[place] + step
+
+    def straight(self, target: np.ndarray, white: Whitener) -> tuple[np.ndarray, np.ndarray]:
+        """What is left of a change of the readings, whitened (n,), by the effect as a straight line about the middle of
+        its grid, however long; its z at the end of the line."""
+        away = np.where(np.isfinite(self.log_prior), np.linalg.norm(self.z, axis=1), np.inf)
+        place = int(np.argmin(away))
+        slopes = self._slopes(place, white)
+        step = np.linalg.lstsq(slopes, target, rcond=None)[0]
+        return target - slopes @ step, self.z[place] + step
+
+    def _slopes(self, place: int, white: Whitener) -> np.ndarray:
+        """d change / dz at a place, whitened (n, k)."""
+        return white(self.tangents[:, :, place].T)
 
     def at(self, place: int, weights: np.ndarray) -> np.ndarray:
         """z (k,) of a place of the grid moved by the weights of its columns."""

@@ -13,7 +13,7 @@ import workbench.explain.hypotheses as hypotheses_module
 import workbench.explain.neighbours as neighbours_module
 import workbench.explain.search as search_module
 import workbench.explain.tried as tried_module
-from effects.base import ResponseEffect
+from effects.base import DesignEffect, ResponseEffect
 from effects.parameter import parameter
 from effects.prior import LogNormal, Normal, Uniform
 from geometry.errors import GeometryError
@@ -836,6 +836,45 @@ def test_a_twin_is_found_of_what_a_tolerance_makes_good_but_for_its_curvature(tm
     search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench), found.names: found})
     exchange(search, found.names, lambda words: None)
     assert search.log_evidence(frozenset(("twin",))) == pytest.approx(found.log_evidence, abs=1e-3)
+
+
+class Rippled(SpringModel):
+    """Its force has a ripple that moves by 0.4 rad with every percent of stiffness."""
+
+    def respond(self, design, kind, conditions):
+        x, more = conditions["displacement"], design.stiffness / 1e3 - 1
+        return {"force": design.stiffness * x + 2.0 * np.cos(600 * x - 40 * more)}
+
+
+@dataclass(frozen=True)
+class Stiffness(DesignEffect):
+    """k = k_drawn (1 + more)"""
+
+    title = "stiffness"
+    looks_like = "another force"
+    designs = (Spring,)
+    base_rate = RATE
+    more: float = parameter(0.0, "1", prior=Normal(0.02), low=-0.5, high=0.5, source="made up")
+
+    def on_design(self, design):
+        return replace(design, stiffness=design.stiffness * (1 + self.more))
+
+
+def test_an_effect_takes_the_place_of_the_pull_of_a_tolerance_that_no_straight_line_follows(tmp_path):
+    """A spring 5 % too soft, drawn to 1 %: from where the tolerance ended the grid of the effect sees other ripples."""
+    drawn = sure_of_noise(tmp_path, extra=lambda x: 2.0 * np.cos(600 * x + 2.0), stiffness=950.0)
+    model = Model(Rippled(), Spring(1000.0))
+    problem = replace(drawn.fit, predictor=replace(drawn.fit.predictor, model=model))
+    null = fitted(problem, (), np.array([-5.0, 0.0]), np.zeros(0))
+    assert null.x[0] == pytest.approx(-5.0, abs=0.2)
+    bench = replace(drawn, model=model, fit=problem, null=null)
+    signatures, only = signatures_of(bench, (Stiffness(),)), frozenset(("stiffness",))
+    beliefs = beliefs_of({"stiffness": Stiffness}, signatures.names)
+    search = Search(bench, signatures, beliefs, (), {frozenset(): null_of(bench)})
+    exchange(search, frozenset(), lambda words: None)
+    (found,) = search.fitted[only].effects
+    assert -0.05 < found.more < -0.035, "the tolerance keeps a part"
+    assert search.log_evidence(only) > null.log_evidence + 8.0
 
 
 @pytest.mark.parametrize("wrong_by, is_fitted", ((0.0, True), (0.3, False)))

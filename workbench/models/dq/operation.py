@@ -16,6 +16,7 @@ PEAK_OF_LINE_RMS = sqrt(2.0 / 3.0)  # peak phase voltage of an RMS line-to-line 
 STEPS = 60  # of Newton's method; some six are needed
 CLOSE = 1e-11  # residual, of its scale
 HALVINGS = 12  # of a step that makes a row worse
+TINY = np.finfo(float).tiny
 TOO_LOW = "the machine has no steady state there, the voltage is too low for the torque"
 _STILL = 1e-3  # rad/s, electrical, below which hysteresis no longer brakes
 _SLOPE_STEP = 1e-3  # of the current that cancels the magnets, for slopes by central differences
@@ -189,5 +190,5 @@ def _newton_step(residual, x, y, a, b, h: float) -> Currents:
     (a_x, b_x), (a_y, b_y) = residual(x + h, y), residual(x, y + h)
     a_x, b_x, a_y, b_y = (a_x - a) / h, (b_x - b) / h, (a_y - a) / h, (b_y - b) / h
     determinant = a_x * b_y - a_y * b_x
-    determinant = np.where(determinant == 0.0, np.finfo(float).tiny, determinant)  # a far step: it is halved
+    determinant = np.where(determinant == 0.0, TINY, determinant)  # a far step: it is halved
     return -(a * b_y - b * a_y) / determinant, -(a_x * b - b_x * a) / determinant
