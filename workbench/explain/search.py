@@ -5,7 +5,7 @@ A set is fitted when what it promises is within reach of the best that was fitte
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
@@ -57,8 +57,7 @@ def searched(bench: Bench, library: Mapping[str, type[Effect]], progress: Progre
         _best_first(search, heap, progress, most)
         again = reweighed(search.bench, _answers(search.fitted[search.ranked[0]], search.bench))
         if again is not search.bench:
-            known = [replace(each, white=again.fit.white) for each in (signatures, *search.elsewhere)]
-            search, heap = _begun(again, known[0], beliefs, _shapes(again), known[1:])
+            search, heap = _begun_again(search, again)
     _until_exact(search, heap, progress)
     weigh_unknown(search, progress)
     _exactly(search, progress)
@@ -80,18 +79,31 @@ def _leader_beside(search: Search, progress: Progress) -> None:
 
 
 def _begun(
-    bench: Bench,
-    signatures: Signatures,
-    beliefs: Beliefs,
-    shapes: tuple[Shape, ...],
-    elsewhere: Sequence[Signatures] = (),
+    bench: Bench, signatures: Signatures, beliefs: Beliefs, shapes: tuple[Shape, ...]
 ) -> tuple[Search, list[Promise]]:
-    """A search that has fitted nothing but the null, and what is promised beside it. elsewhere: see ``Search``"""
-    null, heap = null_of(bench), list[Promise]()
-    search = Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed))
-    search.elsewhere.extend(elsewhere)
-    expand(search, null, heap)
+    """A search that has fitted nothing but the null, and what is promised beside it."""
+    null = null_of(bench)
+    return _promised(Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed)))
+
+
+def _promised(search: Search) -> tuple[Search, list[Promise]]:
+    """A search that has fitted nothing but the null, and what is promised beside it."""
+    heap = list[Promise]()
+    expand(search, search.fitted[frozenset()], heap)
     return search, heap
+
+
+def _begun_again(search: Search, bench: Bench) -> tuple[Search, list[Promise]]:
+    """The same where other readings are taken for wild: what effects do is as it was, and fits end not far from where
+    they did."""
+    known = [replace(each, white=bench.fit.white) for each in (search.signatures, *search.elsewhere)]
+    before = {names: hypothesis.fit for names, hypothesis in search.fitted.items()}
+    null, shapes, failed = null_of(bench), _shapes(bench), dict(search.signatures.failed)
+    return _promised(
+        Search(
+            bench, known[0], search.beliefs, shapes, {null.names: null}, failed=failed, elsewhere=known[1:], before=before
+        )
+    )
 
 
 def _shapes(bench: Bench) -> tuple[Shape, ...]:

@@ -110,6 +110,7 @@ class Search:
     exact: sets that were fitted with a base model that is exact where they ended, and what this gave them [nats]
     parted: fits beside which those without one of their effects were made
     elsewhere: signatures beside fits of large effects
+    before: fits of a search that took other readings for wild, from which those of the same sets begin
     """
 
     bench: Bench
@@ -127,6 +128,7 @@ class Search:
     exact: dict[Set, float] = field(default_factory=lambda: {frozenset(): 0.0})
     parted: set[Hypothesis] = field(default_factory=set)
     elsewhere: list[Signatures] = field(default_factory=list)
+    before: Mapping[Set, Fit] = field(default_factory=dict)
 
     def drop(self, names: Set, why: str) -> None:
         """Takes back a set that was fitted and cannot be."""
@@ -358,6 +360,9 @@ def fit_set(search: Search, promise: Promise) -> bool:
     that ends far below its guess may have ended in a wrong valley."""
     every = promise.every
     guess, bench = search.guessed.pop(every, -np.inf), _behind_the_lead(search)
+    if every in search.before and every not in search.fitted:
+        known = search.before[every]
+        promise = replace(promise, effects=known.effects, x=known.x, z=known.z, slopes=known.slopes)
     try:
         found = _fitted(bench, promise)
     except NO_FIT as error:
