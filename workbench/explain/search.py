@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
+from typing import Any
 
 import numpy as np
 
@@ -79,17 +80,12 @@ def _leader_beside(search: Search, progress: Progress) -> None:
 
 
 def _begun(
-    bench: Bench, signatures: Signatures, beliefs: Beliefs, shapes: tuple[Shape, ...]
+    bench: Bench, signatures: Signatures, beliefs: Beliefs, shapes: tuple[Shape, ...], **kept: Any
 ) -> tuple[Search, list[Promise]]:
-    """A search that has fitted nothing but the null, and what is promised beside it."""
-    null = null_of(bench)
-    return _promised(Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed)))
-
-
-def _promised(search: Search) -> tuple[Search, list[Promise]]:
-    """A search that has fitted nothing but the null, and what is promised beside it."""
-    heap = list[Promise]()
-    expand(search, search.fitted[frozenset()], heap)
+    """A search that has fitted nothing but the null, and what is promised beside it. kept: of ``Search``"""
+    null, heap = null_of(bench), list[Promise]()
+    search = Search(bench, signatures, beliefs, shapes, {null.names: null}, failed=dict(signatures.failed), **kept)
+    expand(search, null, heap)
     return search, heap
 
 
@@ -98,12 +94,7 @@ def _begun_again(search: Search, bench: Bench) -> tuple[Search, list[Promise]]:
     they did."""
     known = [replace(each, white=bench.fit.white) for each in (search.signatures, *search.elsewhere)]
     before = {names: hypothesis.fit for names, hypothesis in search.fitted.items()}
-    null, shapes, failed = null_of(bench), _shapes(bench), dict(search.signatures.failed)
-    return _promised(
-        Search(
-            bench, known[0], search.beliefs, shapes, {null.names: null}, failed=failed, elsewhere=known[1:], before=before
-        )
-    )
+    return _begun(bench, known[0], search.beliefs, _shapes(bench), elsewhere=known[1:], before=before)
 
 
 def _shapes(bench: Bench) -> tuple[Shape, ...]:
