@@ -1,7 +1,9 @@
 """Which of two readings is wild is asked again of a model that holds what was found to be missing."""
 
+import numpy as np
 import pytest
 
+import workbench.explain.tried as tried_module
 from tests.workbench.toy_bench import LIBRARY, SpringModel, written
 from workbench.data.campaign import read_campaign
 from workbench.explain.search import searched
@@ -36,7 +38,22 @@ def test_the_wild_reading_is_told_by_a_model_that_explains_the_others(tmp_path, 
     assert search.ranked[0] == frozenset(("bump",)) and search.posterior.remains < 0.2
 
 
+def test_a_search_that_begins_anew_takes_along_where_its_fits_ended(tmp_path, monkeypatch):
+    begun, fitted_from = [], tried_module.fitted_from
+
+    def noted(bench, effects, x, z, slopes=None):
+        begun.append((bench.noise, frozenset(effect.name() for effect in effects), z))
+        return fitted_from(bench, effects, x, z, slopes)
+
+    monkeypatch.setattr(tried_module, "fitted_from", noted)
+    search, bump = searched(bench_with(tmp_path, -20 * U), LIBRARY), frozenset(("bump",))
+    first = next(z for noise, names, z in begun if noise is search.bench.noise and names == bump)
+    assert np.array_equal(first, search.before[bump].z)
+    assert search.signatures.white is search.bench.fit.white, "what effects do is held against the noise as it is now"
+
+
 def test_where_no_reading_changes_sides_the_bench_stays(tmp_path):
     bench = bench_with(tmp_path, 0.0)
     assert reweighed(bench, bench.fit.predictor.on(bench.stack).predict(bench.null.x)) is bench
-    assert searched(bench, LIBRARY).bench is bench
+    search = searched(bench, LIBRARY)
+    assert search.bench is bench and not search.before
