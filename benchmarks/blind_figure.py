@@ -26,7 +26,7 @@ def confusion_figure(cases: Sequence[Mapping], title: str, path: Path) -> None:
         dark = table[row, column] > 0.6
         text = f"{table[row, column]:.2f}"
         axes.text(column, row, text, ha="center", va="center", fontsize=4.5, color="white" if dark else "black")
-    axes.set_xlabel("verdict (a group counts for its members in equal parts)")
+    axes.set_xlabel("verdict (sets that are printed count alike, and their members)")
     axes.set_ylabel("hidden in the campaign")
     axes.set_title(title)
     figure.colorbar(image, ax=axes, label="share of the cases of a row", fraction=0.03, pad=0.02)

@@ -301,28 +301,30 @@ def by_kind(cases: Sequence[Mapping]) -> dict[str, tuple[int, int]]:
 
 
 def confusion(cases: Sequence[Mapping]) -> tuple[list[str], list[str], np.ndarray]:
-    """Truths, verdicts and shares (rows add to one) of nulls, visible single effects and visible outsiders.
-
-    A group counts for its members in equal parts.
-    """
+    """Truths, verdicts and shares (rows add to one) of nulls, visible single effects and visible outsiders."""
     rows: dict[str, list[Mapping]] = {}
     for case in cases:
         if case["group"] in ("null", "single", "outside") and visible(case):
             rows.setdefault(_truth(case), []).append(case)
     truths = sorted(rows, key=lambda name: (name.startswith("("), name))
-    columns = sorted({name for case in cases for name in (*_named(case), *case["effects"])})
+    columns = sorted({name for case in cases for name in (*frozenset().union(*printed(case)), *case["effects"])})
     columns += ["nothing_missing", "none_of_these", "cannot_tell", "convention", "error"]
     table = np.zeros((len(truths), len(columns)))
     for row, truth in enumerate(truths):
         for case in rows[truth]:
-            hits = _named(case) or [case["verdict"] if case["verdict"] not in NAMING else "none_of_these"]
-            for hit in hits:
-                table[row, columns.index(hit)] += 1.0 / len(hits) / len(rows[truth])
+            for said, share in _said(case):
+                table[row, columns.index(said)] += share / len(rows[truth])
     return [f"{truth}  n = {len(rows[truth])}" for truth in truths], columns, table
 
 
-def _named(case: Mapping) -> list[str]:
-    return list(case["names"]) if case["verdict"] in NAMING else []
+def _said(case: Mapping) -> list[tuple[str, float]]:
+    """What a case ends with, in shares that add to one: every set that is printed counts alike, and its members; one of
+    what every bench of the kind has only where no other is printed."""
+    sets = printed(case)
+    sets = [names for names in sets if not names <= set(case["ambient"])] or sets
+    if not sets:
+        return [(case["verdict"] if case["verdict"] not in NAMING else "none_of_these", 1.0)]
+    return [(name, 1.0 / len(sets) / len(names)) for names in sets for name in sorted(names)]
 
 
 def _truth(case: Mapping) -> str:

@@ -138,6 +138,17 @@ def test_confusion_shares_add_to_one():
     assert table[row, verdicts.index("coulomb_friction")] == 0.75
 
 
+def test_confusion_counts_what_is_said_apart_and_not_what_every_bench_has():
+    """Friction of every bench and one of two: the friction stands in no row but where nothing else is said."""
+    effects = {"coulomb_friction": 1.0, "eddy_drag": 1.0}
+    one = {"names": ("coulomb_friction",), "alternatives": {"eddy_drag": ("viscous_damping",)}, "verdict": "partial"}
+    some = case(effects=effects, **one) | {"ambient": ("coulomb_friction",)}
+    none = case("null", {"coulomb_friction": 1.0}, "effect", ("coulomb_friction",)) | {"ambient": ("coulomb_friction",)}
+    _, verdicts, (seen, nothing) = confusion([some, none])
+    assert seen[verdicts.index("eddy_drag")] == seen[verdicts.index("viscous_damping")] == 0.5
+    assert nothing[verdicts.index("coulomb_friction")] == 1.0
+
+
 RANKED = {"name": "a", "probability": 0.9, "parameters": {"size": {"low90": 1.0, "high90": None}}}
 SAID = {"verdict": "effect", "names": ["a"], "probability": 0.9, "wall_s": 2.0, "ranking": [RANKED]}
 
